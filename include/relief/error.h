@@ -1,0 +1,38 @@
+// The one exception type of the library. What went wrong, where (file, object, place), and what to do about it.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace relief {
+
+/// Decides the exit code of the command: failed 1, usage 2, bad_input 3, device_missing 4, out_of_memory 5.
+enum class ErrorKind { failed = 1, usage = 2, bad_input = 3, device_missing = 4, out_of_memory = 5 };
+
+/// `what()` reads "WHERE: MESSAGE (HINT)"; the parts stay available for programs that format their own text.
+class Error : public std::runtime_error {
+  public:
+    struct Parts {
+        std::string message;  ///< what is wrong, one sentence without a full stop
+        std::string where;    ///< file, line and column, object or pixel: whatever pins it down; may be empty
+        std::string hint;     ///< what the user can do; may be empty
+    };
+
+    Error(ErrorKind kind, Parts parts) : std::runtime_error(join(parts)), kind_(kind), parts_(std::move(parts)) {}
+
+    ErrorKind kind() const { return kind_; }
+    const std::string& message() const { return parts_.message; }
+    const std::string& where() const { return parts_.where; }
+    const std::string& hint() const { return parts_.hint; }
+
+  private:
+    static std::string join(const Parts& parts) {
+        std::string text = parts.where.empty() ? parts.message : parts.where + ": " + parts.message;
+        return parts.hint.empty() ? text : text + " (" + parts.hint + ")";
+    }
+
+    ErrorKind kind_;
+    Parts parts_;
+};
+
+} // namespace relief

@@ -1,0 +1,52 @@
+// Files: scenes, meshes, maps in; scenes and pictures out. Links against relief_io; the core works without it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "relief/image.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file.
+/// Throws Error{bad_input} with file, line and column, object and hint.
+Scene load_scene(const std::filesystem::path& file);
+
+/// What the command line says of a mesh that comes without a scene file. Unset values come from the preset.
+struct MeshSceneOptions {
+    std::filesystem::path displacement_map;  ///< empty: none; may hold <UDIM>
+    std::string preset;                      ///< empty: none
+    std::optional<std::string> space, axes;
+    std::optional<float> midlevel, scale;
+    bool flip_v = false;
+    std::filesystem::path environment;       ///< empty: a soft sky and a sun
+};
+
+/// A mesh alone: automatic camera (from above, front, whole object in view) and light.
+Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
+
+/// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).
+bool is_mesh_file(const std::filesystem::path& file);
+
+/// Polygons of a file, quads and n-gons kept.
+Mesh load_mesh(const std::filesystem::path& file);
+
+/// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder, so that load_scene gives the same scene.
+void save_scene(const Scene& scene, const std::filesystem::path& folder);
+
+/// Reads all channels of the first part as floats, data window and metadata included.
+Image read_image(const std::filesystem::path& file);
+
+/// Texels as stored: no colour conversion, no flip.
+Texture read_texture(const std::filesystem::path& file);
+
+/// Writes by extension: .exr (all channels, ZIP, float), .hdr (R, G, B), .png (tone mapped, 8 bit sRGB).
+/// The file appears whole or not at all: it is written beside its place and renamed.
+void write_image(const Image& image, const std::filesystem::path& file);
+
+/// Throws now if write_image to this file would fail for its name, folder or rights.
+void check_writable(const std::filesystem::path& file);
+
+} // namespace relief

@@ -1,0 +1,48 @@
+#include "base/memory.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace relief {
+
+namespace {
+
+constexpr uint64_t kUnknown = std::numeric_limits<uint64_t>::max();
+
+uint64_t read_number(const char* file) {
+    std::ifstream stream(file);
+    uint64_t value = 0;
+    return stream >> value ? value : kUnknown;
+}
+
+uint64_t read_meminfo_available() {
+    std::ifstream stream("/proc/meminfo");
+    std::string key;
+    uint64_t kibibytes = 0;
+    while (stream >> key >> kibibytes) {
+        if (key == "MemAvailable:") return kibibytes * 1024;
+        stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    }
+    return kUnknown;
+}
+
+} // namespace
+
+uint64_t peak_resident_bytes() {
+    rusage usage{};
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? uint64_t(usage.ru_maxrss) * 1024 : 0;
+}
+
+uint64_t available_memory_bytes() {
+    uint64_t available = read_meminfo_available();
+    const uint64_t limit = read_number("/sys/fs/cgroup/memory.max");
+    const uint64_t used = read_number("/sys/fs/cgroup/memory.current");
+    if (limit != kUnknown && used != kUnknown) available = std::min(available, limit > used ? limit - used : 0);
+    return available;
+}
+
+} // namespace relief

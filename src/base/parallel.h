@@ -1,0 +1,25 @@
+// Parallel loops with names. The only door to oneTBB; results never depend on the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace relief {
+
+/// Runs `body(begin, end)` over disjoint ranges that cover [0, count), each at most `grain` long, on the threads of the
+/// enclosing ThreadScope (or all cores). The first exception thrown by a body is rethrown here.
+void parallel_for(const char* name, size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
+
+/// Runs both functions, possibly at the same time.
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
+
+/// Index of the calling worker in [0, thread_count()); two bodies that run at the same time never share it.
+int current_thread_index();
+
+/// Threads that a parallel_for of this scope may use.
+int thread_count();
+
+/// Calls `body` with at most `threads` workers for all parallel loops inside it; 0 means all cores.
+void with_threads(int threads, const std::function<void()>& body);
+
+} // namespace relief

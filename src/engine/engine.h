@@ -1,0 +1,33 @@
+// The one interface that both engines stand behind.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "engine/prepared_scene.h"
+#include "film/film.h"
+#include "relief/intersect.h"
+#include "relief/render.h"
+
+namespace relief {
+
+class Engine {
+  public:
+    virtual ~Engine() = default;
+
+    /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when the observer
+    /// cancelled; the film then holds what was done.
+    virtual bool render(Film& film, RenderObserver* observer) = 0;
+
+    /// Spans of equal length; thread safe.
+    virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const = 0;
+    virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const = 0;
+
+    /// Adds what the engine counted: rays, pairs, bottom trees, stage times, bytes, device and isa.
+    virtual void add_statistics(Statistics& statistics) const = 0;
+};
+
+/// Throws Error{device_missing} for an instruction set that this machine lacks.
+std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
+
+} // namespace relief

@@ -1,0 +1,52 @@
+// One-lane C++ door to the formulas in src/shared: the same files that the shaders include.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace relief::scalar {
+
+using Float = float;
+using Bool = bool;
+using Uint = uint32_t;
+using uint = uint32_t;
+using Vec2 = relief::Vec2<float>;
+using Vec3 = relief::Vec3<float>;
+
+inline float select(bool condition, float a, float b) { return condition ? a : b; }
+inline Vec3 select(bool condition, const Vec3& a, const Vec3& b) { return condition ? a : b; }
+inline uint select(bool condition, uint a, uint b) { return condition ? a : b; }
+inline float abs(float a) { return std::fabs(a); }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline float clamp(float a, float low, float high) { return min(max(a, low), high); }
+inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
+inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
+inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
+using relief::cross;
+using relief::dot;
+using relief::normalize;
+using std::acos;
+using std::atan;
+using std::cos;
+using std::exp;
+using std::exp2;
+using std::floor;
+using std::fma;
+using std::log2;
+using std::pow;
+using std::sin;
+using std::sqrt;
+using std::tan;
+
+#define FN inline
+#define EXACT
+#include "shared/all.h"
+#undef FN
+#undef EXACT
+
+} // namespace relief::scalar

@@ -1,0 +1,4 @@
+// Every formula of this folder, for C++ instances (math/scalar.h and the SIMD instances). GLSL includes single files.
+// No include guard: each instance includes it inside a namespace of its own.
+#include "shared/lang.h"
+#include "shared/displace.h"

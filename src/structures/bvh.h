@@ -1,0 +1,28 @@
+// The flat tree that every builder makes and every traversal reads. Boxes and ids only: it never knows a primitive.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/box.h"
+
+namespace relief {
+
+/// 32 bytes. Children of an inner node are adjacent: `first` and `first + 1`.
+struct BvhNode {
+    Vec3f lower;
+    uint32_t first = 0;  ///< inner: index of the left child; leaf: first entry of Bvh::primitive_ids
+    Vec3f upper;
+    uint32_t primitive_count = 0;  ///< 0: inner node
+
+    bool is_leaf() const { return primitive_count > 0; }
+    Box box() const { return {lower, upper}; }
+};
+
+/// Node 0 is the root; no nodes: no primitives.
+struct Bvh {
+    std::vector<BvhNode> nodes;
+    std::vector<uint32_t> primitive_ids;
+};
+
+} // namespace relief

@@ -1,0 +1,38 @@
+// Levels from the size on the screen: one level an edge, so that neighbours agree wherever they meet.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/affine.h"
+#include "surface/surface.h"
+
+namespace relief {
+
+struct LevelFieldConfig {
+    int fixed_level = -1;      ///< >= 0: this level everywhere
+    float pixel_error = 1;     ///< cell size aimed at, pixels
+    Vec3f camera{};            ///< world space
+    float pixel_angle = 1e-3f; ///< size of a pixel at distance 1, scene units
+};
+
+/// Levels of all patches of one object, packed 4 bits an edge. Immutable, thread safe.
+class LevelField {
+  public:
+    /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the view): finest
+    /// such that a cell is at most `pixel_error` pixels at the nearest point, never finer than one cell a texel, never
+    /// above kMaxLevel. Undisplaced surfaces have level 0.
+    static LevelField compute(const Surface& surface, const Affine& world_from_object,
+                              const LevelFieldConfig& config);
+
+    PatchLevels at(uint32_t patch) const;
+    int max_level() const { return max_level_; }
+    size_t byte_count() const { return packed_.size() * sizeof(uint16_t); }
+
+  private:
+    std::vector<uint16_t> packed_;  ///< empty: `fixed_` everywhere
+    PatchLevels fixed_;
+    int max_level_ = 0;
+};
+
+} // namespace relief
