@@ -1,5 +1,6 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
+.NOTPARALLEL:
 .PHONY: help render test dev asan tsan fuzz coverage format clean packages release asan-slice
 
 JOBS ?= $(shell tools/count_jobs.sh)
