@@ -27,6 +27,7 @@ struct Image {
 
     /// Index of a channel by its full name, or nothing.
     std::optional<size_t> find_channel(const std::string& name) const;
+    /// (x, y) in pixels of the display window, inside the data window.
     float& at(int x, int y, size_t channel);
     float at(int x, int y, size_t channel) const;
 };
@@ -57,8 +58,11 @@ struct ImageDifference {
 ImageDifference compare_images(const Image& a, const Image& b, const std::string& layer, double threshold);
 
 /// Joins tiles and sample ranges of one picture: each pixel is the mean of the parts weighted by their "samples.Y".
-/// Layers that cannot be averaged (id, depth, P, N, Ng, uv) come from the part with the lowest sample range.
-/// Throws bad_input for parts of different pictures (scene hash, seed, size) or overlapping sample ranges of a pixel.
+/// Layers that cannot be averaged (id, depth, P, N, Ng, uv) come from the part with the lowest sample range; variance is
+/// that of the joint mean. Pixels that no part covers are 0, their depth infinity.
+/// Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer "samples".
+/// Throws bad_input for parts of different pictures (scene hash, seed, size, channels) or overlapping sample ranges of
+/// a pixel.
 Image merge_images(std::span<const Image> parts);
 
 } // namespace relief

@@ -1,6 +1,7 @@
 // Sums of samples, pixel by pixel, and the layers made from them.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,41 +13,51 @@ namespace relief {
 /// What one camera sample saw. Layers other than radiance describe the first hit.
 struct FilmSample {
     Vec3f radiance{};
-    float alpha = 0;  ///< 1 where the camera ray hit a surface
+    float alpha = 0; ///< 1 where the camera ray hit a surface
     float depth = std::numeric_limits<float>::infinity();
     Vec3f shading_normal{}, geometric_normal{}, position{}, albedo{};
     Vec2f uv{};
-    uint32_t id = 0;  ///< 1 + instance; 0: background
-    float cost = 0;   ///< rays traced for this sample
+    uint32_t id = 0; ///< 1 + instance; 0: background
+    float cost = 0;  ///< rays traced for this sample
 };
 
-/// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising order.
-/// Different pixels may be fed at the same time.
+/// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
+/// order. Different pixels may be fed at the same time.
 class Film {
   public:
     /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one.
     Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers);
 
     const Window& window() const { return window_; }
-    /// (x, y) in pixels of the whole picture.
+    /// (x, y) in pixels of the whole picture, inside the window.
     void add_sample(int x, int y, const FilmSample& sample);
 
-    /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples (normals
-    /// normalised again, P and uv over the samples that hit); depth and id are of the nearest first hit; variance is
-    /// that of the mean. Pixels without samples are 0, depth infinity.
+    /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
+    /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
+    /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
     Image resolve() const;
 
     size_t byte_count() const;
 
   private:
-    struct Pixel;
-    // the implementation decides how planes are held
+    size_t pixel_index(int x, int y) const;
+
     int full_width_, full_height_;
     Window window_;
-    std::vector<std::string> layers_;
-    std::vector<double> sums_;
+    struct Layer {
+        size_t kind;       ///< index into the table of layers
+        size_t sum_offset; ///< of its first sum within a pixel's stride
+    };
+
+    void write_layer(size_t pixel, const Layer& layer, float* target) const;
+
+    std::vector<Layer> layers_; ///< asked for, in design order
     size_t stride_ = 0;
-    std::vector<uint32_t> counts_;
+    std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
+    std::vector<uint32_t> counts_;     ///< samples a pixel
+    std::vector<uint32_t> hit_counts_; ///< samples a pixel that hit; empty unless P or uv is asked for
+    std::vector<float> depths_;        ///< nearest first hit; empty unless depth or id is asked for
+    std::vector<uint32_t> ids_;
 };
 
 } // namespace relief

@@ -25,6 +25,7 @@ inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
 inline float clamp(float a, float low, float high) { return min(max(a, low), high); }
 inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
+inline float atan(float y, float x) { return std::atan2(y, x); }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
 using relief::cross;

@@ -2,3 +2,8 @@
 // No include guard: each instance includes it inside a namespace of its own.
 #include "shared/lang.h"
 #include "shared/displace.h"
+#include "shared/constants.h"
+#include "shared/sobol.h"
+#include "shared/warp.h"
+#include "shared/camera.h"
+#include "shared/tonemap.h"

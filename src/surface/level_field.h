@@ -19,9 +19,9 @@ struct LevelFieldConfig {
 /// Levels of all patches of one object, packed 4 bits an edge. Immutable, thread safe.
 class LevelField {
   public:
-    /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the view): finest
-    /// such that a cell is at most `pixel_error` pixels at the nearest point, never finer than one cell a texel, never
-    /// above kMaxLevel. Undisplaced surfaces have level 0.
+    /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the
+    /// view): finest such that a cell is at most `pixel_error` pixels at the nearest point, never finer than
+    /// one cell a texel, never above kMaxLevel. Undisplaced surfaces have level 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 
@@ -30,7 +30,7 @@ class LevelField {
     size_t byte_count() const { return packed_.size() * sizeof(uint16_t); }
 
   private:
-    std::vector<uint16_t> packed_;  ///< empty: `fixed_` everywhere
+    std::vector<uint16_t> packed_; ///< empty: `fixed_` everywhere
     PatchLevels fixed_;
     int max_level_ = 0;
 };

@@ -1,0 +1,223 @@
+#include "film/film.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/check.h"
+#include "math/vec.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+enum class Source {
+    depth,
+    shading_normal,
+    geometric_normal,
+    position,
+    albedo,
+    uv,
+    id,
+    samples,
+    variance,
+    cost
+};
+
+struct LayerKind {
+    const char* name;
+    Source source;
+    std::array<const char*, 3> suffixes; ///< of its channels; empty strings beyond the last one
+    size_t sum_count;                    ///< sums a pixel that it needs
+};
+
+// In the order in which the layers stand in a picture.
+constexpr std::array<LayerKind, 10> kLayerKinds{{
+    {"depth", Source::depth, {"Z", "", ""}, 0},
+    {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
+    {"Ng", Source::geometric_normal, {"X", "Y", "Z"}, 3},
+    {"P", Source::position, {"X", "Y", "Z"}, 3},
+    {"albedo", Source::albedo, {"R", "G", "B"}, 3},
+    {"uv", Source::uv, {"X", "Y", ""}, 2},
+    {"id", Source::id, {"I", "", ""}, 0},
+    {"samples", Source::samples, {"Y", "", ""}, 0},
+    {"variance", Source::variance, {"R", "G", "B"}, 3},
+    {"cost", Source::cost, {"Y", "", ""}, 1},
+}};
+
+constexpr size_t kRadianceSums = 4;
+
+const LayerKind& find_kind(const std::string& name) {
+    for (const LayerKind& kind : kLayerKinds)
+        if (name == kind.name) return kind;
+    std::string known;
+    for (const LayerKind& kind : kLayerKinds) known += std::string(known.empty() ? "" : ", ") + kind.name;
+    throw Error(ErrorKind::usage, {"there is no layer \"" + name + "\"", "", "layers are " + known});
+}
+
+size_t channel_count(const LayerKind& kind) {
+    return size_t(
+        std::count_if(kind.suffixes.begin(), kind.suffixes.end(), [](const char* s) { return *s != 0; }));
+}
+
+void add_to(double* sums, const Vec3f& v) {
+    sums[0] += v.x;
+    sums[1] += v.y;
+    sums[2] += v.z;
+}
+
+void add_layer(double* sums, Source source, const FilmSample& film_sample, bool is_hit) {
+    switch (source) {
+    case Source::shading_normal:
+        return add_to(sums, film_sample.shading_normal);
+    case Source::geometric_normal:
+        return add_to(sums, film_sample.geometric_normal);
+    case Source::albedo:
+        return add_to(sums, film_sample.albedo);
+    case Source::position:
+        if (is_hit) add_to(sums, film_sample.position);
+        return;
+    case Source::uv:
+        if (is_hit) sums[0] += film_sample.uv.x, sums[1] += film_sample.uv.y;
+        return;
+    case Source::variance:
+        sums[0] += double(film_sample.radiance.x) * film_sample.radiance.x;
+        sums[1] += double(film_sample.radiance.y) * film_sample.radiance.y;
+        sums[2] += double(film_sample.radiance.z) * film_sample.radiance.z;
+        return;
+    case Source::cost:
+        sums[0] += film_sample.cost;
+        return;
+    case Source::depth:
+    case Source::id:
+    case Source::samples:
+        return;
+    }
+}
+
+/// Variance of the mean of n samples from their sum and their sum of squares (unbiased); 0 for one sample.
+double variance_of_mean(double sum, double sum_of_squares, uint32_t n) {
+    if (n < 2) return 0;
+    const double mean = sum / n;
+    return std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1);
+}
+
+bool is_direction(Source source) {
+    return source == Source::shading_normal || source == Source::geometric_normal;
+}
+
+/// Writes the sums of a layer, divided by n and made unit vectors where they are directions.
+void write_means(const double* sums, size_t count, uint32_t n, Source source, float* target) {
+    double divisor = n;
+    if (is_direction(source)) divisor = std::sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2]);
+    for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
+}
+
+} // namespace
+
+Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers)
+    : full_width_(full_width), full_height_(full_height), window_(window), stride_(kRadianceSums) {
+    for (const std::string& name : layers) find_kind(name);
+    if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
+    bool needs_hit_counts = false, needs_nearest = false;
+    for (const LayerKind& kind : kLayerKinds) {
+        if (std::find(layers.begin(), layers.end(), kind.name) == layers.end()) continue;
+        layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_});
+        stride_ += kind.sum_count;
+        needs_hit_counts |= kind.source == Source::position || kind.source == Source::uv;
+        needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
+    }
+    const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
+    sums_.resize(pixels * stride_);
+    counts_.resize(pixels);
+    if (needs_hit_counts) hit_counts_.resize(pixels);
+    if (needs_nearest) depths_.resize(pixels, std::numeric_limits<float>::infinity()), ids_.resize(pixels);
+}
+
+size_t Film::pixel_index(int x, int y) const {
+    DCHECK(x >= window_.x0 && x < window_.x1 && y >= window_.y0 && y < window_.y1);
+    return size_t(y - window_.y0) * size_t(window_.x1 - window_.x0) + size_t(x - window_.x0);
+}
+
+void Film::add_sample(int x, int y, const FilmSample& sample) {
+    const size_t index = pixel_index(x, y);
+    double* sums = sums_.data() + index * stride_;
+    add_to(sums, sample.radiance);
+    sums[3] += sample.alpha;
+    ++counts_[index];
+    const bool is_hit = sample.id != 0;
+    if (!hit_counts_.empty() && is_hit) ++hit_counts_[index];
+    // Among equal depths the lowest id wins, so that the layer does not depend on which sample came first.
+    if (!depths_.empty() && is_hit &&
+        (sample.depth < depths_[index] || (sample.depth == depths_[index] && sample.id < ids_[index]))) {
+        depths_[index] = sample.depth;
+        ids_[index] = sample.id;
+    }
+    for (const Layer& layer : layers_)
+        add_layer(sums + layer.sum_offset, kLayerKinds[layer.kind].source, sample, is_hit);
+}
+
+void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
+    const LayerKind& kind = kLayerKinds[layer.kind];
+    const double* radiance_sums = sums_.data() + pixel * stride_;
+    const double* sums = radiance_sums + layer.sum_offset;
+    switch (kind.source) {
+    case Source::depth:
+        *target = depths_[pixel];
+        return;
+    case Source::id:
+        *target = float(ids_[pixel]);
+        return;
+    case Source::samples:
+        *target = float(counts_[pixel]);
+        return;
+    case Source::variance:
+        for (size_t c = 0; c < 3; ++c)
+            target[c] = float(variance_of_mean(radiance_sums[c], sums[c], counts_[pixel]));
+        return;
+    case Source::position:
+    case Source::uv:
+        return write_means(sums, kind.sum_count, hit_counts_[pixel], kind.source, target);
+    case Source::shading_normal:
+    case Source::geometric_normal:
+    case Source::albedo:
+    case Source::cost:
+        return write_means(sums, kind.sum_count, counts_[pixel], kind.source, target);
+    }
+}
+
+Image Film::resolve() const {
+    Image image;
+    image.width = window_.x1 - window_.x0;
+    image.height = window_.y1 - window_.y0;
+    image.x0 = window_.x0;
+    image.y0 = window_.y0;
+    image.full_width = full_width_;
+    image.full_height = full_height_;
+    image.channels = {"R", "G", "B", "A"};
+    for (const Layer& layer : layers_) {
+        const LayerKind& kind = kLayerKinds[layer.kind];
+        for (size_t k = 0; k < channel_count(kind); ++k)
+            image.channels.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
+    }
+    image.pixels.resize(counts_.size() * image.channels.size());
+    float* target = image.pixels.data();
+    for (size_t p = 0; p < counts_.size(); ++p) {
+        write_means(sums_.data() + p * stride_, kRadianceSums, counts_[p], Source::albedo, target);
+        target += kRadianceSums;
+        for (const Layer& layer : layers_) {
+            write_layer(p, layer, target);
+            target += channel_count(kLayerKinds[layer.kind]);
+        }
+    }
+    return image;
+}
+
+size_t Film::byte_count() const {
+    return sums_.size() * sizeof(double) +
+           (counts_.size() + hit_counts_.size() + ids_.size()) * sizeof(uint32_t) +
+           depths_.size() * sizeof(float);
+}
+
+} // namespace relief

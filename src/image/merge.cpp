@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+#include "relief/image.h"
+
+namespace relief {
+
+namespace {
+
+const char* const kSamplesKey = "relief:samples";
+
+/// One part with its sample range and where its counts stand.
+struct Part {
+    const Image* image = nullptr;
+    size_t index = 0; ///< in the order given, for messages
+    int first = 0, last = 0;
+    std::optional<size_t> samples_channel;
+};
+
+/// One pixel of one part.
+struct PartPixel {
+    const float* values = nullptr;
+    int first = 0; ///< lowest sample
+    uint32_t count = 0;
+    size_t part = 0;
+};
+
+enum class Rule { mean, variance, samples, lowest_range };
+
+[[noreturn]] void throw_bad(size_t part, const std::string& message, const std::string& hint) {
+    throw Error(ErrorKind::bad_input, {message, fmt::format("part {}", part + 1), hint});
+}
+
+std::string metadata_or_empty(const Image& image, const std::string& key) {
+    const auto found = image.metadata.find(key);
+    return found == image.metadata.end() ? std::string() : found->second;
+}
+
+Part make_part(const Image& image, size_t index) {
+    Part part{&image, index, 0, 0, image.find_channel("samples.Y")};
+    const std::string range = metadata_or_empty(image, kSamplesKey);
+    const char* const end = range.data() + range.size();
+    const auto first = std::from_chars(range.data(), end, part.first);
+    bool is_good = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+    if (is_good) {
+        const auto last = std::from_chars(first.ptr + 1, end, part.last);
+        is_good = last.ec == std::errc() && last.ptr == end && part.first >= 0 && part.last > part.first;
+    }
+    if (!is_good)
+        throw_bad(index, fmt::format("no sample range \"A:B\" in the header entry {}", kSamplesKey),
+                  "merge joins EXR files written by relief render");
+    return part;
+}
+
+void check_same_picture(const Image& first, const Image& image, size_t index) {
+    if (image.full_width != first.full_width || image.full_height != first.full_height)
+        throw_bad(index,
+                  fmt::format("its picture is {}x{} pixels, that of part 1 {}x{}", image.full_width,
+                              image.full_height, first.full_width, first.full_height),
+                  "parts of one picture have the same --size");
+    if (image.channels != first.channels)
+        throw_bad(index, "its channels differ from those of part 1",
+                  "render all parts with the same --layers");
+    for (const char* key : {"relief:seed", "relief:scene_hash"})
+        if (metadata_or_empty(image, key) != metadata_or_empty(first, key))
+            throw_bad(index,
+                      fmt::format("its {} is {}, that of part 1 {}", key, metadata_or_empty(image, key),
+                                  metadata_or_empty(first, key)),
+                      "parts must come from one scene and one seed");
+}
+
+Rule find_rule(const std::string& channel) {
+    if (channel == "samples.Y") return Rule::samples;
+    const std::string layer = channel.substr(0, channel.find('.'));
+    if (layer == "variance") return Rule::variance;
+    for (const char* name : {"id", "depth", "P", "N", "Ng", "uv"})
+        if (layer == name) return Rule::lowest_range;
+    return Rule::mean;
+}
+
+/// Index of the colour channel whose variance a channel holds.
+size_t find_mean_channel(const Image& image, size_t variance_channel) {
+    const std::string& name = image.channels[variance_channel];
+    return image.find_channel(name.substr(name.find('.') + 1)).value_or(variance_channel);
+}
+
+Image make_empty_union(std::span<const Image> parts) {
+    int x0 = parts[0].x0, y0 = parts[0].y0, x1 = x0, y1 = y0;
+    for (const Image& part : parts) {
+        x0 = std::min(x0, part.x0), y0 = std::min(y0, part.y0);
+        x1 = std::max(x1, part.x0 + part.width), y1 = std::max(y1, part.y0 + part.height);
+    }
+    Image result;
+    result.width = x1 - x0, result.height = y1 - y0;
+    result.x0 = x0, result.y0 = y0;
+    result.full_width = parts[0].full_width, result.full_height = parts[0].full_height;
+    result.channels = parts[0].channels;
+    result.metadata = parts[0].metadata;
+    result.source_type = parts[0].source_type;
+    result.pixels.resize(size_t(result.width) * size_t(result.height) * result.channels.size());
+    return result;
+}
+
+/// Pixels of the parts at (x, y) that have samples, lowest range first.
+void gather(const std::vector<Part>& parts, int x, int y, std::vector<PartPixel>& found) {
+    found.clear();
+    for (const Part& part : parts) {
+        const Image& image = *part.image;
+        if (x < image.x0 || x >= image.x0 + image.width || y < image.y0 || y >= image.y0 + image.height)
+            continue;
+        const size_t pixel = size_t(y - image.y0) * size_t(image.width) + size_t(x - image.x0);
+        const float* values = image.pixels.data() + pixel * image.channels.size();
+        const uint32_t count = part.samples_channel ? uint32_t(std::lround(values[*part.samples_channel]))
+                                                    : uint32_t(part.last - part.first);
+        if (count > 0) found.push_back({values, part.first, count, part.index});
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const PartPixel& a, const PartPixel& b) { return a.first < b.first; });
+    for (size_t k = 1; k < found.size(); ++k)
+        if (int64_t(found[k - 1].first) + found[k - 1].count > found[k].first)
+            throw_bad(found[k].part,
+                      fmt::format("samples {}:{} of pixel ({}, {}) are in part {} already", found[k].first,
+                                  found[k].first + int64_t(found[k].count), x, y, found[k - 1].part + 1),
+                      "give each sample range and tile once");
+}
+
+double compute_mean(const std::vector<PartPixel>& pixels, size_t channel) {
+    double sum = 0, weight = 0;
+    for (const PartPixel& pixel : pixels) {
+        sum += double(pixel.values[channel]) * pixel.count;
+        weight += pixel.count;
+    }
+    return sum / weight;
+}
+
+/// Variance of the joint mean: the parts' sums of squares are recovered from their variances and means.
+double compute_variance(const std::vector<PartPixel>& pixels, size_t variance_channel, size_t mean_channel) {
+    if (pixels.size() == 1) return pixels[0].values[variance_channel];
+    const double mean = compute_mean(pixels, mean_channel);
+    double deviations = 0, n = 0;
+    for (const PartPixel& pixel : pixels) {
+        const double count = pixel.count, offset = pixel.values[mean_channel] - mean;
+        deviations += pixel.values[variance_channel] * count * (count - 1) + count * offset * offset;
+        n += count;
+    }
+    return deviations / (n * (n - 1));
+}
+
+double merge_channel(const std::vector<PartPixel>& pixels, Rule rule, size_t channel, size_t mean_channel) {
+    if (rule == Rule::mean) return compute_mean(pixels, channel);
+    if (rule == Rule::variance) return compute_variance(pixels, channel, mean_channel);
+    if (rule == Rule::lowest_range) return pixels[0].values[channel];
+    double count = 0;
+    for (const PartPixel& pixel : pixels) count += pixel.count;
+    return count;
+}
+
+} // namespace
+
+Image merge_images(std::span<const Image> images) {
+    if (images.empty())
+        throw Error(ErrorKind::usage, {"there is nothing to merge", "merge", "name the parts"});
+    std::vector<Part> parts;
+    int first = std::numeric_limits<int>::max(), last = 0;
+    for (size_t k = 0; k < images.size(); ++k) {
+        check_same_picture(images[0], images[k], k);
+        parts.push_back(make_part(images[k], k));
+        first = std::min(first, parts.back().first), last = std::max(last, parts.back().last);
+    }
+    Image result = make_empty_union(images);
+    result.metadata[kSamplesKey] = fmt::format("{}:{}", first, last);
+    std::vector<Rule> rules;
+    std::vector<size_t> mean_channels;
+    for (size_t c = 0; c < result.channels.size(); ++c) {
+        rules.push_back(find_rule(result.channels[c]));
+        mean_channels.push_back(rules[c] == Rule::variance ? find_mean_channel(result, c) : c);
+    }
+    std::vector<PartPixel> pixels;
+    float* target = result.pixels.data();
+    for (int y = result.y0; y < result.y0 + result.height; ++y)
+        for (int x = result.x0; x < result.x0 + result.width; ++x, target += result.channels.size()) {
+            gather(parts, x, y, pixels);
+            for (size_t c = 0; c < result.channels.size(); ++c)
+                if (!pixels.empty())
+                    target[c] = float(merge_channel(pixels, rules[c], c, mean_channels[c]));
+                else if (result.channels[c] == "depth.Z")
+                    target[c] = std::numeric_limits<float>::infinity();
+        }
+    return result;
+}
+
+} // namespace relief

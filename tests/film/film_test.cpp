@@ -1,0 +1,107 @@
+#include "film/film.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "relief/error.h"
+
+namespace relief {
+namespace {
+
+const std::vector<std::string> kAllLayers{"depth", "N",  "Ng",      "P",        "albedo",
+                                          "uv",    "id", "samples", "variance", "cost"};
+
+FilmSample make_hit(float radiance, float depth, uint32_t id) {
+    FilmSample hit;
+    hit.radiance = {radiance, 2 * radiance, 3 * radiance};
+    hit.alpha = 1;
+    hit.depth = depth;
+    hit.shading_normal = {0, 0, 1};
+    hit.geometric_normal = {0, 1, 0};
+    hit.position = {depth, 5, 6};
+    hit.albedo = {0.5f, 0.25f, 1};
+    hit.uv = {0.25f, 0.75f};
+    hit.id = id;
+    hit.cost = 3;
+    return hit;
+}
+
+float value(const Image& image, int x, int y, const char* channel) {
+    return image.at(x, y, image.find_channel(channel).value());
+}
+
+TEST(Film, names_its_channels_in_the_order_of_the_design) {
+    const Film film(4, 4, {}, {"cost", "depth", "id", "uv"});
+    const std::vector<std::string> expected{"R", "G", "B", "A", "depth.Z", "uv.X", "uv.Y", "id.I", "cost.Y"};
+    EXPECT_EQ(film.resolve().channels, expected);
+}
+
+TEST(Film, refuses_an_unknown_layer_and_lists_the_known_ones) {
+    try {
+        const Film film(4, 4, {}, {"dept"});
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(error.what()).find("depth, N, Ng"), std::string::npos);
+    }
+}
+
+TEST(Film, averages_colour_and_describes_the_nearest_hit) {
+    Film film(8, 6, {2, 1, 6, 5}, kAllLayers);
+    film.add_sample(3, 2, make_hit(1, 10, 7));
+    film.add_sample(3, 2, make_hit(3, 4, 9));
+    film.add_sample(3, 2, FilmSample{});
+    film.add_sample(3, 2, make_hit(4, 4, 8));
+    const Image image = film.resolve();
+    EXPECT_EQ(image.x0, 2);
+    EXPECT_EQ(image.y0, 1);
+    EXPECT_EQ(image.width, 4);
+    EXPECT_EQ(image.full_width, 8);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "R"), 2);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "B"), 6);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "A"), 0.75f);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "depth.Z"), 4);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "id.I"), 8);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "N.Z"), 1);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "Ng.Y"), 1);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "P.X"), 6);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "uv.Y"), 0.75f);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "albedo.R"), 0.375f);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "samples.Y"), 4);
+    EXPECT_FLOAT_EQ(value(image, 3, 2, "cost.Y"), 2.25f);
+}
+
+TEST(Film, gives_the_unbiased_variance_of_the_mean) {
+    Film film(1, 1, {}, {"variance"});
+    for (float radiance : {1.0f, 2.0f, 4.0f}) film.add_sample(0, 0, make_hit(radiance, 1, 1));
+    // Deviations from 7/3: 16/9 + 1/9 + 25/9 = 42/9; over (n - 1) n = 6.
+    EXPECT_NEAR(value(film.resolve(), 0, 0, "variance.R"), 42.0 / 54.0, 1e-6);
+    EXPECT_NEAR(value(film.resolve(), 0, 0, "variance.G"), 4 * 42.0 / 54.0, 1e-5);
+}
+
+TEST(Film, leaves_untouched_pixels_black_and_infinitely_far) {
+    const Image image = Film(3, 2, {}, kAllLayers).resolve();
+    EXPECT_EQ(image.width, 3);
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        if (image.channels[c] == "depth.Z")
+            EXPECT_TRUE(std::isinf(image.at(1, 1, c)));
+        else
+            EXPECT_EQ(image.at(1, 1, c), 0) << image.channels[c];
+    }
+}
+
+TEST(Film, keeps_small_contributions_beside_large_sums) {
+    Film film(1, 1, {}, {});
+    film.add_sample(0, 0, make_hit(1e8f, 1, 1));
+    for (int k = 0; k < 1000; ++k) film.add_sample(0, 0, make_hit(1, 1, 1));
+    EXPECT_FLOAT_EQ(value(film.resolve(), 0, 0, "R"), float((1e8 + 1000) / 1001));
+}
+
+TEST(Film, counts_its_bytes) {
+    EXPECT_EQ(Film(10, 10, {}, {}).byte_count(), 100 * (4 * sizeof(double) + 4));
+    EXPECT_GT(Film(10, 10, {}, kAllLayers).byte_count(), Film(10, 10, {}, {}).byte_count());
+}
+
+} // namespace
+} // namespace relief

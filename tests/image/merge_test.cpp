@@ -1,0 +1,117 @@
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "relief/error.h"
+#include "relief/image.h"
+
+namespace relief {
+namespace {
+
+constexpr int kWidth = 7, kHeight = 5;
+
+/// Radiance of sample k of a pixel: any fixed function will do.
+double radiance(int x, int y, int k, int channel) {
+    std::mt19937 generator(uint32_t(x + 100 * y + 10000 * k + 1000000 * channel));
+    return double(generator()) / 4294967296.0 * (1 + channel);
+}
+
+/// What a render of the window and the sample range [first, last) would give.
+Image make_part(std::array<int, 4> window, int first, int last) {
+    Image image;
+    image.x0 = window[0], image.y0 = window[1];
+    image.width = window[2] - window[0], image.height = window[3] - window[1];
+    image.full_width = kWidth, image.full_height = kHeight;
+    image.channels = {"R", "G", "B", "A", "depth.Z", "id.I", "samples.Y", "variance.R"};
+    image.metadata = {{"relief:samples", std::to_string(first) + ":" + std::to_string(last)},
+                      {"relief:seed", "1"},
+                      {"relief:scene_hash", "abcd"}};
+    for (int y = window[1]; y < window[3]; ++y)
+        for (int x = window[0]; x < window[2]; ++x) {
+            const double n = last - first;
+            double sums[3] = {}, squares = 0;
+            for (int k = first; k < last; ++k)
+                for (int c = 0; c < 3; ++c) {
+                    sums[c] += radiance(x, y, k, c);
+                    if (c == 0) squares += radiance(x, y, k, c) * radiance(x, y, k, c);
+                }
+            const double mean = sums[0] / n;
+            const double variance = n > 1 ? (squares / n - mean * mean) / (n - 1) : 0;
+            for (double value : {mean, sums[1] / n, sums[2] / n, 1.0, 10.0 + first, 3.0 + first, n, variance})
+                image.pixels.push_back(float(value));
+        }
+    return image;
+}
+
+TEST(MergeImages, joins_tiles_and_sample_ranges_to_the_whole_picture) {
+    const Image whole = make_part({0, 0, kWidth, kHeight}, 0, 12);
+    const std::vector<Image> parts{make_part({0, 0, 4, kHeight}, 5, 12),
+                                   make_part({4, 0, kWidth, kHeight}, 0, 12),
+                                   make_part({0, 0, 4, kHeight}, 1, 5), make_part({0, 0, 4, kHeight}, 0, 1)};
+    const Image merged = merge_images(parts);
+    ASSERT_EQ(merged.channels, whole.channels);
+    ASSERT_EQ(merged.pixels.size(), whole.pixels.size());
+    EXPECT_EQ(merged.metadata.at("relief:samples"), "0:12");
+    EXPECT_EQ(merged.metadata.at("relief:seed"), "1");
+    for (size_t i = 0; i < whole.pixels.size(); ++i)
+        ASSERT_NEAR(merged.pixels[i], whole.pixels[i], 3e-7 * std::fabs(whole.pixels[i]) + 1e-8)
+            << whole.channels[i % whole.channels.size()];
+}
+
+TEST(MergeImages, weighs_each_pixel_by_its_own_samples) {
+    Image a = make_part({0, 0, kWidth, kHeight}, 0, 4), b = make_part({0, 0, kWidth, kHeight}, 4, 8);
+    const size_t red = 0, samples = a.find_channel("samples.Y").value();
+    a.at(2, 3, samples) = 1, a.at(2, 3, red) = 10; // stopped early here
+    b.at(2, 3, samples) = 4, b.at(2, 3, red) = 20;
+    const Image merged = merge_images(std::array{a, b});
+    EXPECT_FLOAT_EQ(merged.at(2, 3, red), 18);
+    EXPECT_FLOAT_EQ(merged.at(2, 3, samples), 5);
+}
+
+TEST(MergeImages, keeps_the_bits_of_pixels_that_one_part_covers) {
+    const std::vector<Image> parts{make_part({0, 0, 3, kHeight}, 0, 3),
+                                   make_part({3, 0, kWidth, kHeight}, 0, 3)};
+    EXPECT_EQ(merge_images(parts).pixels, make_part({0, 0, kWidth, kHeight}, 0, 3).pixels);
+}
+
+TEST(MergeImages, leaves_holes_black_and_infinitely_far) {
+    const Image merged =
+        merge_images(std::array{make_part({0, 0, 2, 2}, 0, 1), make_part({5, 3, 7, 5}, 0, 1)});
+    EXPECT_EQ(merged.width, 7);
+    EXPECT_EQ(merged.at(6, 0, merged.find_channel("samples.Y").value()), 0);
+    EXPECT_TRUE(std::isinf(merged.at(6, 0, merged.find_channel("depth.Z").value())));
+}
+
+TEST(MergeImages, refuses_overlapping_sample_ranges_of_a_pixel) {
+    const Image a = make_part({0, 0, 4, kHeight}, 0, 4);
+    EXPECT_THROW(merge_images(std::array{a, a}), Error);
+    EXPECT_THROW(merge_images(std::array{a, make_part({3, 0, kWidth, kHeight}, 3, 6)}), Error);
+    EXPECT_NO_THROW(merge_images(std::array{a, make_part({4, 0, kWidth, kHeight}, 3, 6)}));
+}
+
+TEST(MergeImages, refuses_parts_of_different_pictures) {
+    const Image a = make_part({0, 0, 4, kHeight}, 0, 4);
+    const auto refuses = [&](auto change) {
+        Image b = make_part({0, 0, 4, kHeight}, 4, 8);
+        EXPECT_NO_THROW(merge_images(std::array{a, b}));
+        change(b);
+        try {
+            merge_images(std::array{a, b});
+            ADD_FAILURE() << "accepted";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+            EXPECT_EQ(error.where(), "part 2");
+        }
+    };
+    refuses([](Image& b) { b.metadata["relief:seed"] = "2"; });
+    refuses([](Image& b) { b.metadata["relief:scene_hash"] = "ffff"; });
+    refuses([](Image& b) { b.metadata["relief:samples"] = "4-8"; });
+    refuses([](Image& b) { b.metadata.erase("relief:samples"); });
+    refuses([](Image& b) { b.full_width = 8; });
+    refuses([](Image& b) { b.channels[0] = "X"; });
+}
+
+} // namespace
+} // namespace relief
