@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/cpu/bottom_tree.h"
+#include "relief/render.h"
 
 namespace relief::cpu {
 

@@ -81,7 +81,7 @@ HWY_INLINE LaneMask test_node(const cpu::Node8& node, const RayState& ray, Lanes
 /// Bounds of the children of a quantised node, by the decoder that the builder checked with.
 HWY_INLINE void decode_node(const WideNode& node, Lanes8 (&bound)[6]) {
     for (int k = 0; k < 3; ++k) {
-        const Lanes8 origin(node.origin[k]), scale(std::ldexp(1.0f, node.exponent[k]));
+        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
         bound[k] = origin + Lanes8::load_codes(node.lower[k]) * scale;
         bound[3 + k] = origin + Lanes8::load_codes(node.upper[k]) * scale;
     }
