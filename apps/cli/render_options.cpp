@@ -223,7 +223,7 @@ void complete_render_options(RenderOptions& o) {
                                        "leave out -o, --stats, --crop, --tile, --samples and --layers"});
     if (o.pixel) return;
     if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
-    if (o.output.extension() == ".exr") {
+    if (get_lower_extension(o.output) == ".exr") {
         std::vector<std::string>& layers = o.settings.layers;
         if (std::find(layers.begin(), layers.end(), "samples") == layers.end()) layers.push_back("samples");
     } else if (!o.settings.layers.empty()) {

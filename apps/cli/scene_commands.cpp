@@ -1,6 +1,5 @@
 // scene, inspect and devices: what there is, and what it is.
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "relief/io.h"
 #include "relief/render.h"
 #include "relief/samples.h"
+#include "values.h"
 
 namespace relief::cli {
 
@@ -57,10 +57,8 @@ int run_scene(const SceneOptions& options) {
 }
 
 Inspection inspect_file(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
     if (is_mesh_file(file)) return inspect_mesh(load_mesh(file));
-    if (extension != ".json") return inspect_texture(read_texture(file));
+    if (get_lower_extension(file) != ".json") return inspect_texture(read_texture(file));
     const Scene scene = load_scene(file);
     RenderSettings settings;
     settings.width = scene.picture.width.value_or(settings.width);

@@ -1,8 +1,7 @@
 #include "values.h"
 
+#include <cctype>
 #include <charconv>
-#include <cmath>
-#include <limits>
 
 namespace relief::cli {
 
@@ -49,6 +48,12 @@ std::vector<std::string> split(const std::string& text, char separator) {
         if (end == std::string::npos) return parts;
         begin = end + 1;
     }
+}
+
+std::string get_lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
 }
 
 } // namespace relief::cli

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,6 +31,9 @@ std::vector<int64_t> parse_integers(const std::string& option, const std::string
 
 /// Parts of "a,b,c"; an empty text has no parts.
 std::vector<std::string> split(const std::string& text, char separator);
+
+/// Extension in lower case with its dot: ".exr".
+std::string get_lower_extension(const std::filesystem::path& file);
 
 /// A word of a fixed list, with the nearest one as the hint.
 template <class T, size_t N>
