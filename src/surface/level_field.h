@@ -30,7 +30,7 @@ class LevelField {
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
 
   private:
-    std::vector<uint16_t> packed_; ///< empty: `fixed_` everywhere
+    std::vector<uint32_t> packed_; ///< 4 bits an edge, then the patch's own; empty: `fixed_` everywhere
     PatchLevels fixed_;
     int max_level_ = 0;
 };
