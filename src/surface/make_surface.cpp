@@ -130,7 +130,7 @@ std::vector<float> split_displaced(Surface& surface, const Polygons& polygons, b
     return handedness;
 }
 
-/// Every patch edge whose points another, lower patch edge joins by different vertices takes those.
+/// Where patch edges between the same two points have different vertices, all take those of the lowest.
 void find_overrides(Surface& surface) {
     if (surface.dominants.empty()) return;
     struct Edge {
@@ -151,16 +151,21 @@ void find_overrides(Surface& surface) {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return a.key != b.key ? a.key < b.key : a.patch_edge < b.patch_edge;
     });
-    size_t first = 0;
-    for (size_t k = 0; k < edges.size(); ++k) {
-        if (edges[k].key != edges[first].key) first = k;
-        std::array<uint32_t, 2> leading = get_ends(edges[first].patch_edge);
-        const auto own = get_ends(edges[k].patch_edge);
-        if (surface.dominant(leading[0]) != surface.dominant(own[0])) std::swap(leading[0], leading[1]);
-        if (leading != own) surface.overrides.push_back({edges[k].patch_edge, leading[0], leading[1]});
+    for (size_t first = 0, end = 0; first < edges.size(); first = end) {
+        bool is_seam = false;
+        const size_t begin = surface.overrides.size();
+        for (end = first; end < edges.size() && edges[end].key == edges[first].key; ++end) {
+            std::array<uint32_t, 2> leading = get_ends(edges[first].patch_edge);
+            const auto own = get_ends(edges[end].patch_edge);
+            if (surface.dominant(leading[0]) != surface.dominant(own[0])) std::swap(leading[0], leading[1]);
+            is_seam = is_seam || leading != own;
+            surface.overrides.push_back({edges[end].patch_edge, leading[0], leading[1]});
+        }
+        if (!is_seam) surface.overrides.resize(begin);
     }
     std::sort(surface.overrides.begin(), surface.overrides.end(),
               [](const EdgeOverride& a, const EdgeOverride& b) { return a.patch_edge < b.patch_edge; });
+    surface.overrides.shrink_to_fit();
     if (surface.overrides.empty()) return;
     surface.override_bits.assign((4 * surface.quads.size() + 63) / 64, 0);
     for (const EdgeOverride& entry : surface.overrides)

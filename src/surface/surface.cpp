@@ -7,8 +7,8 @@ namespace relief {
 
 Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
     uint32_t first = quads[patch].vertex[edge], second = quads[patch].vertex[(edge + 1) & 3];
-    const uint32_t patch_edge = 4 * patch + uint32_t(edge);
-    if (!override_bits.empty() && (override_bits[patch_edge >> 6] >> (patch_edge & 63) & 1)) {
+    if (is_seam(patch, edge)) {
+        const uint32_t patch_edge = 4 * patch + uint32_t(edge);
         const auto found =
             std::lower_bound(overrides.begin(), overrides.end(), patch_edge,
                              [](const EdgeOverride& entry, uint32_t key) { return entry.patch_edge < key; });

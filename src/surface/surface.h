@@ -92,6 +92,12 @@ struct Surface {
     };
     EdgeLine edge_line(uint32_t patch, int edge) const;
 
+    /// True on both sides of an edge whose patches join its ends by different vertices.
+    bool is_seam(uint32_t patch, int edge) const {
+        const uint32_t patch_edge = 4 * patch + uint32_t(edge);
+        return !override_bits.empty() && (override_bits[patch_edge >> 6] >> (patch_edge & 63) & 1) != 0;
+    }
+
     /// Bytes of the arrays above except the map's texels and pyramid.
     size_t geometry_bytes() const;
 };
