@@ -1,4 +1,5 @@
 // What a scene is, what it costs as it is and what it would cost tessellated.
+#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -6,29 +7,13 @@
 
 #include "engine/engine.h"
 #include "engine/prepared_scene.h"
+#include "engine/tessellate.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 
 namespace relief {
 
 namespace {
-
-constexpr uint64_t kVertexBytes = 12;   // three floats
-constexpr uint64_t kTriangleBytes = 12; // three indices; a tree over the triangles comes on top
-
-/// Vertices and indices of the whole scene tessellated at the levels of its view, without any tree.
-uint64_t compute_tessellated_bytes(const PreparedScene& scene) {
-    uint64_t bytes = 0;
-    for (const Instance& instance : scene.instances) {
-        const Surface& surface = scene.surfaces[instance.surface];
-        if (!surface.has_displacement) continue;
-        for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
-            const uint64_t side = uint64_t(1) << instance.levels->at(patch).patch;
-            bytes += (side + 1) * (side + 1) * kVertexBytes + 2 * side * side * kTriangleBytes;
-        }
-    }
-    return bytes;
-}
 
 void describe_maps(const Scene& scene, Inspection& result) {
     for (const Displacement& displacement : scene.displacements) {
@@ -89,8 +74,8 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     add("finest_level", fmt::format("{}", max_level));
     add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
     add("structures", fmt::format("{} bytes", statistics.structures_bytes));
-    add("tessellated", fmt::format("{} bytes at the levels of this view, trees not counted",
-                                   compute_tessellated_bytes(*prepared)));
+    add("tessellated",
+        fmt::format("{} bytes at the levels of this view", estimate_tessellation_bytes(*prepared)));
 }
 
 } // namespace
