@@ -11,19 +11,77 @@
 
 #include "base/check.h"
 
-namespace relief {
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define RELIEF_THREAD_SANITIZER
+extern "C" void __tsan_acquire(void* address);
+extern "C" void __tsan_release(void* address);
+#endif
+#endif
 
-void parallel_for(const char* name, size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
+namespace relief {
+namespace {
+
+// oneTBB of the distributions is not instrumented, so the thread sanitizer has to be told what TBB
+// guarantees: what came before a loop is seen by its bodies, and what the bodies did is seen after it. Bodies
+// stay unordered.
+class LoopOrder {
+  public:
+    LoopOrder() { release(&start_); }
+    void enter_body() { acquire(&start_); }
+    void leave_body() { release(&end_); }
+    void finish() { acquire(&end_); }
+
+  private:
+#ifdef RELIEF_THREAD_SANITIZER
+    static void acquire(void* address) { __tsan_acquire(address); }
+    static void release(void* address) { __tsan_release(address); }
+#else
+    static void acquire(void*) {}
+    static void release(void*) {}
+#endif
+    char start_ = 0, end_ = 0;
+};
+
+class BodyScope {
+  public:
+    explicit BodyScope(LoopOrder& order) : order_(order) { order_.enter_body(); }
+    ~BodyScope() { order_.leave_body(); }
+
+  private:
+    LoopOrder& order_;
+};
+
+/// Finishes the order also when a body throws.
+class LoopScope {
+  public:
+    ~LoopScope() { order.finish(); }
+    LoopOrder order;
+};
+
+} // namespace
+
+void parallel_for(const char* name, size_t count, size_t grain,
+                  const std::function<void(size_t, size_t)>& body) {
     DCHECK(name && grain > 0);
     tbb::profiling::event trace(name);
+    LoopScope loop;
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, count, std::max<size_t>(grain, 1)),
-        [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); },
+        [&](const tbb::blocked_range<size_t>& range) {
+            BodyScope scope(loop.order);
+            body(range.begin(), range.end());
+        },
         tbb::simple_partitioner());
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-    tbb::parallel_invoke(first, second);
+    LoopScope loop;
+    const auto run = [&](const std::function<void()>& body) {
+        BodyScope scope(loop.order);
+        body();
+    };
+    tbb::parallel_invoke([&] { run(first); }, [&] { run(second); });
 }
 
 int current_thread_index() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
@@ -32,7 +90,11 @@ int thread_count() { return tbb::this_task_arena::max_concurrency(); }
 
 void with_threads(int threads, const std::function<void()>& body) {
     tbb::task_arena arena(threads > 0 ? threads : tbb::info::default_concurrency());
-    arena.execute(body);
+    LoopScope loop;
+    arena.execute([&] {
+        BodyScope scope(loop.order);
+        body();
+    });
 }
 
 } // namespace relief

@@ -1,4 +1,5 @@
-// The flat tree that every builder makes and every traversal reads. Boxes and ids only: it never knows a primitive.
+// The flat tree that every builder makes and every traversal reads. Boxes and ids only: it never knows a
+// primitive.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +9,16 @@
 
 namespace relief {
 
+/// Edges on the longest way from the root of a Bvh to a leaf: every builder keeps to it, so stacks have a
+/// fixed size.
+inline constexpr int kMaxBvhDepth = 96;
+
 /// 32 bytes. Children of an inner node are adjacent: `first` and `first + 1`.
 struct BvhNode {
     Vec3f lower;
-    uint32_t first = 0;  ///< inner: index of the left child; leaf: first entry of Bvh::primitive_ids
+    uint32_t first = 0; ///< inner: index of the left child; leaf: first entry of Bvh::primitive_ids
     Vec3f upper;
-    uint32_t primitive_count = 0;  ///< 0: inner node
+    uint32_t primitive_count = 0; ///< 0: inner node
 
     bool is_leaf() const { return primitive_count > 0; }
     Box box() const { return {lower, upper}; }

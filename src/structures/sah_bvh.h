@@ -13,13 +13,14 @@ class SahBvhBuilder {
 
     struct Config {
         Method method = Method::binned;
-        int bin_count = 16;            ///< per axis, [2, 64]; binned only
-        float traversal_cost = 1.0f;   ///< of one inner node, relative, > 0
-        float intersection_cost = 1.0f;  ///< of one primitive, relative, > 0
-        uint32_t max_leaf_size = 4;    ///< primitives, [1, 8]
+        int bin_count = 16;             ///< per axis, [2, 64]; binned only
+        float traversal_cost = 1.0f;    ///< of one inner node, relative, > 0
+        float intersection_cost = 1.0f; ///< of one primitive, relative, > 0
+        uint32_t max_leaf_size = 4;     ///< primitives, [1, 8]
     };
 
-    /// Every box must be finite and not empty. The tree is the same for any number of threads. No boxes: an empty tree.
+    /// Every box must be finite and not empty. The tree is the same for any number of threads. No boxes: an
+    /// empty tree.
     static Bvh build(std::span<const Box> boxes, const Config& config);
 };
 

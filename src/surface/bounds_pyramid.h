@@ -1,4 +1,5 @@
-// Least and greatest value of every channel over rectangles of a map: what makes bounds tight without user padding.
+// Least and greatest value of every channel over rectangles of a map: what makes bounds tight without user
+// padding.
 #pragma once
 
 #include <array>
@@ -13,14 +14,15 @@ struct ChannelRange {
     std::array<float, 3> low, high;
 };
 
-/// Min/max pyramid over blocks of 8 x 8 texels, each level a quarter of the one below. Immutable, thread safe.
+/// Min/max pyramid over blocks of 8 x 8 texels, each level a quarter of the one below. Immutable, thread
+/// safe.
 class BoundsPyramid {
   public:
     /// Throws bad_input with the pixel for a NaN or an infinity.
     static BoundsPyramid build(const Texture& texture);
 
-    /// Range of the raw channels over all texels in [x0, x1] x [y0, y1] (inclusive, any integers; wrapped by `wrap`;
-    /// the black outside of WrapMode::black reads `black`). At most a few dozen nodes are visited.
+    /// Range of the raw channels over all texels in [x0, x1] x [y0, y1] (inclusive, any integers; wrapped by
+    /// `wrap`; the black outside of WrapMode::black reads `black`). At most a few dozen nodes are visited.
     ChannelRange query(int64_t x0, int64_t y0, int64_t x1, int64_t y1, WrapMode wrap,
                        const std::array<float, 3>& black) const;
 

@@ -16,21 +16,21 @@ struct LevelFieldConfig {
     float pixel_angle = 1e-3f; ///< size of a pixel at distance 1, scene units
 };
 
-/// Levels of all patches of one object, packed 4 bits an edge. Immutable, thread safe.
+/// Levels of all patches of one object, packed into one word a patch. Immutable, thread safe.
 class LevelField {
   public:
-    /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the view): finest
-    /// such that a cell is at most `pixel_error` pixels at the nearest point, never finer than one cell a texel, never
-    /// above kMaxLevel. Undisplaced surfaces have level 0.
+    /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the
+    /// view): finest such that a cell is at most `pixel_error` pixels at the nearest point, never finer than
+    /// one cell a texel, never above kMaxLevel. Undisplaced surfaces have level 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 
     PatchLevels at(uint32_t patch) const;
     int max_level() const { return max_level_; }
-    size_t byte_count() const { return packed_.size() * sizeof(uint16_t); }
+    size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
 
   private:
-    std::vector<uint16_t> packed_;  ///< empty: `fixed_` everywhere
+    std::vector<uint32_t> packed_; ///< 4 bits an edge, then the patch's own; empty: `fixed_` everywhere
     PatchLevels fixed_;
     int max_level_ = 0;
 };

@@ -1,8 +1,8 @@
 // A mesh with its displacement, made ready to be evaluated: compact patches, seams resolved, frames packed.
 //
-// Vertices are split where uv or tangent handedness differ; the copies of one point share its position bit for bit and
-// know their dominant copy (the lowest-numbered one). Patches have corners 0..3 counter-clockwise at
-// (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to corner (k + 1) mod 4.
+// Vertices are split where uv or tangent handedness differ; the copies of one point share its position bit
+// for bit and know their dominant copy (the lowest-numbered one). Patches have corners 0..3 counter-clockwise
+// at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to corner (k + 1) mod 4.
 #pragma once
 
 #include <array>
@@ -26,14 +26,15 @@ struct Quad {
     friend bool operator==(const Quad&, const Quad&) = default;
 };
 
-/// An edge of a patch whose samples come from the other side of a uv seam (both ends, in the patch's edge direction).
+/// An edge of a patch whose samples come from the other side of a uv seam (both ends, in the patch's edge
+/// direction).
 struct EdgeOverride {
-    uint32_t patch_edge;  ///< 4 * patch + edge; the table is sorted by it
+    uint32_t patch_edge; ///< 4 * patch + edge; the table is sorted by it
     uint32_t first, second;
 };
 
-/// Unit normal and tangent of a vertex: octahedral, 2 x 16 bit each; the lowest bit of `tangent` is set where the
-/// bitangent is -cross(N, T).
+/// Unit normal and tangent of a vertex: octahedral, 2 x 16 bit each; the lowest bit of `tangent` is set where
+/// the bitangent is -cross(N, T).
 struct PackedFrame {
     uint32_t normal = 0, tangent = 0;
 };
@@ -46,7 +47,8 @@ struct Frame {
 PackedFrame pack_frame(const Vec3f& normal, const Vec3f& tangent, float handedness);
 Frame unpack_frame(const PackedFrame& packed);
 
-/// How raw texel values become a displacement: d = matrix (value - midlevel), in (t, b, n) or object (x, y, z).
+/// How raw texel values become a displacement: d = matrix (value - midlevel), in (t, b, n) or object (x, y,
+/// z).
 struct DisplacementMap {
     struct Tile {
         int udim = 1001;
@@ -54,25 +56,25 @@ struct DisplacementMap {
         std::shared_ptr<const BoundsPyramid> pyramid;
     };
     std::vector<Tile> tiles;
-    std::array<Vec3f, 3> matrix;  ///< rows; signed permutation, scale and (world space) the object's inverse
+    std::array<Vec3f, 3> matrix; ///< rows; signed permutation, scale and (world space) the object's inverse
     Vec3f midlevel{};
     WrapMode wrap = WrapMode::clamp;
     bool flip_v = false;
-    bool is_tangent = false;      ///< d is (t, b, n) and goes through the frame
+    bool is_tangent = false; ///< d is (t, b, n) and goes through the frame
 };
 
 /// Immutable once made; safe to read from any thread.
 struct Surface {
-    std::string name;                     ///< of the mesh, for messages
-    std::vector<Vec3f> positions;         ///< one a split vertex
-    std::vector<Vec2f> uvs;               ///< one a split vertex, or empty; tile offset taken off when displaced
-    std::vector<PackedFrame> frames;      ///< one a split vertex, or empty: facets (undisplaced, no normals)
-    std::vector<uint32_t> dominants;      ///< one a split vertex, or empty: every vertex is its own
-    std::vector<uint8_t> vertex_tiles;    ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
+    std::string name;                  ///< of the mesh, for messages
+    std::vector<Vec3f> positions;      ///< one a split vertex
+    std::vector<Vec2f> uvs;            ///< one a split vertex, or empty; tile offset taken off when displaced
+    std::vector<PackedFrame> frames;   ///< one a split vertex, or empty: facets (undisplaced, no normals)
+    std::vector<uint32_t> dominants;   ///< one a split vertex, or empty: every vertex is its own
+    std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     std::vector<Quad> quads;
     std::vector<EdgeOverride> overrides;
-    std::vector<uint64_t> override_bits;  ///< one bit a patch edge that stands in `overrides`; empty: none
-    DisplacementMap map;                  ///< no tiles: undisplaced
+    std::vector<uint64_t> override_bits; ///< one bit a patch edge that stands in `overrides`; empty: none
+    DisplacementMap map;                 ///< no tiles: undisplaced
     bool has_displacement = false;
 
     static constexpr uint8_t kNoTile = 255;
@@ -81,14 +83,20 @@ struct Surface {
     uint32_t dominant(uint32_t vertex) const { return dominants.empty() ? vertex : dominants[vertex]; }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
-    /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a seam.
-    /// Given lower dominant first, so that both sides of an edge run it the same way; `is_reversed` tells whether that
-    /// is against the patch's own direction (corner k to k + 1).
+    /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a
+    /// seam. Given lower dominant first, so that both sides of an edge run it the same way; `is_reversed`
+    /// tells whether that is against the patch's own direction (corner k to k + 1).
     struct EdgeLine {
         uint32_t first, second;
         bool is_reversed;
     };
     EdgeLine edge_line(uint32_t patch, int edge) const;
+
+    /// True on both sides of an edge whose patches join its ends by different vertices.
+    bool is_seam(uint32_t patch, int edge) const {
+        const uint32_t patch_edge = 4 * patch + uint32_t(edge);
+        return !override_bits.empty() && (override_bits[patch_edge >> 6] >> (patch_edge & 63) & 1) != 0;
+    }
 
     /// Bytes of the arrays above except the map's texels and pyramid.
     size_t geometry_bytes() const;
@@ -109,22 +117,31 @@ struct PatchLevels {
     }
 };
 
-/// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark refinement of
-/// the whole mesh where a face is not a quad); without, n-gons are cut into triangles. `object_from_world` is used by
-/// world-space displacement only. Throws bad_input with mesh and face: missing uv, index out of range, zero area, NaN.
-Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world);
+class PyramidCache;
 
-/// Sample (i, j) of a patch at its level, (i, j) in [0, 2^level]^2, in object space. This is the definition: samples on
-/// an edge lie on the edge's line and move onto the nearest sample of the edge's level; corners belong to the dominant
-/// vertex; the rest is the bilinear patch plus its displacement.
-Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i, uint32_t j);
+/// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
+/// refinement of the whole mesh where a face is not a quad), and points at exactly equal positions are one
+/// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
+/// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
+/// used by world-space displacement only. Surfaces made with the same `pyramids` (surface/displacement_map.h)
+/// share the bounds of their textures. Throws bad_input with mesh and face: missing uv, index out of range,
+/// zero area, a value that is not finite or absurdly large.
+Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
+                     PyramidCache* pyramids = nullptr);
+
+/// Sample (i, j) of a patch at its level, (i, j) in [0, 2^level]^2, in object space. This is the definition:
+/// samples on an edge lie on the edge's line and move onto the nearest sample of the edge's level; corners
+/// belong to the dominant vertex; the rest is the bilinear patch plus its displacement.
+Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i,
+                      uint32_t j);
 
 /// Displacement vector (object space, before frames: raw d) at a local uv of a tile, bilinear.
 Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv);
 
-/// Point and two derivatives of the displaced patch for shading: derivatives of the map by central differences one cell
-/// of `level` wide, those of the base turned into the plane of the interpolated vertex normal, so that the normal is
-/// continuous across cells and across patches of a smooth mesh. The result points to the side of the winding.
+/// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
+/// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex
+/// normal, so that the normal is continuous across cells and across patches of a smooth mesh. The result
+/// points to the side of the winding.
 Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, float u, float v);
 
 /// Box of every vertex that the patch has at any level and bias, every ulp included.

@@ -64,7 +64,7 @@ class Tracer {
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by the rounding error of the
-    /// position, to the side that the direction is on (after Waechter and Binder, Ray Tracing Gems 2019, chapter 6).
+    /// position, along the geometric normal, to the side that the direction is on.
     Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
 
     void add_statistics(Statistics& statistics) const;

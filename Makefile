@@ -1,0 +1,75 @@
+# The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.PHONY: help render test dev asan tsan fuzz coverage format clean packages release asan-slice
+
+JOBS ?= $(shell tools/count_jobs.sh)
+FUZZ_SECONDS ?= 60
+RELIEF := build/release/bin/relief
+SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.cpp' '*.h')
+
+help:
+	@echo 'make render    build, and render the sample scene "pumpkin" to out/pumpkin.png'
+	@echo 'make test      build, and run all tests, with short sanitizer and fuzz slices'
+	@echo 'make dev       optimised build with internal checks, all tests'
+	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
+	@echo 'make tsan      all tests under the thread sanitizer'
+	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers'
+	@echo 'make coverage  line coverage of the tests: build/coverage/report.txt'
+	@echo 'make format    clang-format over all sources'
+	@echo 'make clean     remove build/ (pictures in out/ stay)'
+	@echo 'make packages  install the Debian packages of tools/packages.txt that are missing'
+	@echo 'JOBS=N sets how many compilers and tests run at once (here $(JOBS)).'
+
+packages:
+	@tools/install_packages.sh
+
+# configure_and_build(PRESET, TARGETS)
+define configure_and_build
+	cmake --preset $(1)
+	cmake --build --preset $(1) -j $(JOBS) $(if $(2),--target $(2))
+endef
+
+render: packages
+	$(call configure_and_build,release,relief)
+	@mkdir -p out
+	@test -f out/pumpkin/scene.json || $(RELIEF) scene pumpkin -o out/pumpkin
+	$(RELIEF) render out/pumpkin/scene.json -o out/pumpkin.png
+	@echo "The picture is $(abspath out/pumpkin.png)"
+
+release: packages
+	$(call configure_and_build,release)
+
+# The modules that hold the arithmetic, without file readers, so that `make test` can afford it.
+asan-slice: packages
+	$(call configure_and_build,asan-slice,core_tests)
+	ctest --preset asan-slice -j $(JOBS)
+
+test: release asan-slice
+	ctest --preset release -j $(JOBS)
+
+dev: packages
+	$(call configure_and_build,dev)
+	ctest --preset dev -j $(JOBS)
+
+asan: packages
+	$(call configure_and_build,asan-ubsan)
+	ctest --preset asan-ubsan -j $(JOBS)
+
+tsan: packages
+	$(call configure_and_build,tsan)
+	ctest --preset tsan -j $(JOBS)
+
+fuzz: packages
+	$(call configure_and_build,fuzz)
+	tools/run_fuzzers.sh build/fuzz $(FUZZ_SECONDS)
+
+coverage: packages
+	$(call configure_and_build,coverage)
+	tools/report_coverage.sh build/coverage $(JOBS)
+
+format: packages
+	clang-format -i $(SOURCES)
+
+clean:
+	rm -rf build

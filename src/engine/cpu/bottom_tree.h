@@ -1,0 +1,143 @@
+// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over blocks of
+// 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis).
+//
+// A bottom tree covers one tile of at most 32 x 32 cells. A patch finer than that has a directory: a tree of the same
+// sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever evaluated.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "surface/surface.h"
+
+namespace relief::cpu {
+
+inline constexpr int kTileLevel = 5;                        ///< a tile has at most 2^5 cells a side
+inline constexpr uint32_t kDirectoryTile = 0xffffffffu;     ///< in place of a tile index: the patch's directory
+
+/// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
+struct alignas(64) Node16 {
+    float bounds[6][16];
+};
+
+/// Boxes of eight leaf blocks.
+struct alignas(64) Node8 {
+    float bounds[6][8];
+};
+
+/// 3 rows of 5 vertices, x then y then z; entry 15 repeats entry 14. Cell (c, r) has corners r*5+c, +1, +5, +6.
+struct alignas(64) Block {
+    float vertex[3][16];
+};
+
+/// What a cached object is of; equal keys mean equal bits.
+struct TreeKey {
+    uint32_t surface = 0, patch = 0, tile = 0;
+    uint32_t levels = 0;  ///< patch level and four edge levels, 5 x 4 bits
+
+    friend bool operator==(const TreeKey&, const TreeKey&) = default;
+};
+
+inline uint32_t pack_levels(const PatchLevels& levels) {
+    uint32_t packed = levels.patch;
+    for (int k = 0; k < 4; ++k) packed |= uint32_t(levels.edge[k]) << (4 + 4 * k);
+    return packed;
+}
+
+/// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock hand.
+struct alignas(64) CachedTree {
+    TreeKey key;
+    uint32_t byte_count = 0;
+    std::atomic<uint8_t> is_recent{0};
+};
+
+/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Arrays follow the head:
+///   level 5: root, 16 Node8, 128 blocks; group g = child of the root covers 8 x 8 cells, its block k 4 x 2 of them
+///   level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1
+///   level 3: one Node8, 8 blocks;   levels 2, 1, 0: no boxes, 2, 1, 1 blocks
+struct BottomTree : CachedTree {
+    uint32_t level = 0;
+    uint32_t cell_x = 0, cell_y = 0;  ///< first cell of the tile on the patch
+
+    static constexpr uint32_t block_count(int level) {
+        constexpr uint32_t kCounts[] = {1, 1, 2, 8, 32, 128};
+        return kCounts[level];
+    }
+    static constexpr size_t node_bytes(int level) {
+        return level == 5 ? sizeof(Node16) + 16 * sizeof(Node8) : level == 4 ? sizeof(Node16) : level == 3 ? sizeof(Node8) : 0;
+    }
+    static constexpr size_t size_bytes(int level);
+
+    const char* data() const;
+    char* data();
+    const Node16& root() const { return *reinterpret_cast<const Node16*>(data()); }
+    Node16& root() { return *reinterpret_cast<Node16*>(data()); }
+    /// Level 5: node of group g; level 3: the only one (g = 0).
+    const Node8& group(int g) const {
+        return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
+    }
+    Node8& group(int g) { return const_cast<Node8&>(const_cast<const BottomTree*>(this)->group(g)); }
+    const Block* blocks() const { return reinterpret_cast<const Block*>(data() + node_bytes(int(level))); }
+    Block* blocks() { return reinterpret_cast<Block*>(data() + node_bytes(int(level))); }
+
+    /// First cell (column, row) of a block within the tile.
+    static void block_cell(int level, uint32_t block, uint32_t& column, uint32_t& row) {
+        if (level == 5) {
+            const uint32_t g = block >> 3, k = block & 7;
+            column = (g & 3) * 8 + (k & 1) * 4, row = (g >> 2) * 8 + (k >> 1) * 2;
+        } else if (level == 4) {
+            const uint32_t g = block >> 1;
+            column = (g & 3) * 4, row = (g >> 2) * 4 + (block & 1) * 2;
+        } else if (level == 3) {
+            column = (block & 1) * 4, row = (block >> 1) * 2;
+        } else {
+            column = 0, row = block * 2;
+        }
+    }
+};
+
+constexpr size_t BottomTree::size_bytes(int level) {
+    return (sizeof(BottomTree) + 63) / 64 * 64 + node_bytes(level) + block_count(level) * sizeof(Block);
+}
+inline const char* BottomTree::data() const {
+    return reinterpret_cast<const char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
+}
+inline char* BottomTree::data() { return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64; }
+
+/// Tree over the tiles of a patch above kTileLevel: 2^depth tiles a side. Step s has step_side(s)^2 nodes, row by row;
+/// a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd); the last step's children
+/// are tiles.
+struct TileDirectory : CachedTree {
+    uint32_t depth = 0;
+
+    static constexpr uint32_t step_count(uint32_t depth) { return (depth + 1) / 2; }
+    /// Children a side of a node of step s.
+    static constexpr uint32_t fanout(uint32_t depth, uint32_t step) { return step == 0 && depth % 2 == 1 ? 2 : 4; }
+    /// Nodes a side of step s.
+    static constexpr uint32_t step_side(uint32_t depth, uint32_t step) {
+        return step == 0 ? 1 : (depth % 2 == 1 ? 2u : 4u) << (2 * (step - 1));
+    }
+    static constexpr uint32_t step_begin(uint32_t depth, uint32_t step) {
+        uint32_t begin = 0;
+        for (uint32_t s = 0; s < step; ++s) begin += step_side(depth, s) * step_side(depth, s);
+        return begin;
+    }
+    static constexpr size_t size_bytes(uint32_t depth) {
+        return (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64 +
+               size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
+    }
+    const Node16* nodes() const {
+        return reinterpret_cast<const Node16*>(reinterpret_cast<const char*>(this) +
+                                               (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64);
+    }
+    Node16* nodes() { return const_cast<Node16*>(const_cast<const TileDirectory*>(this)->nodes()); }
+};
+
+/// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
+using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, BottomTree& tree);
+
+/// Builds `directory`, whose key and depth are set, from conservative tile boxes.
+void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory);
+
+} // namespace relief::cpu

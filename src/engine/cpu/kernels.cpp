@@ -1,0 +1,121 @@
+// Compiles the kernels once for each instruction set (Highway's foreach_target) and picks by name.
+
+// Every target that the compiler can reach, the one without SIMD included; those left out are close to a neighbour.
+#define HWY_COMPILE_ALL_ATTAINABLE
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/cpu/kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include "engine/cpu/kernels.h"
+#include "engine/cpu/packet_traversal-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+namespace {
+
+/// Sixteen rays with one bias whose directions stay within some 25 degrees of the first.
+bool is_coherent(const cpu::TraceRay* rays) {
+    const Vec3f& first = rays[0].direction;
+    const float squared = dot(first, first);
+    for (int k = 1; k < 16; ++k) {
+        const Vec3f& other = rays[k].direction;
+        const float projection = dot(first, other);
+        if (rays[k].bias != rays[0].bias || !(projection > 0) ||
+            projection * projection < 0.82f * squared * dot(other, other))
+            return false;
+    }
+    return true;
+}
+
+template <Query kQuery, class Store>
+void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays, size_t count,
+                Store store) {
+    size_t begin = 0;
+    while (begin < count) {
+        scene.cache->refresh(context);
+        const size_t size = HWY_MIN(size_t(16), count - begin);
+        if (size == 16 && scene.lod == LodRule::field && is_coherent(rays + begin)) {
+            Packet packet;
+            const LaneMask occluded = trace_packet<kQuery>(scene, context, rays + begin, packet);
+            for (size_t k = 0; k < 16; ++k) store(begin + k, packet.ray[k].hit, (occluded >> k & 1) != 0);
+        } else {
+            for (size_t k = 0; k < size; ++k) {
+                const cpu::TraceRay& world = rays[begin + k];
+                RayState ray = start_ray(world);
+                const bool has_hit = trace_scene<kQuery>(scene, context, world, 0, ray);
+                store(begin + k, ray.hit, has_hit);
+            }
+        }
+        begin += size;
+    }
+}
+
+void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+                  cpu::TraceHit* hits, size_t count) {
+    trace_rays<Query::closest>(scene, context, rays, count, [&](size_t k, const cpu::TraceHit& hit, bool) {
+        hits[k] = hit;
+        hits[k].bias = uint8_t(rays[k].bias);
+    });
+}
+
+void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays, uint8_t* occluded,
+              size_t count) {
+    trace_rays<Query::any>(scene, context, rays, count,
+                           [&](size_t k, const cpu::TraceHit&, bool has_hit) { occluded[k] = has_hit; });
+}
+
+} // namespace
+
+const cpu::Kernels& kernels(const char* name) {
+    static const cpu::Kernels kKernels{name, closest_hits, any_hits, build_tree};
+    return kKernels;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include <hwy/targets.h>
+
+namespace relief::cpu {
+
+namespace {
+
+/// Kernels of one instruction set where they were compiled in and can run.
+const Kernels* pick(Isa isa) {
+    [[maybe_unused]] const int64_t supported = hwy::SupportedTargets();
+    switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512: return supported & HWY_AVX3 ? &N_AVX3::kernels("avx512") : nullptr;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2: return supported & HWY_AVX2 ? &N_AVX2::kernels("avx2") : nullptr;
+#endif
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4: return supported & HWY_SSE4 ? &N_SSE4::kernels("sse4") : nullptr;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon: return supported & HWY_NEON ? &N_NEON::kernels("neon") : nullptr;
+#endif
+#if HWY_TARGETS & HWY_EMU128
+    case Isa::scalar: return &N_EMU128::kernels("scalar");
+#endif
+    default: return nullptr;
+    }
+}
+
+} // namespace
+
+const Kernels* find_kernels(Isa isa) {
+    if (isa != Isa::best) return pick(isa);
+    for (const Isa candidate : {Isa::avx512, Isa::avx2, Isa::neon, Isa::sse4, Isa::scalar})
+        if (const Kernels* found = pick(candidate)) return found;
+    return nullptr;
+}
+
+} // namespace relief::cpu
+
+#endif

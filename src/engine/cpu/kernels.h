@@ -1,0 +1,36 @@
+// The door to the SIMD kernels: one table of functions for each instruction set that they were compiled for.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/cpu/bottom_cache.h"
+#include "engine/cpu/tracer.h"
+#include "structures/wide_bvh.h"
+
+namespace relief::cpu {
+
+/// What the kernels read: borrowed views, constant while rays are traced.
+struct SceneView {
+    const Instance* instances = nullptr;
+    const Surface* surfaces = nullptr;
+    const WideBvh* surface_trees = nullptr;  ///< one a surface, over its patches
+    const WideBvh* instance_tree = nullptr;  ///< over the instances
+    BottomCache* cache = nullptr;
+    LeafKind leaf = LeafKind::exact;
+    LodRule lod = LodRule::field;
+    float pixel_angle = 0;  ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
+};
+
+struct Kernels {
+    const char* name;
+    /// Nearest hits of `count` rays; neighbours in runs of 16 may be traced as one packet.
+    void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
+    void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
+    BuildTreeFunction build_tree;
+};
+
+/// Kernels for an instruction set, or nullptr where it was not compiled in or this machine lacks it.
+const Kernels* find_kernels(Isa isa);
+
+} // namespace relief::cpu

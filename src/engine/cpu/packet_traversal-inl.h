@@ -1,0 +1,257 @@
+// Sixteen coherent rays at once: every box is tested against all of them, every leaf block against those that enter it.
+// Boxes and triangles are the very tests of the single ray, so that a ray's hit does not depend on its company.
+//
+// Rays from one point (pinhole camera, point light) could be answered by projecting micro-triangles instead; that path
+// belongs beside trace_packet and gives the same hits.
+#if defined(RELIEF_PACKET_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_PACKET_TRAVERSAL_INL_H
+#undef RELIEF_PACKET_TRAVERSAL_INL_H
+#else
+#define RELIEF_PACKET_TRAVERSAL_INL_H
+#endif
+
+#include "engine/cpu/scene_traversal-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Fewer rays than this go on alone: sixteen lanes for two rays waste more than they share.
+inline constexpr int kLeastPacket = 3;
+
+struct Packet {
+    const cpu::TraceRay* world;
+    RayState ray[16];            ///< in the space of the current object; hits and t_max live here
+    Lanes16 origin[3], reciprocal[3], t_min;
+    alignas(64) float t_max[16];
+    LaneMask active;             ///< Query::any: lanes without a hit so far
+
+    void load_lanes() {
+        alignas(64) float o[3][16], r[3][16], least[16];
+        for (int lane = 0; lane < 16; ++lane) {
+            for (int k = 0; k < 3; ++k) o[k][lane] = ray[lane].origin[k], r[k][lane] = ray[lane].reciprocal[k];
+            least[lane] = ray[lane].t_min, t_max[lane] = ray[lane].t_max;
+        }
+        for (int k = 0; k < 3; ++k) origin[k] = Lanes16::load(o[k]), reciprocal[k] = Lanes16::load(r[k]);
+        t_min = Lanes16::load(least);
+    }
+};
+
+/// Lanes of `mask` that enter a box, and the nearest entry among them (other lanes included: a bound from below).
+HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], const Packet& packet, LaneMask mask,
+                             float& nearest) {
+    Lanes16 near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+        const Lanes16 a = (Lanes16(lower[k]) - packet.origin[k]) * packet.reciprocal[k];
+        const Lanes16 b = (Lanes16(upper[k]) - packet.origin[k]) * packet.reciprocal[k];
+        near[k] = min(a, b), far[k] = max(a, b);
+    }
+    const Lanes16 entry = max(max(near[0], near[1]), max(near[2], packet.t_min));
+    const Lanes16 exit = min(min(far[0], far[1]), min(far[2], Lanes16::load(packet.t_max)));
+    mask &= less_equal(entry, exit * Lanes16(kSlabSlack));
+    if (mask) nearest = reduce_min(entry);
+    return mask;
+}
+
+struct PacketEntry {
+    uint32_t child;
+    LaneMask mask;
+    float entry;
+};
+
+/// Child k of a node of boxes stored as lower x y z, upper x y z.
+template <class Node>
+HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask, float& nearest) {
+    const float lower[3] = {node.bounds[0][k], node.bounds[1][k], node.bounds[2][k]};
+    const float upper[3] = {node.bounds[3][k], node.bounds[4][k], node.bounds[5][k]};
+    return test_box(lower, upper, packet, mask, nearest);
+}
+
+/// Calls visit(child, mask) for the children that any lane enters, nearest first.
+template <class Node, class Visit>
+HWY_INLINE void visit_children(const Node& node, uint32_t count, Packet& packet, LaneMask mask, Visit visit) {
+    PacketEntry order[16];
+    uint32_t size = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+        float nearest = 0;
+        const LaneMask entered = test_child(node, k, packet, mask, nearest);
+        if (!entered) continue;
+        uint32_t slot = size++;
+        for (; slot > 0 && order[slot - 1].entry > nearest; --slot) order[slot] = order[slot - 1];
+        order[slot] = {k, entered, nearest};
+    }
+    for (uint32_t k = 0; k < size; ++k)
+        if (const LaneMask left = order[k].mask & packet.active) visit(order[k].child, left);
+}
+
+template <Query kQuery>
+HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, Packet& packet,
+                            LaneMask mask, LaneMask& hits) {
+    for (mask &= packet.active; mask; mask &= mask - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(mask));
+        if (!intersect_block<kQuery>(visit, tree, block, packet.ray[lane])) continue;
+        hits |= 1u << lane;
+        packet.t_max[lane] = packet.ray[lane].t_max;
+        if constexpr (kQuery == Query::any) packet.active &= ~(1u << lane);
+    }
+}
+
+template <Query kQuery>
+void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& packet, LaneMask mask, LaneMask& hits) {
+    const auto test_block = [&](uint32_t block, LaneMask entered) {
+        trace_block<kQuery>(visit, tree, block, packet, entered, hits);
+    };
+    if (tree.level == 5) {
+        visit_children(tree.root(), 16, packet, mask, [&](uint32_t g, LaneMask entered) {
+            visit_children(tree.group(int(g)), 8, packet, entered,
+                           [&](uint32_t k, LaneMask left) { test_block(g * 8 + k, left); });
+        });
+    } else if (tree.level == 4) {
+        visit_children(tree.root(), 16, packet, mask, [&](uint32_t g, LaneMask entered) {
+            test_block(2 * g, entered);
+            test_block(2 * g + 1, entered);
+        });
+    } else if (tree.level == 3) {
+        visit_children(tree.group(0), 8, packet, mask, test_block);
+    } else {
+        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block) test_block(block, mask);
+    }
+}
+
+template <Query kQuery>
+void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t index,
+                     Packet& packet, LaneMask mask, LaneMask& hits) {
+    using cpu::TileDirectory;
+    const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
+    const uint32_t side = TileDirectory::step_side(depth, step), x = index % side, y = index / side;
+    const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + index];
+    visit_children(node, fanout * fanout, packet, mask, [&](uint32_t child, LaneMask entered) {
+        const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
+        if (step + 1 == TileDirectory::step_count(depth))
+            trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), packet, entered, hits);
+        else
+            trace_directory<kQuery>(visit, directory, step + 1, cy * side * fanout + cx, packet, entered, hits);
+    });
+}
+
+/// A patch for the lanes of `mask`. All rays of a packet have one bias, hence one tree.
+template <Query kQuery>
+void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch, Packet& packet,
+                 LaneMask mask) {
+    const uint32_t lane = uint32_t(__builtin_ctz(mask));
+    const PatchVisit visit = enter_patch(scene, context, packet.ray[lane].instance, patch, packet.world[lane].bias);
+    LaneMask hits = 0;
+    const Timer timer;
+    const double built_before = context.counters.bottom_build_s;
+    if (visit.levels.patch <= cpu::kTileLevel)
+        trace_tree<kQuery>(visit, find_tree(visit, 0), packet, mask, hits);
+    else
+        trace_directory<kQuery>(visit, find_directory(visit), 0, 0, packet, mask, hits);
+    context.counters.pairs_emitted += uint64_t(__builtin_popcount(mask)) - 1;
+    context.counters.pairs_with_hit += uint64_t(__builtin_popcount(hits));
+    if (context.is_timed)
+        context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
+}
+
+/// Walks a wide tree with the packet. visit_leaf(primitive, mask) takes the leaves, go_alone(child, lane) a subtree
+/// that few rays enter.
+template <class VisitLeaf, class GoAlone>
+void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
+    if (tree.nodes.empty()) return;
+    PacketEntry stack[kStackSize];
+    uint32_t size = 0;
+    stack[size++] = {0, mask, 0};
+    while (size > 0) {
+        PacketEntry top = stack[--size];
+        top.mask &= packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kSlabSlack));
+        if (!top.mask) continue;
+        if (__builtin_popcount(top.mask) < kLeastPacket) {
+            for (LaneMask left = top.mask; left; left &= left - 1) go_alone(top.child, uint32_t(__builtin_ctz(left)));
+            continue;
+        }
+        if (WideNode::is_leaf(top.child)) {
+            const uint32_t first = WideNode::leaf_first(top.child), count = WideNode::leaf_count(top.child);
+            for (uint32_t k = 0; k < count; ++k)
+                if (const LaneMask left = top.mask & packet.active) visit_leaf(tree.primitive_at(first + k), left);
+            continue;
+        }
+        const WideNode& node = tree.nodes[top.child];
+        const uint32_t base = size;
+        DCHECK(size + 8 <= kStackSize);
+        for (uint32_t k = 0; k < node.child_count; ++k) {
+            const Box box = node.child_box(int(k));
+            const float lower[3] = {box.lower.x, box.lower.y, box.lower.z};
+            const float upper[3] = {box.upper.x, box.upper.y, box.upper.z};
+            float nearest = 0;
+            const LaneMask entered = test_box(lower, upper, packet, top.mask, nearest);
+            if (!entered) continue;
+            uint32_t slot = size++;
+            for (; slot > base && stack[slot - 1].entry < nearest; --slot) stack[slot] = stack[slot - 1];
+            stack[slot] = {node.child[k], entered, nearest};
+        }
+    }
+}
+
+/// The instance for the lanes of `mask`; results go back to the packet of world rays.
+template <Query kQuery>
+void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance, Packet& world,
+                    LaneMask mask) {
+    Packet local;
+    local.world = world.world;
+    local.active = mask;
+    const Instance& placed = scene.instances[instance];
+    for (int lane = 0; lane < 16; ++lane) {
+        local.ray[lane] = world.ray[lane];
+        local.ray[lane].instance = instance;
+        enter_object(world.world[lane], placed.object_from_world, local.ray[lane]);
+    }
+    local.load_lanes();
+    const Surface& surface = scene.surfaces[placed.surface];
+    const auto go_alone = [&](uint32_t child, uint32_t lane) {
+        RayState& ray = local.ray[lane];
+        const bool has_hit = trace_instance<kQuery>(scene, context, world.world[lane], child, ray);
+        local.t_max[lane] = ray.t_max;
+        if (kQuery == Query::any && has_hit) local.active &= ~(1u << lane);
+    };
+    const auto visit_leaf = [&](uint32_t patch, LaneMask entered) {
+        if (surface.has_displacement) return trace_patch<kQuery>(scene, context, patch, local, entered);
+        for (; entered; entered &= entered - 1) {
+            const uint32_t lane = uint32_t(__builtin_ctz(entered));
+            RayState& ray = local.ray[lane];
+            const bool has_hit = trace_polygon<kQuery>(surface, patch, ray);
+            local.t_max[lane] = ray.t_max;
+            if (kQuery == Query::any && has_hit) local.active &= ~(1u << lane);
+        }
+    };
+    walk_packet(scene.surface_trees[placed.surface], local, mask, visit_leaf, go_alone);
+    for (LaneMask left = mask; left; left &= left - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(left));
+        world.ray[lane].hit = local.ray[lane].hit;
+        world.ray[lane].t_max = world.t_max[lane] = local.ray[lane].t_max;
+    }
+    world.active &= ~(mask & ~local.active);
+}
+
+/// The whole scene for sixteen rays. Returns the lanes with a hit (Query::any).
+template <Query kQuery>
+LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+                      Packet& packet) {
+    packet.world = rays;
+    for (int lane = 0; lane < 16; ++lane) packet.ray[lane] = start_ray(rays[lane]);
+    packet.load_lanes();
+    packet.active = 0xffff;
+    walk_packet(
+        *scene.instance_tree, packet, 0xffff,
+        [&](uint32_t instance, LaneMask mask) { trace_instance<kQuery>(scene, context, instance, packet, mask); },
+        [&](uint32_t child, uint32_t lane) {
+            RayState& ray = packet.ray[lane];
+            const bool has_hit = trace_scene<kQuery>(scene, context, rays[lane], child, ray);
+            packet.t_max[lane] = ray.t_max;
+            if (kQuery == Query::any && has_hit) packet.active &= ~(1u << lane);
+        });
+    return ~packet.active & 0xffff;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

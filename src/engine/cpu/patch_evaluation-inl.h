@@ -1,0 +1,221 @@
+// Vertices of a tile, sixteen at a time: the same operations in the same order as evaluate_vertex, hence the same bits.
+#if defined(RELIEF_PATCH_EVALUATION_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_PATCH_EVALUATION_INL_H
+#undef RELIEF_PATCH_EVALUATION_INL_H
+#else
+#define RELIEF_PATCH_EVALUATION_INL_H
+#endif
+
+#include "engine/cpu/bottom_tree.h"
+#include "math/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Vertices of a tile, row by row; rows are padded so that sixteen lanes can be stored anywhere.
+struct VertexGrid {
+    static constexpr int kPitch = 48;
+    alignas(64) float axis[3][33 * kPitch];
+};
+
+/// What is interpolated over a patch or along an edge: position, uv and, in tangent space, the frame.
+inline constexpr int kPosition = 0, kUv = 3, kFrame = 5, kValueCount = 14;
+
+struct VertexValues {
+    float value[kValueCount];
+};
+
+HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
+    VertexValues values{};
+    const Vec3f& p = surface.positions[vertex];
+    const Vec2f& uv = surface.uvs[vertex];
+    values.value[0] = p.x, values.value[1] = p.y, values.value[2] = p.z;
+    values.value[kUv] = uv.x, values.value[kUv + 1] = uv.y;
+    if (surface.map.is_tangent) {
+        const Frame frame = unpack_frame(surface.frames[vertex]);
+        const Vec3f axes[3] = {frame.t, frame.b, frame.n};
+        for (int a = 0; a < 3; ++a)
+            for (int c = 0; c < 3; ++c) values.value[kFrame + 3 * a + c] = get_component(axes[a], c);
+    }
+    return values;
+}
+
+/// Row and column of a texel, wrapped into the map.
+HWY_INLINE int32_t wrap_index(int32_t index, int32_t size, WrapMode wrap) {
+    if (wrap == WrapMode::clamp) return index < 0 ? 0 : index >= size ? size - 1 : index;
+    const int32_t period = wrap == WrapMode::mirror ? 2 * size : size;
+    index %= period;
+    if (index < 0) index += period;
+    return index < size ? index : period - 1 - index;
+}
+
+HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
+    if (!texture.floats.empty()) return Lanes4::load_unaligned(texture.floats.data() + 4 * index);
+    const hn::FixedTag<float, 4> d;
+    const hn::Rebind<hwy::float16_t, decltype(d)> d16;
+    const auto halves = hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + 4 * index));
+    Lanes4 result;
+    result.part[0] = hn::PromoteTo(d, halves);
+    return result;
+}
+
+/// Raw channels r, g, b at sixteen uvs, bilinear.
+HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes16& u, const Lanes16& v,
+                          Lanes16 (&raw)[3]) {
+    const Texture& texture = *map.tiles[tile].texture;
+    const int32_t width = int32_t(texture.width), height = int32_t(texture.height);
+    const Lanes16 half(0.5f);
+    const Lanes16 x = u * Lanes16(float(width)) - half;
+    const Lanes16 y = (map.flip_v ? v : Lanes16(1.0f) - v) * Lanes16(float(height)) - half;
+    const Lanes16 x0 = floor(x), y0 = floor(y);
+    alignas(64) int32_t column[16], row[16];
+    alignas(64) float fx[16], fy[16], texels[16][4];
+    x0.store_as_integers(column), y0.store_as_integers(row);
+    (x - x0).store(fx), (y - y0).store(fy);
+    for (int lane = 0; lane < 16; ++lane) {
+        const size_t left = size_t(wrap_index(column[lane], width, map.wrap));
+        const size_t right = size_t(wrap_index(column[lane] + 1, width, map.wrap));
+        const size_t top = size_t(wrap_index(row[lane], height, map.wrap)) * size_t(width);
+        const size_t bottom = size_t(wrap_index(row[lane] + 1, height, map.wrap)) * size_t(width);
+        const Lanes4 t = texel::filter_texels(load_texel(texture, top + left), load_texel(texture, top + right),
+                                              load_texel(texture, bottom + left),
+                                              load_texel(texture, bottom + right), Lanes4(fx[lane]), Lanes4(fy[lane]));
+        t.store_unaligned(texels[lane]);
+    }
+    using D = Lanes16::D;
+    for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        hn::Vec<D> alpha;
+        hn::LoadInterleaved4(D(), &texels[p * Lanes16::kLanes][0], raw[0].part[p], raw[1].part[p], raw[2].part[p],
+                             alpha);
+    }
+}
+
+/// Displaced positions of sixteen samples whose interpolated values are given.
+HWY_INLINE void displace(const Surface& surface, uint8_t tile, const Lanes16 (&value)[kValueCount],
+                         Lanes16 (&position)[3]) {
+    const DisplacementMap& map = surface.map;
+    Lanes16 raw[3], d[3];
+    fetch_raw(map, tile, value[kUv], value[kUv + 1], raw);
+    raw[0] = raw[0] - Lanes16(map.midlevel.x);
+    raw[1] = raw[1] - Lanes16(map.midlevel.y);
+    raw[2] = raw[2] - Lanes16(map.midlevel.z);
+    for (int r = 0; r < 3; ++r)
+        d[r] = wide::decode_row(raw[0], raw[1], raw[2], Lanes16(map.matrix[size_t(r)].x),
+                                Lanes16(map.matrix[size_t(r)].y), Lanes16(map.matrix[size_t(r)].z));
+    for (int c = 0; c < 3; ++c) {
+        const Lanes16 offset = map.is_tangent
+                                   ? wide::carry_through_frame(d[0], d[1], d[2], value[kFrame + c],
+                                                               value[kFrame + 3 + c], value[kFrame + 6 + c])
+                                   : d[c];
+        position[c] = value[kPosition + c] + offset;
+    }
+}
+
+/// One tile of a patch: which cells, of which patch, at which levels.
+struct TileRange {
+    uint32_t patch;
+    PatchLevels levels;
+    uint32_t cell_x, cell_y, cell_count;  ///< first cell and cells a side
+
+    uint32_t side() const { return 1u << levels.patch; }
+};
+
+HWY_INLINE Lanes16 make_ramp(float begin) {
+    alignas(64) static constexpr float kRamp[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return Lanes16(begin) + Lanes16::load(kRamp);
+}
+
+/// All rows by the formula of interior samples; those of the border are evaluated again by evaluate_border.
+HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
+    const Quad& quad = surface.quads[range.patch];
+    const uint8_t tile = surface.tile(quad.vertex[0]);
+    VertexValues corner[4];
+    for (size_t k = 0; k < 4; ++k) corner[k] = read_vertex(surface, quad.vertex[k]);
+    const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    const float inverse = 1.0f / float(range.side());
+    for (uint32_t c = 0; c <= range.cell_count; c += 16) {
+        const Lanes16 u = make_ramp(float(range.cell_x + c)) * Lanes16(inverse);
+        for (uint32_t r = 0; r <= range.cell_count; ++r) {
+            const Lanes16 v(float(range.cell_y + r) * inverse);
+            Lanes16 value[kValueCount], position[3];
+            for (int k = 0; k < values; ++k)
+                value[k] = wide::blend_quad(Lanes16(corner[0].value[k]), Lanes16(corner[1].value[k]),
+                                            Lanes16(corner[2].value[k]), Lanes16(corner[3].value[k]), u, v);
+            displace(surface, tile, value, position);
+            for (int axis = 0; axis < 3; ++axis)
+                position[axis].store_unaligned(&grid.axis[axis][r * VertexGrid::kPitch + c]);
+        }
+    }
+}
+
+/// Samples of one border of the tile that lies on patch edge `edge`.
+HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge, VertexGrid& grid) {
+    const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];
+    const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
+    const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
+    const bool is_row = edge % 2 == 0;
+    const bool is_far = edge == 1 || edge == 2;                       // at u = 1 or v = 1
+    const bool is_against = (edge >= 2) != line.is_reversed;           // grid index runs against first -> second
+    const uint32_t begin = is_row ? range.cell_x : range.cell_y;
+    const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    for (uint32_t c = 0; c <= range.cell_count; c += 16) {
+        alignas(64) float s[16], point[3][16];
+        bool is_corner[16];
+        for (uint32_t lane = 0; lane < 16; ++lane) {
+            const uint32_t index = begin + HWY_MIN(c + lane, range.cell_count);
+            const uint32_t k = is_against ? n - index : index;
+            const uint32_t moved = (k + step / 2) / step * step;
+            is_corner[lane] = moved == 0 || moved == n;
+            s[lane] = float(moved) * (1.0f / float(n));
+        }
+        Lanes16 value[kValueCount], position[3];
+        for (int k = 0; k < values; ++k)
+            value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), Lanes16::load(s));
+        displace(surface, surface.tile(line.first), value, position);
+        for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
+        for (uint32_t lane = 0; lane < 16 && c + lane <= range.cell_count; ++lane) {
+            const uint32_t along = c + lane, i = is_row ? along : is_far ? range.cell_count : 0;
+            const uint32_t j = is_row ? (is_far ? range.cell_count : 0) : along;
+            const uint32_t slot = j * VertexGrid::kPitch + i;
+            if (is_corner[lane]) {
+                const Vec3f p = evaluate_vertex(surface, range.patch, range.levels, range.cell_x + i, range.cell_y + j);
+                grid.axis[0][slot] = p.x, grid.axis[1][slot] = p.y, grid.axis[2][slot] = p.z;
+            } else {
+                for (int axis = 0; axis < 3; ++axis) grid.axis[axis][slot] = point[axis][lane];
+            }
+        }
+    }
+}
+
+/// A surface whose samples need no exception: displaced by a real tile, and inside the map everywhere.
+HWY_INLINE bool can_evaluate_wide(const Surface& surface, uint32_t patch) {
+    if (!surface.has_displacement || surface.map.wrap == WrapMode::black) return false;
+    if (surface.tile(surface.quads[patch].vertex[0]) == Surface::kNoTile) return false;
+    for (int edge = 0; edge < 4; ++edge)
+        if (surface.tile(surface.edge_line(patch, edge).first) == Surface::kNoTile) return false;
+    return true;
+}
+
+HWY_INLINE void evaluate_tile(const Surface& surface, const TileRange& range, VertexGrid& grid) {
+    if (!can_evaluate_wide(surface, range.patch)) {
+        for (uint32_t r = 0; r <= range.cell_count; ++r)
+            for (uint32_t c = 0; c <= range.cell_count; ++c) {
+                const Vec3f p =
+                    evaluate_vertex(surface, range.patch, range.levels, range.cell_x + c, range.cell_y + r);
+                const uint32_t slot = r * VertexGrid::kPitch + c;
+                grid.axis[0][slot] = p.x, grid.axis[1][slot] = p.y, grid.axis[2][slot] = p.z;
+            }
+        return;
+    }
+    evaluate_interior(surface, range, grid);
+    const uint32_t n = range.side();
+    if (range.cell_y == 0) evaluate_border(surface, range, 0, grid);
+    if (range.cell_x + range.cell_count == n) evaluate_border(surface, range, 1, grid);
+    if (range.cell_y + range.cell_count == n) evaluate_border(surface, range, 2, grid);
+    if (range.cell_x == 0) evaluate_border(surface, range, 3, grid);
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

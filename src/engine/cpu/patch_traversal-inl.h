@@ -1,0 +1,195 @@
+// One ray inside one patch: directory, bottom tree, leaf blocks.
+#if defined(RELIEF_PATCH_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_PATCH_TRAVERSAL_INL_H
+#undef RELIEF_PATCH_TRAVERSAL_INL_H
+#else
+#define RELIEF_PATCH_TRAVERSAL_INL_H
+#endif
+
+#include "engine/cpu/bottom_build-inl.h"
+#include "engine/cpu/ray_state-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// The patch that a ray or packet is inside of.
+struct PatchVisit {
+    const cpu::SceneView* scene;
+    cpu::TraceContext* context;
+    const Surface* surface;
+    uint32_t instance, surface_index, patch;
+    PatchLevels levels;
+    float cell_size;  ///< of (u, v)
+};
+
+/// Levels of the surface that a ray sees: the field's lowered by its bias.
+HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                                  uint32_t patch, uint32_t bias) {
+    const Instance& placed = scene.instances[instance];
+    PatchVisit visit{&scene, &context, &scene.surfaces[placed.surface], instance, placed.surface, patch,
+                     placed.levels->at(patch).biased(bias), 0};
+    visit.cell_size = 1.0f / float(1u << visit.levels.patch);
+    ++context.counters.pairs_emitted;
+    return visit;
+}
+
+/// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone where it enters.
+HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction_length) {
+    const Instance& placed = visit.scene->instances[visit.instance];
+    const Quad& quad = visit.surface->quads[visit.patch];
+    float longest = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        const Vec3f edge = visit.surface->positions[quad.vertex[(k + 1) % 4]] - visit.surface->positions[quad.vertex[k]];
+        longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
+    }
+    const float width = visit.scene->pixel_angle * std::fmax(entry * direction_length, 1e-20f);
+    const float wanted = std::ceil(std::log2(std::fmax(longest / width, 1.0f)));
+    const uint8_t level = uint8_t(std::fmin(wanted, float(visit.levels.patch)));
+    visit.levels.patch = level;
+    visit.levels.edge = {level, level, level, level};
+    visit.cell_size = 1.0f / float(1u << level);
+}
+
+HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
+    const cpu::TreeKey key{visit.surface_index, visit.patch, tile, cpu::pack_levels(visit.levels)};
+    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels, build_tree);
+}
+
+HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
+    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile, cpu::pack_levels(visit.levels)};
+    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
+}
+
+/// Exact leaf: sixteen triangles at once.
+template <Query kQuery>
+HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                    RayState& ray) {
+    const cpu::Block& leaf = tree.blocks()[block];
+    Lanes16 vertex[3], x, y, z, cx[3], cy[3], cz[3];
+    for (int k = 0; k < 3; ++k) vertex[k] = Lanes16::load(leaf.vertex[k]);
+    shear_vertices(vertex, ray, x, y, z);
+    gather_corners(x, cx[0], cx[1], cx[2]);
+    gather_corners(y, cy[0], cy[1], cy[2]);
+    TriangleTest<16> test;
+    if (!test_edges(cx, cy, test)) return false;
+    gather_corners(z, cz[0], cz[1], cz[2]);
+    test_distances(cz, ray, test);
+    if (!test.mask) return false;
+    if constexpr (kQuery == Query::any) return true;
+    uint32_t column = 0, row = 0;
+    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+        hit.patch = visit.patch;
+        hit.i = uint16_t(tree.cell_x + column + (lane & 3));
+        hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
+        hit.is_upper = uint8_t(lane >> 3);
+        hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * visit.cell_size;
+        hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * visit.cell_size;
+    });
+    return true;
+}
+
+/// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray that
+/// begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
+template <Query kQuery>
+HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, RayState& ray) {
+    const cpu::Block& leaf = tree.blocks()[block];
+    alignas(32) float bounds[6][8];
+    for (int axis = 0; axis < 3; ++axis)
+        for (uint32_t cell = 0; cell < 8; ++cell) {
+            const float* v = leaf.vertex[axis] + (cell >> 2) * 5 + (cell & 3);
+            bounds[axis][cell] = std::fmin(std::fmin(v[0], v[1]), std::fmin(v[5], v[6]));
+            bounds[3 + axis][cell] = std::fmax(std::fmax(v[0], v[1]), std::fmax(v[5], v[6]));
+        }
+    Lanes8 bound[6], entry;
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(bounds[k]);
+    LaneMask mask = test_boxes(bound, ray, entry) & less(Lanes8(ray.t_min), entry);
+    uint32_t column = 0, row = 0;
+    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    const uint32_t cells = 1u << tree.level;
+    alignas(32) float distance[8];
+    entry.store(distance);
+    bool has_hit = false;
+    for (; mask; mask &= mask - 1) {
+        const uint32_t cell = uint32_t(__builtin_ctz(mask));
+        if (column + (cell & 3) >= cells || row + (cell >> 2) >= cells || distance[cell] > ray.t_max) continue;
+        if constexpr (kQuery == Query::any) return true;
+        cpu::TraceHit hit;
+        hit.t = distance[cell];
+        hit.instance = ray.instance;
+        hit.patch = visit.patch;
+        hit.i = uint16_t(tree.cell_x + column + (cell & 3)), hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
+        hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;
+        offer_hit(ray, hit);
+        has_hit = true;
+    }
+    return has_hit;
+}
+
+template <Query kQuery>
+HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, RayState& ray) {
+    return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, ray)
+                                                : intersect_boxes<kQuery>(visit, tree, block, ray);
+}
+
+/// Nearest child first, all the way down. For Query::any, true at the first hit.
+template <Query kQuery>
+bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
+    bool has_hit = false;
+    const auto test_block = [&](uint32_t block) {
+        has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
+        return kQuery == Query::any && has_hit;
+    };
+    Lanes16 entry;
+    Lanes8 entry8;
+    if (tree.level == 5) {
+        visit_in_order(test_node(tree.root(), ray, entry), entry, ray, [&](uint32_t g) {
+            const LaneMask mask = test_node(tree.group(int(g)), ray, entry8);
+            return visit_in_order(mask, entry8, ray, [&](uint32_t k) { return test_block(g * 8 + k); });
+        });
+    } else if (tree.level == 4) {
+        visit_in_order(test_node(tree.root(), ray, entry), entry, ray,
+                       [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
+    } else if (tree.level == 3) {
+        visit_in_order(test_node(tree.group(0), ray, entry8), entry8, ray, test_block);
+    } else {
+        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
+            if (test_block(block)) break;
+    }
+    return has_hit;
+}
+
+/// One node of a directory and everything below it.
+template <Query kQuery>
+bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t x,
+                     uint32_t y, RayState& ray) {
+    using cpu::TileDirectory;
+    const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
+    const cpu::Node16& node =
+        directory.nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
+    Lanes16 entry;
+    bool has_hit = false;
+    visit_in_order(test_node(node, ray, entry), entry, ray, [&](uint32_t child) {
+        const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
+        has_hit |= step + 1 == TileDirectory::step_count(depth)
+                       ? trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), ray)
+                       : trace_directory<kQuery>(visit, directory, step + 1, cx, cy, ray);
+        return kQuery == Query::any && has_hit;
+    });
+    return has_hit;
+}
+
+/// Everything of a patch along one ray.
+template <Query kQuery>
+bool trace_patch(const PatchVisit& visit, RayState& ray) {
+    const bool has_hit = visit.levels.patch <= cpu::kTileLevel
+                             ? trace_tree<kQuery>(visit, find_tree(visit, 0), ray)
+                             : trace_directory<kQuery>(visit, find_directory(visit), 0, 0, 0, ray);
+    visit.context->counters.pairs_with_hit += has_hit;
+    return has_hit;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,210 @@
+// One ray in the space of one object, and its exact test against a block of sixteen triangles.
+//
+// Watertight after Woop, Benthin, Wald 2013 (Watertight Ray/Triangle Intersection): vertices are sheared into ray space
+// once each, and an edge function of a shared edge is the same two rounded products subtracted in either order, so its
+// sign is never wrong, only zero, and zero counts as inside. No fused operations here: they would break that.
+#if defined(RELIEF_RAY_STATE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_RAY_STATE_INL_H
+#undef RELIEF_RAY_STATE_INL_H
+#else
+#define RELIEF_RAY_STATE_INL_H
+#endif
+
+#include <cmath>
+
+#include "engine/cpu/kernels.h"
+#include "math/affine.h"
+#include "math/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+enum class Query { closest, any };
+
+/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), and the same slack for a triangle's own t.
+inline constexpr float kSlabSlack = 1.0000005f;
+
+struct RayState {
+    float origin[3], direction[3], reciprocal[3];
+    int axis[3];     ///< two minor axes and the major one
+    float shear[3];  ///< of the minor axes; 1 / direction along the major one
+    float t_min, t_max;
+    uint32_t instance = kNoIndex;
+    cpu::TraceHit hit;
+};
+
+/// Prepares a ray for an object; t keeps its meaning because the direction is not normalised.
+HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_from_world, RayState& ray) {
+    const Vec3f o = transform_point(object_from_world, world.origin);
+    const Vec3f d = transform_vector(object_from_world, world.direction);
+    ray.origin[0] = o.x, ray.origin[1] = o.y, ray.origin[2] = o.z;
+    ray.direction[0] = d.x, ray.direction[1] = d.y, ray.direction[2] = d.z;
+    for (int k = 0; k < 3; ++k) {
+        const float component = ray.direction[k];
+        ray.reciprocal[k] = 1.0f / (std::fabs(component) < 1e-18f ? std::copysign(1e-18f, component) : component);
+    }
+    const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+    const int major = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
+    ray.axis[2] = major, ray.axis[0] = (major + 1) % 3, ray.axis[1] = (major + 2) % 3;
+    ray.shear[2] = 1.0f / ray.direction[major];
+    ray.shear[0] = ray.direction[ray.axis[0]] * ray.shear[2];
+    ray.shear[1] = ray.direction[ray.axis[1]] * ray.shear[2];
+}
+
+/// Entry distances of W boxes (lower x y z, upper x y z) and the mask of those met in [t_min, t_max].
+template <size_t W>
+HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayState& ray, Lanes<W>& entry) {
+    Lanes<W> near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+        const Lanes<W> origin(ray.origin[k]), reciprocal(ray.reciprocal[k]);
+        const bool is_negative = ray.reciprocal[k] < 0;
+        near[k] = (bound[is_negative ? 3 + k : k] - origin) * reciprocal;
+        far[k] = (bound[is_negative ? k : 3 + k] - origin) * reciprocal;
+    }
+    entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
+    const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));
+    return less_equal(entry, exit * Lanes<W>(kSlabSlack));
+}
+
+HWY_INLINE LaneMask test_node(const cpu::Node16& node, const RayState& ray, Lanes16& entry) {
+    Lanes16 bound[6];
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes16::load(node.bounds[k]);
+    return test_boxes(bound, ray, entry);
+}
+
+HWY_INLINE LaneMask test_node(const cpu::Node8& node, const RayState& ray, Lanes8& entry) {
+    Lanes8 bound[6];
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
+    return test_boxes(bound, ray, entry);
+}
+
+/// Bounds of the children of a quantised node, by the decoder that the builder checked with.
+HWY_INLINE void decode_node(const WideNode& node, Lanes8 (&bound)[6]) {
+    for (int k = 0; k < 3; ++k) {
+        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
+        bound[k] = origin + Lanes8::load_codes(node.lower[k]) * scale;
+        bound[3 + k] = origin + Lanes8::load_codes(node.upper[k]) * scale;
+    }
+}
+
+/// Calls visit(child) for the lanes of `mask`, nearest entry first, while they begin before ray.t_max; stops on true.
+template <size_t W, class Visit>
+HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RayState& ray, Visit visit) {
+    if ((mask & (mask - 1)) == 0) return mask != 0 && visit(uint32_t(__builtin_ctz(mask)));
+    alignas(64) float distance[W];
+    entry.store(distance);
+    uint32_t order[W], count = 0;
+    for (; mask; mask &= mask - 1) {
+        const uint32_t child = uint32_t(__builtin_ctz(mask));
+        uint32_t slot = count++;
+        for (; slot > 0 && distance[order[slot - 1]] > distance[child]; --slot) order[slot] = order[slot - 1];
+        order[slot] = child;
+    }
+    for (uint32_t k = 0; k < count; ++k) {
+        if (distance[order[k]] > ray.t_max * kSlabSlack) return false;
+        if (visit(order[k])) return true;
+    }
+    return false;
+}
+
+/// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00, 11, 01)
+/// of cells 0..3 of the first row, then of the second.
+HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, Lanes16& c) {
+    if constexpr (Lanes16::kParts == 1) {
+        alignas(64) static constexpr int32_t kA[16] = {0, 1, 2, 3, 5, 6, 7, 8, 0, 1, 2, 3, 5, 6, 7, 8};
+        alignas(64) static constexpr int32_t kB[16] = {1, 2, 3, 4, 6, 7, 8, 9, 6, 7, 8, 9, 11, 12, 13, 14};
+        alignas(64) static constexpr int32_t kC[16] = {6, 7, 8, 9, 11, 12, 13, 14, 5, 6, 7, 8, 10, 11, 12, 13};
+        const Lanes16::D d;
+        a.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kA));
+        b.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kB));
+        c.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kC));
+    } else {
+        alignas(64) float v[16], p00[8], p10[8], p11[8], p01[8];
+        vertex.store(v);
+        for (int row = 0; row < 2; ++row) {
+            Lanes4::load_unaligned(v + 5 * row).store(p00 + 4 * row);
+            Lanes4::load_unaligned(v + 5 * row + 1).store(p10 + 4 * row);
+            Lanes4::load_unaligned(v + 5 * row + 6).store(p11 + 4 * row);
+            Lanes4::load_unaligned(v + 5 * row + 5).store(p01 + 4 * row);
+        }
+        constexpr size_t kHalf = 8 / Lanes16::kLanes;
+        for (size_t p = 0; p < kHalf; ++p) {
+            const Lanes16::D d;
+            const size_t at = p * Lanes16::kLanes;
+            a.part[p] = a.part[kHalf + p] = hn::Load(d, p00 + at);
+            b.part[p] = hn::Load(d, p10 + at);
+            c.part[p] = b.part[kHalf + p] = hn::Load(d, p11 + at);
+            c.part[kHalf + p] = hn::Load(d, p01 + at);
+        }
+    }
+}
+
+/// W triangles in ray space: edge functions opposite a, b, c and the distances of the hits among `mask`.
+template <size_t W>
+struct TriangleTest {
+    Lanes<W> u, v, w, t;
+    LaneMask mask;
+};
+
+template <size_t W>
+HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], TriangleTest<W>& test) {
+    test.u = x[2] * y[1] - y[2] * x[1];
+    test.v = x[0] * y[2] - y[0] * x[2];
+    test.w = x[1] * y[0] - y[1] * x[0];
+    return test.mask = same_side(test.u, test.v, test.w);
+}
+
+template <size_t W>
+HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
+    const Lanes<W> sum = test.u + test.v + test.w;
+    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * Lanes<W>(ray.shear[2]);
+    test.mask &= not_equal(sum, Lanes<W>(0.0f)) & less(Lanes<W>(ray.t_min), test.t) &
+                 less_equal(test.t, Lanes<W>(ray.t_max));
+}
+
+/// Vertices relative to the ray: sheared x and y, and z along the major axis.
+template <size_t W>
+HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray, Lanes<W>& x, Lanes<W>& y, Lanes<W>& z) {
+    z = vertex[ray.axis[2]] - Lanes<W>(ray.origin[ray.axis[2]]);
+    x = (vertex[ray.axis[0]] - Lanes<W>(ray.origin[ray.axis[0]])) - Lanes<W>(ray.shear[0]) * z;
+    y = (vertex[ray.axis[1]] - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
+}
+
+/// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then does not
+/// depend on the order in which triangles were met.
+HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
+    const auto rank = [](const cpu::TraceHit& h) { return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper; };
+    if (hit.t == ray.hit.t) {
+        if (hit.instance != ray.hit.instance ? hit.instance > ray.hit.instance
+                                             : hit.patch != ray.hit.patch ? hit.patch > ray.hit.patch
+                                                                          : rank(hit) >= rank(ray.hit))
+            return;
+    } else if (!(hit.t < ray.hit.t)) {
+        return;
+    }
+    ray.hit = hit;
+    ray.t_max = hit.t;
+}
+
+/// Offers every hit of a triangle test; locate(lane, hit) fills in cell, is_upper and, from the weights of the three
+/// corners, u and v.
+template <size_t W, class Locate>
+HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
+    alignas(64) float u[W], v[W], w[W], t[W];
+    test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
+    for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(mask));
+        if (t[lane] > ray.t_max) continue;
+        const float sum = u[lane] + v[lane] + w[lane];
+        cpu::TraceHit hit;
+        hit.t = t[lane];
+        hit.instance = ray.instance;
+        locate(lane, v[lane] / sum, w[lane] / sum, hit);
+        offer_hit(ray, hit);
+    }
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "base/parallel.h"
+#include "engine/prepared_scene.h"
+#include "engine/tessellate.h"
+#include "relief/error.h"
+#include "surface/displacement_map.h"
+
+namespace relief {
+
+namespace {
+
+/// Objects that share a surface: same mesh, same displacement, and for world-space maps the same transform.
+using SurfaceKey = std::tuple<uint32_t, uint32_t, uint32_t>;
+
+SurfaceKey make_key(const Scene& scene, uint32_t object_index) {
+    const Object& object = scene.objects[object_index];
+    const bool is_world = object.displacement != kNoIndex &&
+                          scene.displacements[object.displacement].space == DisplacementSpace::world;
+    return {object.mesh, object.displacement, is_world ? object_index : kNoIndex};
+}
+
+Instance make_instance(const Object& object, uint32_t surface, uint32_t default_material) {
+    Instance instance;
+    instance.surface = surface;
+    instance.material = object.material == kNoIndex ? default_material : object.material;
+    instance.world_from_object = object.world_from_object;
+    instance.object_from_world = *invert(object.world_from_object);
+    instance.is_mirrored = compute_determinant(object.world_from_object) < 0;
+    return instance;
+}
+
+LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& settings) {
+    LevelFieldConfig config;
+    config.fixed_level = settings.level == kAutoLevel ? -1 : settings.level;
+    config.pixel_error = settings.pixel_error;
+    config.camera = scene.camera.from;
+    config.pixel_angle = float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
+    return config;
+}
+
+/// Frees the polygons of meshes that no later surface needs.
+void release_mesh(Scene& scene, uint32_t mesh) {
+    Mesh empty;
+    empty.name = std::move(scene.meshes[mesh].name);
+    scene.meshes[mesh] = std::move(empty);
+}
+
+/// One surface a key, in the order of the first object that needs it; mesh by mesh, so that polygons can be freed.
+void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
+                   const std::vector<uint32_t>& first_object, std::vector<Surface>& surfaces) {
+    std::vector<std::vector<uint32_t>> surfaces_of_mesh(scene.meshes.size());
+    for (const auto& [key, surface] : surface_of_key) surfaces_of_mesh[std::get<0>(key)].push_back(surface);
+    PyramidCache pyramids;
+    surfaces.resize(surface_of_key.size());
+    parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t mesh = begin; mesh < end; ++mesh) {
+            for (const uint32_t surface : surfaces_of_mesh[mesh]) {
+                const Object& object = scene.objects[first_object[surface]];
+                const Displacement* displacement =
+                    object.displacement == kNoIndex ? nullptr : &scene.displacements[object.displacement];
+                surfaces[surface] = make_surface(scene.meshes[mesh], displacement,
+                                                 *invert(object.world_from_object), &pyramids);
+            }
+            release_mesh(scene, uint32_t(mesh));
+        }
+    });
+}
+
+} // namespace
+
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
+    validate_scene(scene);
+    auto prepared = std::make_shared<PreparedScene>();
+    prepared->materials = std::move(scene.materials);
+    prepared->materials.emplace_back();
+    prepared->lights = std::move(scene.lights);
+    prepared->environment = std::move(scene.environment);
+    prepared->camera = scene.camera;
+    prepared->width = settings.width, prepared->height = settings.height;
+    prepared->warnings = std::move(scene.warnings);
+
+    std::map<SurfaceKey, uint32_t> surface_of_key;
+    std::vector<uint32_t> first_object;
+    const uint32_t default_material = uint32_t(prepared->materials.size()) - 1;
+    for (uint32_t k = 0; k < scene.objects.size(); ++k) {
+        const auto [place, is_new] = surface_of_key.try_emplace(make_key(scene, k), uint32_t(first_object.size()));
+        if (is_new) first_object.push_back(k);
+        prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
+    }
+    make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
+
+    const LevelFieldConfig config = make_level_config(scene, settings);
+    parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            Instance& instance = prepared->instances[k];
+            instance.levels = std::make_shared<const LevelField>(LevelField::compute(
+                prepared->surfaces[instance.surface], instance.world_from_object, config));
+        }
+    });
+    if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared);
+    return prepared;
+}
+
+} // namespace relief

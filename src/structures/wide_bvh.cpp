@@ -1,0 +1,191 @@
+#include "structures/wide_bvh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "relief/error.h"
+#include "structures/sah_split.h"
+
+namespace relief {
+
+namespace {
+
+/// Up to eight nodes of the binary tree that become the children of one wide node, in the order of the binary
+/// tree.
+struct ChildList {
+    std::array<uint32_t, WideNode::kMaxChildCount> nodes{};
+    int count = 0;
+};
+
+/// Leaves below each node. Children may come before or after their parents in memory.
+std::vector<uint32_t> count_leaves(const Bvh& bvh) {
+    std::vector<uint32_t> order{0};
+    for (size_t k = 0; k < order.size(); ++k) {
+        const BvhNode& node = bvh.nodes[order[k]];
+        if (!node.is_leaf()) order.insert(order.end(), {node.first, node.first + 1});
+    }
+    std::vector<uint32_t> counts(bvh.nodes.size(), 1);
+    for (size_t k = order.size(); k-- > 0;) {
+        const BvhNode& node = bvh.nodes[order[k]];
+        if (!node.is_leaf()) counts[order[k]] = counts[node.first] + counts[node.first + 1];
+    }
+    return counts;
+}
+
+/// The child to open next, -1: none. Subtrees that fit one wide node are opened only where that takes them in
+/// whole: otherwise the lowest level, which is most of the tree, would be left with half-empty nodes.
+int choose_child_to_open(const Bvh& bvh, const std::vector<uint32_t>& leaf_counts, const ChildList& list) {
+    const uint32_t free_slots = uint32_t(WideNode::kMaxChildCount - list.count);
+    int best = -1;
+    bool is_best_large = false;
+    double best_area = -1;
+    for (int k = 0; k < list.count; ++k) {
+        const BvhNode& node = bvh.nodes[list.nodes[k]];
+        const uint32_t leaves = leaf_counts[list.nodes[k]];
+        const bool is_large = leaves > uint32_t(WideNode::kMaxChildCount);
+        if (node.is_leaf() || (!is_large && leaves - 1 > free_slots) || (is_best_large && !is_large))
+            continue;
+        const double area = compute_half_area(node.box());
+        if (area > best_area || (is_large && !is_best_large))
+            best = k, best_area = area, is_best_large = is_large;
+    }
+    return best;
+}
+
+ChildList collect_children(const Bvh& bvh, const std::vector<uint32_t>& leaf_counts, uint32_t root) {
+    ChildList list;
+    list.nodes[0] = root;
+    list.count = 1;
+    while (list.count < WideNode::kMaxChildCount) {
+        const int opened = choose_child_to_open(bvh, leaf_counts, list);
+        if (opened < 0) break;
+        const uint32_t first = bvh.nodes[list.nodes[opened]].first;
+        std::copy_backward(list.nodes.begin() + opened + 1, list.nodes.begin() + list.count,
+                           list.nodes.begin() + list.count + 1);
+        list.nodes[opened] = first;
+        list.nodes[opened + 1] = first + 1;
+        ++list.count;
+    }
+    return list;
+}
+
+/// Largest code that decodes to `value` or less; the origin itself is never above it.
+uint8_t encode_lower(float value, float origin, float scale) {
+    const double code = std::floor((double(value) - origin) / scale);
+    int result = int(std::clamp(code, 0.0, 255.0));
+    while (result > 0 && WideNode::decode(origin, scale, uint8_t(result)) > value) --result;
+    return uint8_t(result);
+}
+
+/// Smallest code that decodes to `value` or more; find_exponent has seen to it that 255 does.
+uint8_t encode_upper(float value, float origin, float scale) {
+    const double code = std::ceil((double(value) - origin) / scale);
+    int result = int(std::clamp(code, 0.0, 255.0));
+    while (result < 255 && WideNode::decode(origin, scale, uint8_t(result)) < value) ++result;
+    return uint8_t(result);
+}
+
+/// Smallest exponent whose code 255 reaches `upper` and lies strictly above `origin`, so that an unused slot
+/// is empty after rounding too.
+int find_exponent(float origin, float upper) {
+    const double step = (double(upper) - origin) / 255;
+    int exponent = step > 0 ? std::clamp(std::ilogb(step), -126, 127) : -126;
+    // 255 steps of 2^-33 times the origin are below half a unit in its last place: no need to try smaller
+    // ones.
+    if (origin != 0) exponent = std::max(exponent, std::ilogb(origin) - 33);
+    const auto reach = [&] { return WideNode::decode(origin, WideNode::decode_scale(exponent), 255); };
+    while (exponent < 127 && !(reach() >= upper && reach() > origin)) ++exponent;
+    return exponent;
+}
+
+void encode_boxes(WideNode& node, const Box& bounds, const std::array<Box, 8>& boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const float origin = get_component(bounds.lower, axis);
+        const int exponent = find_exponent(origin, get_component(bounds.upper, axis));
+        const float scale = WideNode::decode_scale(exponent);
+        node.origin[axis] = origin;
+        node.exponent[axis] = int8_t(exponent);
+        for (int k = 0; k < WideNode::kMaxChildCount; ++k) {
+            const bool is_used = k < node.child_count;
+            const uint8_t upper =
+                is_used ? encode_upper(get_component(boxes[k].upper, axis), origin, scale) : 0;
+            node.lower[axis][k] =
+                is_used ? encode_lower(get_component(boxes[k].lower, axis), origin, scale) : 255;
+            node.upper[axis][k] = upper;
+        }
+    }
+}
+
+class Collapse {
+  public:
+    explicit Collapse(const Bvh& bvh) : bvh_(bvh), leaf_counts_(count_leaves(bvh)) {}
+
+    WideBvh run() {
+        wide_.bounds = bvh_.nodes[0].box();
+        const bool has_single_leaves =
+            std::all_of(bvh_.nodes.begin(), bvh_.nodes.end(),
+                        [](const BvhNode& node) { return node.primitive_count <= 1; });
+        if (!has_single_leaves) wide_.primitive_ids = bvh_.primitive_ids;
+        wide_.nodes.resize(1);
+        pending_.push_back({0, 0});
+        while (!pending_.empty()) {
+            const Pending next = pending_.back();
+            pending_.pop_back();
+            make_node(next);
+        }
+        wide_.nodes.shrink_to_fit();
+        return std::move(wide_);
+    }
+
+  private:
+    struct Pending {
+        uint32_t binary_node;
+        uint32_t wide_node;
+    };
+
+    void make_node(const Pending& pending) {
+        const ChildList list = collect_children(bvh_, leaf_counts_, pending.binary_node);
+        WideNode node{};
+        node.child_count = uint8_t(list.count);
+        std::fill(std::begin(node.child), std::end(node.child), WideNode::kNoChild);
+        std::array<Box, 8> boxes;
+        for (int k = 0; k < list.count; ++k) {
+            const BvhNode& source = bvh_.nodes[list.nodes[k]];
+            boxes[k] = source.box();
+            node.child[k] = source.is_leaf() ? make_leaf_child(source) : allocate(list.nodes[k]);
+        }
+        encode_boxes(node, bvh_.nodes[pending.binary_node].box(), boxes);
+        wide_.nodes[pending.wide_node] = node;
+    }
+
+    uint32_t make_leaf_child(const BvhNode& leaf) const {
+        const uint32_t first = wide_.primitive_ids.empty() ? bvh_.primitive_ids[leaf.first] : leaf.first;
+        return WideNode::make_leaf(first, leaf.primitive_count);
+    }
+
+    uint32_t allocate(uint32_t binary_node) {
+        const uint32_t index = uint32_t(wide_.nodes.size());
+        wide_.nodes.emplace_back();
+        pending_.push_back({binary_node, index});
+        return index;
+    }
+
+    const Bvh& bvh_;
+    const std::vector<uint32_t> leaf_counts_;
+    WideBvh wide_;
+    std::vector<Pending> pending_;
+};
+
+} // namespace
+
+WideBvh make_wide_bvh(const Bvh& bvh) {
+    if (bvh.nodes.empty()) return {};
+    if (bvh.primitive_ids.size() > size_t(WideNode::kMaxLeafFirst) + 1)
+        throw Error(
+            ErrorKind::out_of_memory,
+            {"a wide bounding volume hierarchy holds at most 2^28 primitives", "", "split the scene"});
+    return Collapse(bvh).run();
+}
+
+} // namespace relief

@@ -1,0 +1,127 @@
+#include "surface/level_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "relief/render.h"
+#include "surface/patch_samples.h"
+
+namespace relief {
+
+namespace {
+
+constexpr int kEdgeSegments = 8;
+constexpr int kMiddleSegments = 16;
+
+/// Level of a displaced line from its points, world space; `texels` is its length on the map.
+int choose_level(const Vec3f* points, int count, double texels, const LevelFieldConfig& config) {
+    const int cap = std::clamp(int(std::ceil(std::log2(std::max(texels, 1.0)))), 0, kMaxLevel);
+    double line_length = 0;
+    Box box;
+    for (int k = 0; k < count; ++k) {
+        box.extend(points[k]);
+        if (k > 0) line_length += length(points[k] - points[k - 1]);
+    }
+    const Vec3f center = box.center();
+    double radius = 0;
+    for (int k = 0; k < count; ++k) radius = std::max(radius, double(length(points[k] - center)));
+    const double distance = length(config.camera - center) - radius;
+    if (!(line_length > 0)) return 0;
+    const double cell = double(config.pixel_error) * config.pixel_angle * distance;
+    // A camera among the points sees the line as near as can be.
+    if (!(cell > 0)) return cap;
+    return std::min(cap, int(std::clamp(std::ceil(std::log2(line_length / cell)), 0.0, double(kMaxLevel))));
+}
+
+double count_texels(const DisplacementMap& map, uint8_t tile, const Vec2f& a, const Vec2f& b) {
+    if (tile >= map.tiles.size()) return 0;
+    const Texture& texture = *map.tiles[tile].texture;
+    return std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
+}
+
+int choose_edge_level(const Surface& surface, const PatchSamples& samples, int edge,
+                      const Affine& world_from_object, const LevelFieldConfig& config) {
+    Vec3f points[kEdgeSegments + 1];
+    for (int k = 0; k <= kEdgeSegments; ++k) {
+        const Vec3f point = k == 0               ? samples.corner(samples.line_start(edge))
+                            : k == kEdgeSegments ? samples.corner(samples.line_end(edge))
+                                                 : samples.edge(edge, float(k) / kEdgeSegments);
+        points[k] = transform_point(world_from_object, point);
+    }
+    const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
+    const double texels = count_texels(surface.map, first.tile, first.uv, second.uv);
+    return choose_level(points, kEdgeSegments + 1, texels, config);
+}
+
+/// Level of the two lines through the middle, along u and along v: the map may stretch the inside more than
+/// the edges.
+int choose_middle_level(const Surface& surface, const PatchSamples& samples, const Affine& world_from_object,
+                        const LevelFieldConfig& config) {
+    int level = 0;
+    for (int direction = 0; direction < 2; ++direction) {
+        Vec3f points[kMiddleSegments - 1];
+        for (int k = 1; k < kMiddleSegments; ++k) {
+            const float s = float(k) / kMiddleSegments;
+            const Vec3f point = direction == 0 ? samples.interior(s, 0.5f) : samples.interior(0.5f, s);
+            points[k - 1] = transform_point(world_from_object, point);
+        }
+        const VertexData a =
+            blend_corners(samples.corners(), direction == 0 ? 0 : 0.5f, direction == 0 ? 0.5f : 0);
+        const VertexData b =
+            blend_corners(samples.corners(), direction == 0 ? 1 : 0.5f, direction == 0 ? 0.5f : 1);
+        const double texels = count_texels(surface.map, a.tile, a.uv, b.uv);
+        level = std::max(level, choose_level(points, kMiddleSegments - 1, texels, config));
+    }
+    return level;
+}
+
+PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& world_from_object,
+                          const LevelFieldConfig& config) {
+    const PatchSamples samples(surface, patch);
+    PatchLevels levels;
+    levels.patch = uint8_t(choose_middle_level(surface, samples, world_from_object, config));
+    for (int edge = 0; edge < 4; ++edge) {
+        levels.edge[edge] = uint8_t(choose_edge_level(surface, samples, edge, world_from_object, config));
+        levels.patch = std::max(levels.patch, levels.edge[edge]);
+    }
+    return levels;
+}
+
+uint32_t pack(const PatchLevels& levels) {
+    return uint32_t(levels.patch) << 16 | uint32_t(levels.edge[0]) | uint32_t(levels.edge[1]) << 4 |
+           uint32_t(levels.edge[2]) << 8 | uint32_t(levels.edge[3]) << 12;
+}
+
+} // namespace
+
+LevelField LevelField::compute(const Surface& surface, const Affine& world_from_object,
+                               const LevelFieldConfig& config) {
+    LevelField field;
+    if (!surface.has_displacement) return field;
+    if (config.fixed_level >= 0) {
+        field.max_level_ = std::min(config.fixed_level, kMaxLevel);
+        const uint8_t level = uint8_t(field.max_level_);
+        field.fixed_ = {level, {level, level, level, level}};
+        return field;
+    }
+    field.packed_.resize(surface.patch_count());
+    parallel_for("level field", field.packed_.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            field.packed_[patch] = pack(choose_levels(surface, uint32_t(patch), world_from_object, config));
+    });
+    for (const uint32_t levels : field.packed_)
+        field.max_level_ = std::max(field.max_level_, int(levels >> 16));
+    return field;
+}
+
+PatchLevels LevelField::at(uint32_t patch) const {
+    if (packed_.empty()) return fixed_;
+    const uint32_t packed = packed_[patch];
+    PatchLevels levels;
+    levels.patch = uint8_t(packed >> 16);
+    for (int edge = 0; edge < 4; ++edge) levels.edge[edge] = uint8_t(packed >> (4 * edge) & 15u);
+    return levels;
+}
+
+} // namespace relief

@@ -1,0 +1,76 @@
+// One patch unpacked for evaluation: its corners, its edges' lines and the dominant vertices of its corners.
+// The float operations here are the definition of the surface; the SIMD kernels repeat them bit for bit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "surface/surface.h"
+
+namespace relief {
+
+/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it.
+struct VertexData {
+    Vec3f position{};
+    Vec2f uv{};
+    Frame frame{};
+    uint8_t tile = 0;
+};
+
+VertexData load_vertex(const Surface& surface, uint32_t vertex);
+
+/// `base` moved by the displacement at `uv` of `tile`, through `frame` where the map is tangent. Where the
+/// tile has no map the displacement is (0, 0, 0) and takes the same way.
+Vec3f displace(const DisplacementMap& map, uint8_t tile, const Vec3f& base, const Vec2f& uv,
+               const Frame& frame);
+
+/// Bilinear position, uv and frame (not renormalised) at (u, v) of corners 0..3.
+VertexData blend_corners(const std::array<VertexData, 4>& corners, float u, float v);
+
+/// Same on the line from `a` to `b` at `s`; the tile is that of `a`.
+VertexData blend_line(const VertexData& a, const VertexData& b, float s);
+
+/// Sample of an edge, counted from the start of its line in [0, 2^patch_level], after its move onto the
+/// nearest sample of the edge's level (half way: the later one).
+inline uint32_t move_edge_sample(uint32_t k, int patch_level, int edge_level) {
+    const uint32_t shift = uint32_t(patch_level - edge_level);
+    return (k + ((1u << shift) >> 1)) >> shift << shift;
+}
+
+class PatchSamples {
+  public:
+    PatchSamples(const Surface& surface, uint32_t patch);
+
+    /// Displaced point of corner k, of its dominant vertex.
+    Vec3f corner(int k) const;
+    /// Displaced point on the line of edge k at s in [0, 1] from the line's start; not for the ends, which
+    /// are corners.
+    Vec3f edge(int k, float s) const;
+    /// Displaced point inside.
+    Vec3f interior(float u, float v) const;
+
+    /// Corner that the line of edge k starts from, and the one that it ends at.
+    int line_start(int k) const { return lines_[k].is_reversed ? (k + 1) & 3 : k; }
+    int line_end(int k) const { return lines_[k].is_reversed ? k : (k + 1) & 3; }
+    bool is_line_reversed(int k) const { return lines_[k].is_reversed; }
+    /// True where the line of edge k is not between the patch's own corners.
+    bool is_line_foreign(int k) const { return lines_[k].is_foreign; }
+    /// True where corner k is displaced by another vertex than the patch's own.
+    bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }
+
+    const std::array<VertexData, 4>& corners() const { return corners_; }
+    const VertexData& first_of_line(int k) const { return lines_[k].first; }
+    const VertexData& second_of_line(int k) const { return lines_[k].second; }
+
+  private:
+    struct Line {
+        VertexData first, second;
+        bool is_reversed = false, is_foreign = false;
+    };
+    const DisplacementMap* map_;
+    std::array<VertexData, 4> corners_, dominants_;
+    std::array<Line, 4> lines_;
+    std::array<bool, 4> is_corner_foreign_{};
+};
+
+} // namespace relief

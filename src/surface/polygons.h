@@ -1,0 +1,47 @@
+// Checked polygons between the mesh of the scene and the patches: one entry a corner, attributes resolved.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+struct Polygons {
+    std::string where; ///< file and mesh, for messages
+    std::vector<Vec3f> positions;
+    std::vector<uint32_t> starts;       ///< first corner of each face, and the end of the last one
+    std::vector<uint32_t> points;       ///< index into positions, one a corner
+    std::vector<Vec2f> uvs;             ///< one a corner, or empty
+    std::vector<Vec3f> normals;         ///< one a corner, or empty
+    std::vector<uint32_t> source_faces; ///< face of the mesh, for messages
+
+    uint32_t face_count() const { return uint32_t(source_faces.size()); }
+    uint32_t face_size(uint32_t face) const { return starts[face + 1] - starts[face]; }
+};
+
+enum class Welding {
+    none,        ///< points stay as the mesh numbers them
+    equal_points ///< points at exactly equal positions become one, as exporters take them apart
+};
+
+/// Resolves and checks a mesh. Corners that repeat the position of the corner before are dropped. Throws
+/// bad_input with mesh and face for an index out of range, a value that is not finite or beyond 1e18, and a
+/// face of zero area.
+Polygons make_polygons(const Mesh& mesh, Welding welding);
+
+/// One linear Catmull-Clark step (Catmull and Clark 1978, without the smoothing): every face becomes one quad
+/// a corner, from the corner to the middle of its next edge, the middle of the face and the middle of its
+/// previous edge.
+Polygons refine_to_quads(const Polygons& polygons);
+
+/// Leaves triangles and convex quads as they are and cuts all other faces by ears in the plane of their
+/// Newell normal.
+Polygons cut_to_triangles(const Polygons& polygons);
+
+/// Twice the area vector of the face by Newell's method, in double precision.
+Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face);
+
+} // namespace relief

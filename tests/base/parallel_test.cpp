@@ -1,0 +1,67 @@
+#include "base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace relief {
+namespace {
+
+TEST(Parallel, for_covers_every_index_once_in_ranges_up_to_the_grain) {
+    std::vector<int> visits(100'003, 0);
+    std::atomic<size_t> longest{0};
+    parallel_for("visit", visits.size(), 64, [&](size_t begin, size_t end) {
+        size_t seen = longest.load();
+        while (seen < end - begin && !longest.compare_exchange_weak(seen, end - begin)) {
+        }
+        for (size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    for (size_t i = 0; i < visits.size(); ++i) ASSERT_EQ(visits[i], 1) << i;
+    EXPECT_LE(longest.load(), 64u);
+}
+
+TEST(Parallel, for_over_nothing_never_calls_its_body) {
+    parallel_for("nothing", 0, 1, [](size_t, size_t) { ADD_FAILURE(); });
+}
+
+TEST(Parallel, an_exception_of_a_body_reaches_the_caller) {
+    const auto fail_in_the_middle = [] {
+        parallel_for("fail", 1000, 1, [](size_t begin, size_t) {
+            if (begin == 500) throw std::runtime_error("body");
+        });
+    };
+    EXPECT_THROW(fail_in_the_middle(), std::runtime_error);
+}
+
+TEST(Parallel, invoke_runs_both_and_nests) {
+    std::vector<int> left(1000, 0), right(1000, 0);
+    const auto fill = [](std::vector<int>& values, int value) {
+        parallel_for("fill", values.size(), 10, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) values[i] = value;
+        });
+    };
+    parallel_invoke([&] { fill(left, 1); }, [&] { fill(right, 2); });
+    EXPECT_EQ(left, std::vector<int>(1000, 1));
+    EXPECT_EQ(right, std::vector<int>(1000, 2));
+}
+
+TEST(Parallel, a_scope_bounds_threads_and_worker_indices) {
+    for (const int threads : {1, 2, 3}) {
+        std::atomic<int> highest{0};
+        with_threads(threads, [&] {
+            EXPECT_EQ(thread_count(), threads);
+            parallel_for("index", 1000, 1, [&](size_t, size_t) {
+                int seen = highest.load();
+                const int index = current_thread_index();
+                while (seen < index && !highest.compare_exchange_weak(seen, index)) {
+                }
+            });
+        });
+        EXPECT_LT(highest.load(), threads);
+    }
+}
+
+} // namespace
+} // namespace relief

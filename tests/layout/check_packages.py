@@ -1,0 +1,34 @@
+"""Every package that CMake looks for, and every tool that the scripts call, stands in tools/packages.txt."""
+import pathlib
+import re
+import sys
+
+from sources import finish, list_files
+
+PACKAGES = {
+    "TBB": ["libtbb-dev"],
+    "fmt": ["libfmt-dev"],
+    "hwy": ["libhwy-dev"],
+    # Its CMake file names the tools, and the headers those of Imath.
+    "OpenImageIO": ["libopenimageio-dev", "openimageio-tools", "libimath-dev"],
+    "nlohmann_json": ["nlohmann-json3-dev"],
+    "tinyobjloader": ["libtinyobjloader-dev"],
+    "assimp": ["libassimp-dev"],
+    "CLI11": ["libcli11-dev"],
+    "GTest": ["libgtest-dev"],
+    "Python3": ["python3"],
+}
+TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make"]
+
+root = pathlib.Path(sys.argv[1])
+listed = set((root / "tools/packages.txt").read_text().splitlines())
+needed = {tool: "the presets and the Makefile" for tool in TOOLS}
+faults = []
+for file in list_files(root):
+    if file.name == "CMakeLists.txt" or file.suffix == ".cmake":
+        for name in re.findall(r"find_package\(\s*(\w+)", file.read_text()):
+            if name not in PACKAGES:
+                faults.append(f"{file}: tests/layout/check_packages.py does not know the Debian package of {name}")
+            needed.update({package: file for package in PACKAGES.get(name, [])})
+faults += [f"tools/packages.txt lacks {package}, needed by {user}" for package, user in needed.items() if package not in listed]
+finish(faults)

@@ -1,0 +1,161 @@
+#include "structures/sah_bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/parallel.h"
+#include "box_sets.h"
+#include "structures/sah_split.h"
+
+namespace relief {
+namespace {
+
+using test::BoxSet;
+using Method = SahBvhBuilder::Method;
+
+std::vector<SahBvhBuilder::Config> make_configs() {
+    std::vector<SahBvhBuilder::Config> configs;
+    for (const Method method : {Method::binned, Method::sweep})
+        for (const uint32_t leaf_size : {1u, 4u, 8u}) {
+            SahBvhBuilder::Config config;
+            config.method = method;
+            config.max_leaf_size = leaf_size;
+            configs.push_back(config);
+        }
+    return configs;
+}
+
+struct Visit {
+    uint32_t node;
+    int depth;
+};
+
+void expect_sound(const Bvh& bvh, const std::vector<Box>& boxes, uint32_t max_leaf_size) {
+    std::vector<int> seen(boxes.size());
+    std::vector<Visit> pending{{0, 0}};
+    size_t node_count = 0;
+    while (!pending.empty()) {
+        const Visit visit = pending.back();
+        pending.pop_back();
+        ++node_count;
+        ASSERT_LE(visit.depth, kMaxBvhDepth);
+        ASSERT_LT(visit.node, bvh.nodes.size());
+        const BvhNode& node = bvh.nodes[visit.node];
+        if (!node.is_leaf()) {
+            ASSERT_LT(node.first + 1, bvh.nodes.size());
+            for (const uint32_t child : {node.first, node.first + 1}) {
+                ASSERT_TRUE(node.box().contains(bvh.nodes[child].box()));
+                pending.push_back({child, visit.depth + 1});
+            }
+            continue;
+        }
+        ASSERT_LE(node.primitive_count, max_leaf_size);
+        for (uint32_t k = node.first; k < node.first + node.primitive_count; ++k) {
+            ASSERT_LT(k, bvh.primitive_ids.size());
+            ++seen[bvh.primitive_ids[k]];
+            ASSERT_TRUE(node.box().contains(boxes[bvh.primitive_ids[k]]));
+        }
+    }
+    EXPECT_EQ(node_count, bvh.nodes.size());
+    for (const int times : seen) ASSERT_EQ(times, 1);
+}
+
+double compute_cost(const Bvh& bvh, const SahBvhBuilder::Config& config) {
+    double cost = 0;
+    for (const BvhNode& node : bvh.nodes)
+        cost += compute_half_area(node.box()) *
+                (node.is_leaf() ? config.intersection_cost * node.primitive_count : config.traversal_cost);
+    return cost / compute_half_area(bvh.nodes[0].box());
+}
+
+bool is_same(const Bvh& a, const Bvh& b) {
+    return a.nodes.size() == b.nodes.size() && a.primitive_ids == b.primitive_ids &&
+           std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)) == 0;
+}
+
+TEST(SahBvh, holds_every_primitive_once_and_children_inside_parents) {
+    for (const BoxSet& set : test::make_box_sets())
+        for (const SahBvhBuilder::Config& config : make_configs()) {
+            SCOPED_TRACE(set.name);
+            expect_sound(SahBvhBuilder::build(set.boxes, config), set.boxes, config.max_leaf_size);
+        }
+}
+
+TEST(SahBvh, has_the_union_of_all_boxes_at_the_root) {
+    for (const BoxSet& set : test::make_box_sets()) {
+        const Bvh bvh = SahBvhBuilder::build(set.boxes, {});
+        const Box all = test::compute_union(set.boxes);
+        EXPECT_EQ(bvh.nodes[0].lower, all.lower) << set.name;
+        EXPECT_EQ(bvh.nodes[0].upper, all.upper) << set.name;
+    }
+}
+
+TEST(SahBvh, is_empty_without_primitives) {
+    for (const SahBvhBuilder::Config& config : make_configs()) {
+        const Bvh bvh = SahBvhBuilder::build({}, config);
+        EXPECT_TRUE(bvh.nodes.empty());
+        EXPECT_TRUE(bvh.primitive_ids.empty());
+    }
+}
+
+TEST(SahBvh, is_one_leaf_for_one_primitive) {
+    const Bvh bvh = SahBvhBuilder::build(std::vector<Box>{Box{{0, 0, 0}, {1, 1, 1}}}, {});
+    ASSERT_EQ(bvh.nodes.size(), 1u);
+    EXPECT_EQ(bvh.nodes[0].primitive_count, 1u);
+}
+
+TEST(SahBvh, is_the_same_for_any_number_of_threads) {
+    const std::vector<Box> boxes = test::make_random_boxes(20, 30000, 10, 0.1f);
+    for (const SahBvhBuilder::Config& config : make_configs()) {
+        Bvh serial, parallel;
+        with_threads(1, [&] { serial = SahBvhBuilder::build(boxes, config); });
+        with_threads(4, [&] { parallel = SahBvhBuilder::build(boxes, config); });
+        EXPECT_TRUE(is_same(serial, parallel));
+    }
+}
+
+TEST(SahBvh, costs_no_more_when_swept_than_when_binned) {
+    for (const uint32_t seed : {30u, 31u, 32u}) {
+        const std::vector<Box> boxes = test::make_random_boxes(seed, 4000, 10, seed == 31 ? 5.0f : 0.2f);
+        SahBvhBuilder::Config config;
+        const double binned = compute_cost(SahBvhBuilder::build(boxes, config), config);
+        config.method = Method::sweep;
+        const double swept = compute_cost(SahBvhBuilder::build(boxes, config), config);
+        EXPECT_LE(swept, binned * 1.05);
+    }
+}
+
+TEST(SahBvh, costs_a_hundredth_of_testing_every_primitive) {
+    std::vector<Box> boxes = test::make_random_boxes(40, 3000, 0.1f, 0.01f);
+    for (const Box& box : test::make_random_boxes(41, 1000, 100, 0.01f)) boxes.push_back(box);
+    SahBvhBuilder::Config config;
+    const Bvh bvh = SahBvhBuilder::build(boxes, config);
+    const double leaf_everything = double(boxes.size());
+    EXPECT_LT(compute_cost(bvh, config), 0.01 * leaf_everything);
+}
+
+TEST(SahBvh, keeps_primitives_together_when_nodes_are_dear) {
+    const std::vector<Box> boxes = test::make_random_boxes(50, 8, 1, 1);
+    SahBvhBuilder::Config config;
+    config.max_leaf_size = 8;
+    config.traversal_cost = 100;
+    EXPECT_EQ(SahBvhBuilder::build(boxes, config).nodes.size(), 1u);
+    config.traversal_cost = 0.01f;
+    EXPECT_GT(SahBvhBuilder::build(boxes, config).nodes.size(), 1u);
+}
+
+TEST(SahBvh, separates_two_distant_groups_at_the_root) {
+    std::vector<Box> boxes = test::make_random_boxes(60, 50, 1, 0.1f);
+    for (const Box& box : test::make_random_boxes(61, 450, 1, 0.1f))
+        boxes.push_back({box.lower + Vec3f{100, 0, 0}, box.upper + Vec3f{100, 0, 0}});
+    for (const SahBvhBuilder::Config& config : make_configs()) {
+        const Bvh bvh = SahBvhBuilder::build(boxes, config);
+        const BvhNode& left = bvh.nodes[bvh.nodes[0].first];
+        EXPECT_LT(left.upper.x, 50);
+        EXPECT_GT(bvh.nodes[bvh.nodes[0].first + 1].lower.x, 50);
+    }
+}
+
+} // namespace
+} // namespace relief
