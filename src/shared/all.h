@@ -1,5 +1,6 @@
 // Every formula of this folder, for C++ instances (math/scalar.h and the SIMD instances). GLSL includes single files.
 // No include guard: each instance includes it inside a namespace of its own.
+// clang-format off
 #include "shared/lang.h"
 #include "shared/displace.h"
 #include "shared/constants.h"
@@ -7,3 +8,6 @@
 #include "shared/warp.h"
 #include "shared/camera.h"
 #include "shared/tonemap.h"
+#include "shared/ggx_albedo.h"
+#include "shared/bsdf.h"
+#include "shared/light.h"

@@ -1,0 +1,151 @@
+#include "engine/cpu/environment_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "base/parallel.h"
+#include "engine/cpu/textures.h"
+#include "math/scalar.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr uint32_t kMaxCellsX = 1024, kMaxCellsY = 512;
+
+struct Interval {
+    uint32_t index;
+    float position; ///< within the interval, [0, 1)
+};
+
+/// Interval of a cumulative distribution (0 ... 1) that u falls into; never one of zero width.
+Interval find_interval(std::span<const float> cumulative, float u) {
+    const auto above = std::upper_bound(cumulative.begin() + 1, cumulative.end() - 1, u);
+    const uint32_t index = uint32_t(above - cumulative.begin()) - 1;
+    const float width = cumulative[index + 1] - cumulative[index];
+    const float position = width > 0 ? (u - cumulative[index]) / width : 0.5f;
+    return {index, std::min(position, 0x1.fffffep-1f)};
+}
+
+/// Turns weights that start at values[1] into cumulative probabilities; returns their sum.
+double accumulate(std::span<float> values) {
+    double sum = 0;
+    for (size_t i = 1; i < values.size(); ++i) sum += values[i];
+    double running = 0;
+    values[0] = 0;
+    for (size_t i = 1; i < values.size(); ++i) {
+        running += values[i];
+        values[i] = sum > 0 ? float(running / sum) : float(i) / float(values.size() - 1);
+    }
+    values.back() = 1;
+    return sum;
+}
+
+/// Integral of the bilinearly filtered luminance over each texel of a row, in texels: so it is positive
+/// wherever the filtered radiance is.
+std::vector<double> integrate_row(const Texture& texture, uint32_t row, const Vec3f& scale) {
+    const uint32_t above = row > 0 ? row - 1 : 0, below = std::min(row + 1, texture.height - 1);
+    std::vector<double> filtered(texture.width), result(texture.width);
+    const auto brightness = [&](uint32_t x, uint32_t y) {
+        const float value = scalar::luminance(fetch_texel(texture, x, y) * scale);
+        return std::isfinite(value) ? std::max(0.0, double(value)) : 0.0;
+    };
+    for (uint32_t x = 0; x < texture.width; ++x)
+        filtered[x] = 0.125 * (brightness(x, above) + 6 * brightness(x, row) + brightness(x, below));
+    for (uint32_t x = 0; x < texture.width; ++x) {
+        const double left = filtered[(x + texture.width - 1) % texture.width];
+        const double right = filtered[(x + 1) % texture.width];
+        result[x] = 0.125 * (left + 6 * filtered[x] + right);
+    }
+    return result;
+}
+
+} // namespace
+
+EnvironmentLight::EnvironmentLight(const Environment& environment)
+    : environment_(environment), scale_(environment.color * environment.strength) {
+    const double turn = environment.rotate_degrees * std::numbers::pi / 180;
+    sin_turn_ = float(std::sin(turn)), cos_turn_ = float(std::cos(turn));
+    if (environment_.texture)
+        build_distribution();
+    else
+        mean_luminance_ = scalar::luminance(scale_);
+}
+
+void EnvironmentLight::build_distribution() {
+    const Texture& texture = *environment_.texture;
+    cells_x_ = std::min(texture.width, kMaxCellsX), cells_y_ = std::min(texture.height, kMaxCellsY);
+    rows_.assign(cells_y_ + 1, 0.0f);
+    columns_.assign(size_t(cells_y_) * (cells_x_ + 1), 0.0f);
+    parallel_for("environment_rows", cells_y_, 1, [&](size_t begin, size_t end) {
+        for (size_t cell_y = begin; cell_y < end; ++cell_y) {
+            const std::span<float> cells = std::span(columns_).subspan(cell_y * (cells_x_ + 1), cells_x_ + 1);
+            std::vector<double> sums(cells_x_, 0.0);
+            // A texel belongs to the cell of its first column and row, and to the next one where it
+            // straddles.
+            const uint32_t first = uint32_t(cell_y * texture.height / cells_y_);
+            const uint32_t last = uint32_t(((cell_y + 1) * texture.height + cells_y_ - 1) / cells_y_);
+            for (uint32_t y = first; y < last; ++y) {
+                const double sine = std::sin(std::numbers::pi * (y + 0.5) / texture.height);
+                const std::vector<double> row = integrate_row(texture, y, scale_);
+                for (uint32_t x = 0; x < texture.width; ++x) {
+                    const uint32_t cell = uint32_t(uint64_t(x) * cells_x_ / texture.width);
+                    sums[cell] += row[x] * sine;
+                    const uint32_t next = uint32_t((uint64_t(x + 1) * cells_x_ - 1) / texture.width);
+                    if (next != cell) sums[next] += row[x] * sine;
+                }
+            }
+            for (uint32_t x = 0; x < cells_x_; ++x) cells[x + 1] = float(sums[x]);
+            rows_[cell_y + 1] = float(accumulate(cells));
+        }
+    });
+    const double sum = accumulate(rows_);
+    // The texels' mean weighted by sin(theta) needs the weights' own sum: 2 / pi of the texels.
+    mean_luminance_ = float(sum / (double(texture.width) * texture.height) * std::numbers::pi / 2);
+}
+
+Vec3f EnvironmentLight::local_from_world(const Vec3f& d) const {
+    return {d.x * cos_turn_ - d.z * sin_turn_, d.y, d.x * sin_turn_ + d.z * cos_turn_};
+}
+
+Vec3f EnvironmentLight::world_from_local(const Vec3f& d) const {
+    return {d.x * cos_turn_ + d.z * sin_turn_, d.y, d.z * cos_turn_ - d.x * sin_turn_};
+}
+
+Vec3f EnvironmentLight::radiance(const Vec3f& direction) const {
+    if (!environment_.texture) return scale_;
+    return fetch_latlong(*environment_.texture, scalar::direction_to_latlong(local_from_world(direction))) *
+           scale_;
+}
+
+float EnvironmentLight::cell_probability(uint32_t column, uint32_t row) const {
+    const float* cells = columns_.data() + size_t(row) * (cells_x_ + 1);
+    return (cells[column + 1] - cells[column]) * (rows_[row + 1] - rows_[row]);
+}
+
+EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
+    if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf()};
+    const Interval row = find_interval(rows_, u.y);
+    const size_t start = size_t(row.index) * (cells_x_ + 1);
+    const Interval column = find_interval(std::span(columns_).subspan(start, cells_x_ + 1), u.x);
+    const Vec2f position{(float(column.index) + column.position) / float(cells_x_),
+                         (float(row.index) + row.position) / float(cells_y_)};
+    const Vec3f direction = world_from_local(scalar::latlong_to_direction(position));
+    const double sine = std::sin(std::numbers::pi * position.y);
+    const double density = double(cell_probability(column.index, row.index)) * cells_x_ * cells_y_;
+    return {direction, sine > 0 ? float(density / (2 * std::numbers::pi * std::numbers::pi * sine)) : 0.0f};
+}
+
+float EnvironmentLight::pdf(const Vec3f& direction) const {
+    if (!environment_.texture) return scalar::sphere_pdf();
+    const Vec2f position = scalar::direction_to_latlong(local_from_world(direction));
+    const uint32_t column = std::min(uint32_t(position.x * float(cells_x_)), cells_x_ - 1);
+    const uint32_t row = std::min(uint32_t(position.y * float(cells_y_)), cells_y_ - 1);
+    const double sine = std::sin(std::numbers::pi * position.y);
+    const double density = double(cell_probability(column, row)) * cells_x_ * cells_y_;
+    return sine > 0 ? float(density / (2 * std::numbers::pi * std::numbers::pi * sine)) : 0.0f;
+}
+
+} // namespace relief::cpu

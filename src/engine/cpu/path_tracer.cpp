@@ -1,0 +1,333 @@
+#include "engine/cpu/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/timer.h"
+#include "engine/cpu/textures.h"
+#include "math/scalar.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kSpecularRoughness = 0.2f; ///< below it a reflection keeps the ray's bias
+constexpr uint32_t kLargestBias = 3;
+constexpr int kRouletteDepth = 3; ///< bounces that are never cut short
+constexpr int kPacketEdge = 4;
+
+// Pairs of dimensions of the sampler.
+constexpr uint32_t kPixelPair = 0, kLensPair = 1, kFirstBouncePair = 2, kPairsPerBounce = 4;
+enum BouncePair : uint32_t { kPickPair, kLightPair, kBsdfPair, kRoulettePair };
+
+struct Path {
+    int x = 0, y = 0;
+    uint32_t seed = 0; ///< of the pixel
+    int depth = 0;     ///< vertices behind it: 0 for a camera ray
+    TraceRay ray;
+    TraceHit hit;
+    Vec3f throughput{1, 1, 1};
+    Vec3f previous{};   ///< the vertex that the ray left
+    float bsdf_pdf = 0; ///< with which the ray was drawn there
+    FilmSample result;
+};
+
+/// A hit made ready for shading; normals on the viewer's side.
+struct Vertex {
+    SurfacePoint point;
+    bool is_flipped;     ///< the viewer is on the side opposite to the winding
+    Material material;   ///< textures looked up
+    scalar::Basis basis; ///< about the bent shading normal
+    Vec3f wo_local;
+    scalar::Bsdf bsdf;
+};
+
+struct ShadowRay {
+    uint32_t path;
+    Vec3f contribution;
+};
+
+/// The wavefront of one tile: all paths of one sample advance together, so that their rays go to the tracer
+/// in packets.
+class TileTracer {
+  public:
+    TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters);
+    void trace_sample(int index);
+
+  private:
+    void start_paths();
+    void start_path(Path& path) const;
+    void trace_paths();
+    void shade_paths();
+    bool shade_path(uint32_t index);
+    void add_background(Path& path) const;
+    void record_first_hit(Path& path, const Vertex& vertex) const;
+    void add_emission(Path& path, const Vertex& vertex) const;
+    void sample_light(uint32_t index, const Vertex& vertex);
+    bool continue_path(Path& path, const Vertex& vertex) const;
+    bool survives_roulette(Path& path) const;
+    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) const;
+    void trace_shadow_rays();
+    void finish_paths();
+    Vertex make_vertex(const Path& path) const;
+    Vec2f random_pair(const Path& path, BouncePair pair) const;
+
+    const Tracer& tracer_;
+    const LightSet& lights_;
+    const RenderSettings& settings_;
+    Film& film_;
+    TileCounters& counters_;
+    scalar::CameraFrame camera_;
+    uint32_t sample_index_ = 0;
+    std::vector<Path> paths_;      ///< in packets of kPacketEdge squared pixels
+    std::vector<uint32_t> active_; ///< paths still on their way, in order
+    std::vector<TraceRay> rays_;
+    std::vector<TraceHit> hits_;
+    std::vector<TraceRay> shadow_rays_;
+    std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
+    std::vector<uint8_t> occluded_;
+};
+
+scalar::CameraFrame make_camera(const PreparedScene& scene) {
+    const Camera& camera = scene.camera;
+    const float fov = camera.fov_degrees * std::numbers::pi_v<float> / 180;
+    scalar::CameraFrame frame = scalar::make_camera_frame(camera.from, camera.to, camera.up, fov,
+                                                          {float(scene.width), float(scene.height)});
+    frame.aperture_radius = camera.aperture_radius;
+    frame.focus_distance = camera.focus_distance;
+    return frame;
+}
+
+TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
+    : tracer_(scene.tracer),
+      lights_(scene.lights),
+      settings_(scene.settings),
+      film_(film),
+      counters_(counters),
+      camera_(make_camera(scene.tracer.scene())) {
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
+            for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
+                for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x) {
+                    Path path;
+                    path.x = x, path.y = y;
+                    path.seed = scalar::make_pixel_seed(settings_.seed, uint32_t(x), uint32_t(y));
+                    paths_.push_back(path);
+                }
+}
+
+void TileTracer::trace_sample(int index) {
+    sample_index_ = uint32_t(index);
+    start_paths();
+    while (!active_.empty()) {
+        trace_paths();
+        shade_paths();
+        trace_shadow_rays();
+    }
+    finish_paths();
+}
+
+void TileTracer::start_paths() {
+    active_.clear();
+    for (uint32_t i = 0; i < paths_.size(); ++i) {
+        start_path(paths_[i]);
+        active_.push_back(i);
+    }
+    counters_.camera_rays += paths_.size();
+}
+
+void TileTracer::start_path(Path& path) const {
+    const Vec2f jitter = scalar::sobol_pair(path.seed, sample_index_, kPixelPair);
+    const Vec2f lens = scalar::sobol_pair(path.seed, sample_index_, kLensPair);
+    const Vec2f position{float(path.x) + jitter.x, float(path.y) + jitter.y};
+    const scalar::CameraRay ray = scalar::make_camera_ray(camera_, position, lens);
+    path.depth = 0;
+    path.ray = {ray.origin, 0, ray.direction, kInfinity, 0};
+    path.throughput = {1, 1, 1};
+    path.result = {};
+    path.result.cost = 1;
+}
+
+void TileTracer::trace_paths() {
+    rays_.clear();
+    for (uint32_t i : active_) rays_.push_back(paths_[i].ray);
+    hits_.assign(active_.size(), TraceHit{});
+    tracer_.closest_hits(rays_, hits_);
+    for (size_t k = 0; k < active_.size(); ++k) paths_[active_[k]].hit = hits_[k];
+}
+
+void TileTracer::shade_paths() {
+    const Timer timer;
+    shadow_rays_.clear();
+    shadows_.clear();
+    const auto is_finished = [this](uint32_t i) { return !shade_path(i); };
+    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished), active_.end());
+    counters_.bounce_rays += active_.size();
+    counters_.shade_s += timer.seconds();
+}
+
+/// Adds the light of one vertex; true when the path goes on, its next ray set.
+bool TileTracer::shade_path(uint32_t index) {
+    Path& path = paths_[index];
+    add_background(path);
+    if (!path.hit.is_hit()) return false;
+    const Vertex vertex = make_vertex(path);
+    if (path.depth == 0) record_first_hit(path, vertex);
+    add_emission(path, vertex);
+    sample_light(index, vertex);
+    return path.depth < settings_.bounces && continue_path(path, vertex);
+}
+
+void TileTracer::add_background(Path& path) const {
+    if (path.depth > 0)
+        path.result.radiance +=
+            path.throughput * lights_.gather(path.previous, path.ray.direction, path.hit.t, path.bsdf_pdf);
+    else if (!path.hit.is_hit())
+        path.result.radiance += lights_.environment_radiance(path.ray.direction);
+}
+
+Vertex TileTracer::make_vertex(const Path& path) const {
+    const PreparedScene& scene = tracer_.scene();
+    Vertex v;
+    v.point = tracer_.make_surface_point(path.hit);
+    v.material = scene.materials[scene.instances[path.hit.instance].material];
+    if (v.material.base_color_texture)
+        v.material.base_color =
+            v.material.base_color * fetch_texture(*v.material.base_color_texture, v.point.uv);
+    if (v.material.roughness_texture)
+        v.material.roughness *= fetch_texture(*v.material.roughness_texture, v.point.uv).x;
+    v.material.base_color = max(Vec3f{}, min(v.material.base_color, {1, 1, 1}));
+    v.material.roughness = std::clamp(v.material.roughness, 0.0f, 1.0f);
+    const Vec3f wo = -path.ray.direction;
+    v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
+    if (v.is_flipped) {
+        v.point.geometric_normal = -v.point.geometric_normal;
+        v.point.shading_normal = -v.point.shading_normal;
+    }
+    v.basis = scalar::make_basis(scalar::bend_normal(v.point.shading_normal, v.point.geometric_normal, wo));
+    v.wo_local = scalar::to_local(v.basis, wo);
+    // Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
+    v.wo_local = normalize({v.wo_local.x, v.wo_local.y, std::max(v.wo_local.z, 1e-4f)});
+    v.bsdf = scalar::make_bsdf(
+        {v.material.base_color, v.material.roughness, v.material.metallic, v.material.ior}, v.wo_local.z);
+    return v;
+}
+
+void TileTracer::record_first_hit(Path& path, const Vertex& vertex) const {
+    path.result.alpha = 1;
+    path.result.depth = path.hit.t;
+    path.result.shading_normal = vertex.point.shading_normal;
+    path.result.geometric_normal = vertex.point.geometric_normal;
+    path.result.position = vertex.point.position;
+    path.result.albedo = vertex.material.base_color;
+    path.result.uv = vertex.point.uv;
+    path.result.id = path.hit.instance + 1;
+}
+
+void TileTracer::add_emission(Path& path, const Vertex& vertex) const {
+    const Vec3f& emission = vertex.material.emission;
+    if (emission == Vec3f{}) return;
+    const float light_pdf = path.depth > 0 ? lights_.emitter_pdf(path.previous, vertex.point) : 0.0f;
+    const float weight = path.depth > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
+    path.result.radiance += path.throughput * emission * weight;
+}
+
+/// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
+/// there.
+void TileTracer::sample_light(uint32_t index, const Vertex& vertex) {
+    Path& path = paths_[index];
+    const SurfacePoint& point = vertex.point;
+    const Vec2f pick = random_pair(path, kPickPair), u = random_pair(path, kLightPair);
+    const float u_emitter = random_pair(path, kRoulettePair).y; // its x decides on the roulette
+    const auto light = lights_.draw(point.position, path.hit.bias, {pick.x, u_emitter, u});
+    if (!light || dot(point.geometric_normal, light->direction) <= 0) return;
+    const Vec3f wi = scalar::to_local(vertex.basis, light->direction);
+    const scalar::BsdfValue bsdf = scalar::evaluate_bsdf(vertex.bsdf, vertex.wo_local, wi);
+    const bool is_last = path.depth == settings_.bounces;
+    const float weight = is_last ? 1.0f : scalar::power_heuristic(light->pdf, bsdf.pdf);
+    const Vec3f contribution = path.throughput * bsdf.value * light->weight * weight;
+    if (contribution == Vec3f{} || !is_finite(contribution)) return;
+    TraceRay ray{tracer_.offset_origin(point, light->direction), 0, light->direction, light->distance,
+                 path.hit.bias};
+    if (light->emitter) {
+        const Vec3f to = tracer_.offset_origin(*light->emitter, -light->direction) - ray.origin;
+        ray.t_max = length(to) * (1 - 1e-6f);
+        ray.direction = normalize(to);
+    }
+    shadow_rays_.push_back(ray);
+    shadows_.push_back({index, contribution});
+    path.result.cost += 1;
+}
+
+bool TileTracer::continue_path(Path& path, const Vertex& vertex) const {
+    const float u_lobe = random_pair(path, kPickPair).y;
+    const scalar::BsdfSample drawn =
+        scalar::sample_bsdf(vertex.bsdf, vertex.wo_local, u_lobe, random_pair(path, kBsdfPair));
+    const Vec3f direction = normalize(scalar::from_local(vertex.basis, drawn.direction));
+    if (drawn.weight == Vec3f{} || dot(vertex.point.geometric_normal, direction) <= 0) return false;
+    path.throughput = path.throughput * drawn.weight;
+    if (!is_finite(path.throughput) || !survives_roulette(path)) return false;
+    path.previous = vertex.point.position;
+    path.bsdf_pdf = drawn.pdf;
+    start_bounce_ray(path, vertex, direction,
+                     !drawn.is_specular || vertex.material.roughness >= kSpecularRoughness);
+    path.result.cost += 1;
+    ++path.depth;
+    return true;
+}
+
+/// Ends dim paths at random and makes up for them (Arvo and Kirk 1990).
+bool TileTracer::survives_roulette(Path& path) const {
+    if (path.depth < kRouletteDepth) return true;
+    const float brightest = std::max({path.throughput.x, path.throughput.y, path.throughput.z});
+    const float probability = std::min(brightest, 1.0f);
+    if (random_pair(path, kRoulettePair).x >= probability) return false;
+    path.throughput *= 1 / probability;
+    return true;
+}
+
+/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
+void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction,
+                                  bool is_wide) const {
+    const TraceHit& hit = path.hit;
+    uint32_t bias = hit.bias;
+    Vec3f origin = tracer_.offset_origin(vertex.point, direction);
+    if (is_wide && settings_.level == kAutoLevel && bias < kLargestBias) {
+        const SurfacePoint coarse = tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1);
+        const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
+        if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
+    }
+    path.ray = {origin, 0, direction, kInfinity, bias};
+}
+
+void TileTracer::trace_shadow_rays() {
+    occluded_.assign(shadow_rays_.size(), 0);
+    tracer_.any_hits(shadow_rays_, occluded_);
+    for (size_t k = 0; k < shadows_.size(); ++k)
+        if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
+    counters_.shadow_rays += shadow_rays_.size();
+}
+
+void TileTracer::finish_paths() {
+    const Timer timer;
+    for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
+    counters_.film_s += timer.seconds();
+}
+
+Vec2f TileTracer::random_pair(const Path& path, BouncePair pair) const {
+    return scalar::sobol_pair(path.seed, sample_index_,
+                              kFirstBouncePair + uint32_t(path.depth) * kPairsPerBounce + pair);
+}
+
+} // namespace
+
+void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
+                TileCounters& counters) {
+    TileTracer tracer(scene, film, tile, counters);
+    for (int k = samples.first; k < samples.first + samples.count; ++k) tracer.trace_sample(k);
+}
+
+} // namespace relief::cpu
