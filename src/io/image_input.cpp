@@ -55,9 +55,11 @@ void check_extension(const std::string& name) {
 
 void open(ImageInput& image, uint64_t file_bytes) {
     const OIIO::ImageSpec config = make_raw_config();
-    image.input = OIIO::ImageInput::open(image.name, &config, image.proxy.get());
+    image.input = OIIO::ImageInput::create(image.name, false, &config, image.proxy.get());
     if (!image.input) image.fail("cannot be opened: " + OIIO::geterror(), kDamagedHint);
-    image.spec = image.input->spec();
+    if (image.proxy) image.input->set_ioproxy(image.proxy.get());
+    if (!image.input->open(image.name, image.spec, config))
+        image.fail("cannot be opened: " + image.input->geterror(), kDamagedHint);
     check_size(image, file_bytes);
 }
 
