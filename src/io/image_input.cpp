@@ -39,7 +39,7 @@ void check_size(const ImageInput& image, uint64_t file_bytes) {
             fmt::format("the limit is {} a side and 2^31 texels", kMaxSide));
     // No supported compression packs constant pixels tighter than this; a longer claim would only exhaust
     // memory.
-    constexpr uint64_t kBestCompression = 65536, kSlack = uint64_t(16) << 20;
+    constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20;
     if (uint64_t(spec.image_bytes()) > file_bytes * kBestCompression + kSlack)
         image.fail(
             fmt::format("claims {} x {} pixels in a file of {} bytes", spec.width, spec.height, file_bytes),
