@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <random>
 
 #include "engine/cpu/tracer.h"
@@ -98,6 +99,8 @@ struct Case {
     int level;
     uint32_t bias;
 };
+
+void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
 
 class TracerTest : public testing::TestWithParam<Case> {};
 
