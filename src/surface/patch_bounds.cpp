@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "surface/patch_samples.h"
+#include "surface/texels.h"
 
 namespace relief {
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double kUnit = 0x1p-24;       // half an ulp of 1: relative error of a float operation
 constexpr double kUnderflow = 0x1p-140; // more than the absolute error of a few operations on denormals
 constexpr int kTexelsOfPart = 8;        // parts of a patch are not made smaller than this
+constexpr int64_t kFewTexels = 256;     // read one by one
 constexpr int kMostParts = 4;           // a side
 
 struct Interval {
@@ -31,7 +33,7 @@ Interval operator*(const Interval& a, double b) {
     return b >= 0 ? Interval{a.low * b, a.high * b} : Interval{a.high * b, a.low * b};
 }
 
-/// A vertex in double precision; `size` bounds the coordinates that its position was blended from.
+/// A vertex in double precision.
 struct Corner {
     std::array<double, 3> position;
     std::array<std::array<double, 3>, 3> frame; // [coordinate][t, b, n]
@@ -81,6 +83,31 @@ std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, d
             int64_t(std::floor(coordinate.high * size - 0.5 + slack)) + 1};
 }
 
+/// Range of the raw channels over a rectangle of texels: from the texels themselves where they are few, since
+/// the blocks of the pyramid would widen a small rectangle to twice its size.
+ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::Tile& tile,
+                        const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
+    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
+    const Texture& texture = *tile.texture;
+    if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
+        return tile.pyramid->query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    ChannelRange range{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (int64_t y = rows[0]; y <= rows[1]; ++y) {
+        const int64_t row = wrap_index(y, texture.height, map.wrap);
+        for (int64_t x = columns[0]; x <= columns[1]; ++x) {
+            const int64_t column = wrap_index(x, texture.width, map.wrap);
+            const std::array<float, 3> texel =
+                row < 0 || column < 0 ? middle : read_texel(texture, column, row);
+            for (int c = 0; c < 3; ++c) {
+                range.low[c] = std::min(range.low[c], texel[c]);
+                range.high[c] = std::max(range.high[c], texel[c]);
+            }
+        }
+    }
+    return range;
+}
+
 /// Interval of each channel of d over a rectangle of uv.
 std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Interval& u, const Interval& v) {
     const DisplacementMap& map = *footprint.map;
@@ -91,8 +118,7 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     const auto columns = find_texels(u, footprint.largest_u, tile.texture->width);
     const auto rows = find_texels(row, footprint.largest_v, tile.texture->height);
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const ChannelRange range =
-        tile.pyramid->query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+    const ChannelRange range = find_range(map, tile, columns, rows);
     std::array<Interval, 3> values;
     for (int c = 0; c < 3; ++c) {
         const Interval raw{range.low[c], range.high[c]};

@@ -70,7 +70,7 @@ void expect_tile_boxes_hold(const Surface& surface, uint32_t patch, const PatchL
 
 TEST(Bounds, hold_every_corner_of_every_cell) {
     std::mt19937 random(11);
-    for (uint32_t round = 0; round < 70; ++round) {
+    for (uint32_t round = 0; round < 140; ++round) {
         const Displacement displacement = make_random_displacement(round, random);
         Mesh mesh = test::make_random_grid(2, 2, 0.5f, round);
         if (round % 5 == 0)

@@ -1,0 +1,24 @@
+// The verbs of the command line: each adds its options to a subcommand and returns what runs it.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace relief::cli {
+
+/// Runs a verb whose options have been parsed and returns the exit code; bad input and failures are
+/// relief::Error.
+using Command = std::function<int()>;
+
+Command add_render(CLI::App& verb);
+Command add_inspect(CLI::App& verb);
+Command add_scene(CLI::App& verb);
+Command add_compare(CLI::App& verb);
+Command add_merge(CLI::App& verb);
+Command add_devices(CLI::App& verb);
+
+/// Parses the command line, runs its verb, reports errors on stderr. Returns the exit code.
+int run(int argument_count, const char* const* arguments);
+
+} // namespace relief::cli

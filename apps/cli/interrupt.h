@@ -1,0 +1,12 @@
+// Ctrl-C and SIGTERM while a picture is made: the first asks for an orderly end, the second ends at once.
+#pragma once
+
+namespace relief::cli {
+
+/// From here on the first SIGINT or SIGTERM is only noted. Call it when there is something worth saving.
+void catch_interrupts();
+
+/// The signal that was caught, 0 for none. Any thread.
+int get_interrupt();
+
+} // namespace relief::cli

@@ -1,0 +1,3 @@
+#include "commands.h"
+
+int main(int argument_count, char** arguments) { return relief::cli::run(argument_count, arguments); }

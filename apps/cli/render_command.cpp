@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "exit_codes.h"
+#include "interrupt.h"
+#include "output.h"
+#include "pixel.h"
+#include "progress.h"
+#include "relief/error.h"
+#include "relief/io.h"
+#include "relief/render.h"
+#include "render_options.h"
+#include "statistics_json.h"
+
+namespace relief::cli {
+
+namespace {
+
+double get_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Scene load_input(const RenderOptions& options) {
+    return is_mesh_file(options.input) ? load_mesh_scene(options.input, options.mesh)
+                                       : load_scene(options.input);
+}
+
+void add_metadata(Image& image, const RenderSettings& settings, uint64_t scene_hash) {
+    image.metadata["relief:version"] = RELIEF_VERSION;
+    image.metadata["relief:seed"] = std::to_string(settings.seed);
+    image.metadata["relief:samples"] =
+        fmt::format("{}:{}", settings.first_sample, settings.first_sample + settings.spp);
+    image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+}
+
+void write_statistics(const std::filesystem::path& file, const Statistics& statistics,
+                      const RenderSettings& settings) {
+    std::ofstream stream(file);
+    stream << make_statistics_json(statistics, settings).dump(2) << '\n';
+    stream.close();
+    if (!stream) throw Error(ErrorKind::failed, {"the statistics could not be written", file.string(), ""});
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
+}
+
+void print_summary(const Statistics& s, const RenderSettings& settings) {
+    const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
+    fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
+               s.triangles, s.instances, s.engine, s.isa, s.threads);
+    fmt::print(stderr, "{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
+               settings.height, settings.spp, rays, s.render_s,
+               s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
+               s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
+}
+
+/// Adds what the reader noticed and the renderer did not repeat.
+void add_missing_warnings(Statistics& statistics, const std::vector<std::string>& warnings) {
+    std::vector<std::string>& known = statistics.warnings;
+    for (const std::string& warning : warnings) {
+        if (std::find(known.begin(), known.end(), warning) == known.end()) known.push_back(warning);
+    }
+}
+
+int get_exit_code(const RenderOptions& options, const RenderResult& result, const Saved& saved) {
+    if (saved.is_elsewhere) return int(ErrorKind::failed);
+    if (!result.is_complete && get_interrupt() != 0) return kExitSignalBase + get_interrupt();
+    if (options.is_strict && !result.statistics.warnings.empty()) return kExitWarnings;
+    return kExitDone;
+}
+
+int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene, double start,
+                   double load_s) {
+    const std::vector<std::string> reader_warnings = scene.warnings;
+    const uint64_t scene_hash = scene.hash;
+    catch_interrupts();
+    RenderResult result;
+    {
+        ProgressPrinter progress(options.is_quiet ? ProgressStyle::none : options.progress);
+        result = render(std::move(scene), settings, &progress);
+    }
+    Statistics& statistics = result.statistics;
+    add_missing_warnings(statistics, reader_warnings);
+    if (!options.is_quiet) print_warnings(statistics.warnings);
+    add_metadata(result.image, settings, scene_hash);
+    const double write_start = get_seconds();
+    const Saved saved = save_with_fallback(result.image, options.output, get_fallback_folders(), write_image);
+    statistics.load_s = load_s;
+    statistics.write_s = get_seconds() - write_start;
+    statistics.total_s = get_seconds() - start;
+    if (options.is_verbose) print_summary(statistics, settings);
+    fmt::print("wrote {}\n", saved.file.string());
+    if (!options.statistics_file.empty()) write_statistics(options.statistics_file, statistics, settings);
+    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    return get_exit_code(options, result, saved);
+}
+
+int run_render(RenderOptions& options) {
+    const double start = get_seconds();
+    complete_render_options(options);
+    Scene scene = load_input(options);
+    const double load_s = get_seconds() - start;
+    const RenderSettings settings = make_settings(options, scene.picture);
+    if (!options.pixel) return render_picture(options, settings, std::move(scene), start, load_s);
+    explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
+    if (!options.is_quiet) print_warnings(scene.warnings);
+    return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
+}
+
+} // namespace
+
+Command add_render(CLI::App& verb) {
+    const auto options = std::make_shared<RenderOptions>();
+    add_render_options(verb, *options);
+    return [options] { return run_render(*options); };
+}
+
+} // namespace relief::cli

@@ -1,0 +1,273 @@
+#include "render_options.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "values.h"
+
+namespace relief::cli {
+
+namespace {
+
+constexpr int kMaxSize = 65536;
+constexpr int kMaxSamples = 1 << 20;
+constexpr int kMaxBounces = 1024;
+constexpr int kMaxThreads = 4096;
+constexpr int kMaxCacheMegabytes = 1 << 20;
+constexpr double kLargestFactor = 1e9;
+
+template <class T> using Word = std::pair<std::string_view, T>;
+
+constexpr std::array<std::string_view, 10> kLayers = {"depth", "N",  "Ng",      "P",        "albedo",
+                                                      "uv",    "id", "samples", "variance", "cost"};
+
+/// Adds an option whose text goes to `parse`; its value is named `value` in the help.
+template <class Parse>
+CLI::Option* add(CLI::App& verb, const std::string& name, const char* value, const char* help, Parse parse) {
+    return verb.add_option_function<std::string>(name, parse, help)->type_name(value);
+}
+
+void add_picture_options(CLI::App& verb, RenderOptions& o) {
+    add(verb, "-o", "FILE", "picture: .exr (layers), .hdr or .png; default: the input's name as .exr",
+        [&o](const std::string& text) { o.output = text; });
+    add(verb, "--size", "WxH", "pixels; default 1280x720", [&o](const std::string& text) {
+        const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxSize});
+        o.given.width = int(size[0]), o.given.height = int(size[1]);
+    });
+    add(verb, "--spp", "N", "samples a pixel; default 64",
+        [&o](const std::string& text) { o.given.spp = int(parse_integer("--spp", text, 1, kMaxSamples)); });
+    add(verb, "--bounces", "N", "path length; 0: direct light only; default 4",
+        [&o](const std::string& text) {
+            o.given.bounces = int(parse_integer("--bounces", text, 0, kMaxBounces));
+        });
+    add(verb, "--seed", "N", "of the random numbers; default 0", [&o](const std::string& text) {
+        o.given.seed = uint32_t(parse_integer("--seed", text, 0, 0xffffffffll));
+    });
+    add(verb, "--layers", "LIST", "of depth,N,Ng,P,albedo,uv,id,samples,variance,cost",
+        [&o](const std::string& text) {
+            for (const std::string& layer : split(text, ',')) {
+                if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
+                    throw Error(ErrorKind::usage, {fmt::format("unknown layer '{}'", layer), "--layers",
+                                                   suggest_word(layer, kLayers)});
+                o.settings.layers.push_back(layer);
+            }
+        });
+}
+
+void add_part_options(CLI::App& verb, RenderOptions& o) {
+    add(verb, "--crop", "x0,y0,x1,y1", "part of the picture, half open", [&o](const std::string& text) {
+        const std::vector<int64_t> c = parse_integers("--crop", text, ',', 4, {0, kMaxSize});
+        if (c[0] >= c[2] || c[1] >= c[3]) refuse_value("--crop", text, "a window with x0 < x1 and y0 < y1");
+        o.settings.crop = {int(c[0]), int(c[1]), int(c[2]), int(c[3])};
+    });
+    add(verb, "--tile", "i/n", "band i of n bands of rows, i from 0 to n - 1", [&o](const std::string& text) {
+        const std::vector<int64_t> tile = parse_integers("--tile", text, '/', 2, {0, kMaxSize});
+        if (tile[0] >= tile[1]) refuse_value("--tile", text, "i/n with i from 0 to n - 1");
+        o.tile = Tile{int(tile[0]), int(tile[1])};
+    });
+    add(verb, "--samples", "A:B", "samples A to B - 1 of each pixel", [&o](const std::string& text) {
+        const std::vector<int64_t> range = parse_integers("--samples", text, ':', 2, {0, kMaxSamples});
+        if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
+        o.samples = {int(range[0]), int(range[1])};
+    });
+    add(verb, "--pixel", "x,y", "trace one pixel and explain it; no picture is written",
+        [&o](const std::string& text) {
+            const std::vector<int64_t> pixel = parse_integers("--pixel", text, ',', 2, {0, kMaxSize - 1});
+            o.pixel = {int(pixel[0]), int(pixel[1])};
+        });
+}
+
+void add_mesh_options(CLI::App& verb, RenderOptions& o) {
+    const auto mesh = [&](const char* name, const char* value, const char* help, auto parse) {
+        add(verb, name, value, help, [&o, name, parse](const std::string& text) {
+            o.mesh_only.push_back(name);
+            parse(text);
+        })->group("With a mesh in place of a scene");
+    };
+    mesh("--vdm", "MAP", "displacement map; may hold <UDIM>",
+         [&o](const std::string& text) { o.mesh.displacement_map = text; });
+    mesh("--preset", "NAME", "what wrote the map: blender-brush, mudbox, ...",
+         [&o](const std::string& text) { o.mesh.preset = text; });
+    mesh("--space", "NAME", "tangent, object or world",
+         [&o](const std::string& text) { o.mesh.space = text; });
+    mesh("--axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...",
+         [&o](const std::string& text) { o.mesh.axes = text; });
+    mesh("--midlevel", "F", "value that means no displacement", [&o](const std::string& text) {
+        o.mesh.midlevel = float(parse_number("--midlevel", text, -kLargestFactor, kLargestFactor));
+    });
+    mesh("--vdm-scale", "F", "factor on the displacement", [&o](const std::string& text) {
+        o.mesh.scale = float(parse_number("--vdm-scale", text, -kLargestFactor, kLargestFactor));
+    });
+    mesh("--env", "MAP", "environment picture", [&o](const std::string& text) { o.mesh.environment = text; });
+    verb.add_flag_callback(
+            "--flip-v",
+            [&o] {
+                o.mesh.flip_v = true;
+                o.mesh_only.push_back("--flip-v");
+            },
+            "row 0 of the map is v = 0")
+        ->group("With a mesh in place of a scene");
+}
+
+void add_level_options(CLI::App& verb, RenderOptions& o) {
+    add(verb, "--surface", "NAME", "direct (default) or tessellated up front", [&o](const std::string& text) {
+        constexpr std::array<Word<SurfaceMode>, 2> words{
+            {{"direct", SurfaceMode::direct}, {"tessellated", SurfaceMode::tessellated}}};
+        o.settings.surface = parse_word("--surface", text, words);
+    });
+    add(verb, "--level", "auto|N", "from the size on screen, or 2^N cells a side",
+        [&o](const std::string& text) {
+            if (text == "auto") {
+                o.settings.level = kAutoLevel;
+                return;
+            }
+            try {
+                o.settings.level = int(parse_integer("--level", text, 0, kMaxLevel));
+            } catch (const Error&) {
+                refuse_value("--level", text,
+                             fmt::format("'auto' or a whole number from 0 to {}", kMaxLevel));
+            }
+        });
+    add(verb, "--pixel-error", "F", "cell size aimed at, pixels; default 1", [&o](const std::string& text) {
+        o.settings.pixel_error = float(parse_number("--pixel-error", text, 1e-3, 1e3));
+    });
+    add(verb, "--lod", "NAME", "field (default), or ray: a level for each ray",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<LodRule>, 2> words{{{"field", LodRule::field}, {"ray", LodRule::ray}}};
+            o.settings.lod = parse_word("--lod", text, words);
+        });
+    add(verb, "--leaf", "NAME", "exact (default) triangles, or their box", [&o](const std::string& text) {
+        constexpr std::array<Word<LeafKind>, 2> words{{{"exact", LeafKind::exact}, {"box", LeafKind::box}}};
+        o.settings.leaf = parse_word("--leaf", text, words);
+    });
+}
+
+void add_machine_options(CLI::App& verb, RenderOptions& o) {
+    add(verb, "--engine", "NAME", "cpu", [](const std::string& text) {
+        parse_word("--engine", text, std::array<Word<int>, 1>{{{"cpu", 0}}});
+    });
+    add(verb, "--structure", "NAME", "of the scene: bvh", [](const std::string& text) {
+        parse_word("--structure", text, std::array<Word<int>, 1>{{{"bvh", 0}}});
+    });
+    add(verb, "--traversal", "NAME", "how it is walked: wide", [](const std::string& text) {
+        parse_word("--traversal", text, std::array<Word<int>, 1>{{{"wide", 0}}});
+    });
+    add(verb, "--threads", "N", "0: all cores (default)", [&o](const std::string& text) {
+        o.settings.threads = int(parse_integer("--threads", text, 0, kMaxThreads));
+    });
+    add(verb, "--isa", "NAME", "best (default), avx512, avx2, sse4, neon, scalar",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<Isa>, 6> words{{{"best", Isa::best},
+                                                      {"avx512", Isa::avx512},
+                                                      {"avx2", Isa::avx2},
+                                                      {"sse4", Isa::sse4},
+                                                      {"neon", Isa::neon},
+                                                      {"scalar", Isa::scalar}}};
+            o.settings.isa = parse_word("--isa", text, words);
+        });
+    add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 256",
+        [&o](const std::string& text) {
+            o.settings.bottom_cache_bytes =
+                size_t(parse_integer("--bottom-cache", text, 0, kMaxCacheMegabytes)) << 20;
+        });
+}
+
+void add_report_options(CLI::App& verb, RenderOptions& o) {
+    add(verb, "--stats", "FILE", "write statistics as JSON",
+        [&o](const std::string& text) { o.statistics_file = text; });
+    add(verb, "--progress", "NAME", "auto (default), bar, plain, json, none", [&o](const std::string& text) {
+        constexpr std::array<Word<ProgressStyle>, 5> words{{{"auto", ProgressStyle::automatic},
+                                                            {"bar", ProgressStyle::bar},
+                                                            {"plain", ProgressStyle::plain},
+                                                            {"json", ProgressStyle::json},
+                                                            {"none", ProgressStyle::none}}};
+        o.progress = parse_word("--progress", text, words);
+    });
+    verb.add_flag("-q", o.is_quiet, "no progress, no warnings on stderr")
+        ->excludes(verb.add_flag("-v", o.is_verbose, "say what was rendered and what it cost"));
+    verb.add_flag("--strict", o.is_strict, "exit 6 when there were warnings");
+}
+
+bool is_existing_folder(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(folder.empty() ? "." : folder, ignored);
+}
+
+} // namespace
+
+void add_render_options(CLI::App& verb, RenderOptions& o) {
+    verb.add_option_function<std::string>(
+            "input", [&o](const std::string& text) { o.input = text; }, "scene file (.json) or mesh")
+        ->type_name("SCENE|MESH");
+    add_picture_options(verb, o);
+    add_part_options(verb, o);
+    add_level_options(verb, o);
+    add_machine_options(verb, o);
+    add_report_options(verb, o);
+    add_mesh_options(verb, o);
+}
+
+void complete_render_options(RenderOptions& o) {
+    if (o.input.empty())
+        throw Error(ErrorKind::usage,
+                    {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
+    if (!is_mesh_file(o.input) && !o.mesh_only.empty())
+        throw Error(ErrorKind::usage,
+                    {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
+                     o.input.string(), "the scene file says this under 'displacements' and 'environment'"});
+    if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
+                    o.settings.crop != Window{} || !o.settings.layers.empty()))
+        throw Error(ErrorKind::usage, {"--pixel explains one pixel and makes no picture", "--pixel",
+                                       "leave out -o, --stats, --crop, --tile, --samples and --layers"});
+    if (o.pixel) return;
+    if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
+    if (get_lower_extension(o.output) == ".exr") {
+        std::vector<std::string>& layers = o.settings.layers;
+        if (std::find(layers.begin(), layers.end(), "samples") == layers.end()) layers.push_back("samples");
+    } else if (!o.settings.layers.empty()) {
+        throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
+    }
+    check_writable(o.output);
+    if (!o.statistics_file.empty() && !is_existing_folder(o.statistics_file.parent_path()))
+        throw Error(ErrorKind::failed, {"its folder does not exist", o.statistics_file.string(), ""});
+}
+
+Window make_tile_window(const Window& window, const Tile& tile) {
+    const int64_t rows = window.y1 - window.y0;
+    if (tile.count > rows)
+        refuse_value("--tile", fmt::format("{}/{}", tile.index, tile.count),
+                     fmt::format("possible: there are only {} rows", rows));
+    Window band = window;
+    band.y0 = window.y0 + int(rows * tile.index / tile.count);
+    band.y1 = window.y0 + int(rows * (tile.index + 1) / tile.count);
+    return band;
+}
+
+RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& picture) {
+    RenderSettings s = o.settings;
+    s.width = o.given.width.value_or(picture.width.value_or(s.width));
+    s.height = o.given.height.value_or(picture.height.value_or(s.height));
+    s.spp = o.given.spp.value_or(picture.spp.value_or(s.spp));
+    s.bounces = o.given.bounces.value_or(picture.bounces.value_or(s.bounces));
+    s.seed = o.given.seed.value_or(picture.seed.value_or(s.seed));
+    if (o.samples) {
+        if (o.given.spp && o.samples->second > *o.given.spp)
+            refuse_value("--samples", fmt::format("{}:{}", o.samples->first, o.samples->second),
+                         fmt::format("inside the {} samples of --spp", *o.given.spp));
+        s.first_sample = o.samples->first;
+        s.spp = o.samples->second - o.samples->first;
+    }
+    if (s.crop.x1 > s.width || s.crop.y1 > s.height)
+        refuse_value("--crop", fmt::format("{},{},{},{}", s.crop.x0, s.crop.y0, s.crop.x1, s.crop.y1),
+                     fmt::format("inside the picture of {}x{} pixels", s.width, s.height));
+    if (o.tile)
+        s.crop = make_tile_window(s.crop == Window{} ? Window{0, 0, s.width, s.height} : s.crop, *o.tile);
+    if (o.pixel && (o.pixel->first >= s.width || o.pixel->second >= s.height))
+        refuse_value("--pixel", fmt::format("{},{}", o.pixel->first, o.pixel->second),
+                     fmt::format("inside the picture of {}x{} pixels", s.width, s.height));
+    return s;
+}
+
+} // namespace relief::cli

@@ -1,0 +1,63 @@
+#include "statistics_json.h"
+
+namespace relief::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json make_times(const Statistics& s) {
+    return {{"load", s.load_s},     {"prepare", s.prepare_s}, {"first_image", s.first_image_s},
+            {"render", s.render_s}, {"write", s.write_s},     {"total", s.total_s}};
+}
+
+Json make_stages(const Statistics& s) {
+    return {
+        {"top_traversal", s.top_traversal_s},       {"sort", s.sort_s},   {"bottom_build", s.bottom_build_s},
+        {"bottom_traversal", s.bottom_traversal_s}, {"shade", s.shade_s}, {"film", s.film_s}};
+}
+
+Json make_rays(const Statistics& s) {
+    const uint64_t total = s.camera_rays + s.shadow_rays + s.bounce_rays;
+    return {{"camera", s.camera_rays},
+            {"shadow", s.shadow_rays},
+            {"bounce", s.bounce_rays},
+            {"total", total},
+            {"per_second", s.render_s > 0 ? double(total) / s.render_s : 0.0}};
+}
+
+Json make_memory(const Statistics& s) {
+    const uint64_t total = s.geometry_bytes + s.structures_bytes + s.displacement_bytes +
+                           s.bottom_cache_bytes + s.ray_buffers_bytes;
+    return {{"geometry", s.geometry_bytes},          {"structures", s.structures_bytes},
+            {"displacement", s.displacement_bytes},  {"bottom_cache", s.bottom_cache_bytes},
+            {"ray_buffers", s.ray_buffers_bytes},    {"total", total},
+            {"peak_resident", s.peak_resident_bytes}};
+}
+
+} // namespace
+
+Json make_statistics_json(const Statistics& s, const RenderSettings& settings) {
+    Json root;
+    root["relief"] = {{"version", RELIEF_VERSION}};
+    root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
+    root["image"] = {{"width", settings.width},
+                     {"height", settings.height},
+                     {"spp", settings.spp},
+                     {"bounces", settings.bounces}};
+    root["scene"] = {{"meshes", s.meshes},
+                     {"instances", s.instances},
+                     {"patches", s.patches},
+                     {"triangles", s.triangles},
+                     {"displacement_texels", s.displacement_texels}};
+    root["time_s"] = make_times(s);
+    root["stage_s"] = make_stages(s);
+    root["rays"] = make_rays(s);
+    root["pairs"] = {{"emitted", s.pairs_emitted}, {"with_hit", s.pairs_with_hit}};
+    root["bottom"] = {{"built", s.bottom_built}, {"reused", s.bottom_reused}, {"levels", s.bottom_levels}};
+    root["memory_bytes"] = make_memory(s);
+    root["warnings"] = s.warnings;
+    return root;
+}
+
+} // namespace relief::cli

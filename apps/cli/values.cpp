@@ -1,0 +1,59 @@
+#include "values.h"
+
+#include <cctype>
+#include <charconv>
+
+namespace relief::cli {
+
+void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
+    throw Error(ErrorKind::usage, {fmt::format("'{}' is not {}", text, expected), option, ""});
+}
+
+int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high) {
+    int64_t value = 0;
+    const char* end = text.data() + text.size();
+    const std::from_chars_result result = std::from_chars(text.data(), end, value);
+    if (result.ec != std::errc() || result.ptr != end || value < low || value > high)
+        refuse_value(option, text, fmt::format("a whole number from {} to {}", low, high));
+    return value;
+}
+
+double parse_number(const std::string& option, const std::string& text, double low, double high) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const std::from_chars_result result = std::from_chars(text.data(), end, value);
+    if (result.ec != std::errc() || result.ptr != end || !(value >= low && value <= high))
+        refuse_value(option, text, fmt::format("a number from {:g} to {:g}", low, high));
+    return value;
+}
+
+std::vector<int64_t> parse_integers(const std::string& option, const std::string& text, char separator,
+                                    size_t count, std::pair<int64_t, int64_t> range) {
+    const std::vector<std::string> parts = split(text, separator);
+    if (parts.size() != count)
+        refuse_value(option, text, fmt::format("{} whole numbers separated by '{}'", count, separator));
+    std::vector<int64_t> values;
+    for (const std::string& part : parts)
+        values.push_back(parse_integer(option, part, range.first, range.second));
+    return values;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    if (text.empty()) return parts;
+    size_t begin = 0;
+    while (true) {
+        const size_t end = text.find(separator, begin);
+        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+        if (end == std::string::npos) return parts;
+        begin = end + 1;
+    }
+}
+
+std::string get_lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+} // namespace relief::cli

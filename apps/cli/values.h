@@ -1,0 +1,52 @@
+// Option values from text, with messages that name the option and what it may be.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+#include "relief/suggest.h"
+
+namespace relief::cli {
+
+[[noreturn]] void refuse_value(const std::string& option, const std::string& text,
+                               const std::string& expected);
+
+/// Whole number in [low, high]; anything else, or trailing text, is a usage error that tells the range.
+int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high);
+
+/// Finite number in [low, high].
+double parse_number(const std::string& option, const std::string& text, double low, double high);
+
+/// Exactly `count` integers in [low, high], separated by `separator`.
+std::vector<int64_t> parse_integers(const std::string& option, const std::string& text, char separator,
+                                    size_t count, std::pair<int64_t, int64_t> range);
+
+/// Parts of "a,b,c"; an empty text has no parts.
+std::vector<std::string> split(const std::string& text, char separator);
+
+/// Extension in lower case with its dot: ".exr".
+std::string get_lower_extension(const std::filesystem::path& file);
+
+/// A word of a fixed list, with the nearest one as the hint.
+template <class T, size_t N>
+T parse_word(const std::string& option, const std::string& text,
+             const std::array<std::pair<std::string_view, T>, N>& words) {
+    std::array<std::string_view, N> known;
+    for (size_t i = 0; i < N; ++i) {
+        if (words[i].first == text) return words[i].second;
+        known[i] = words[i].first;
+    }
+    const std::string expected = fmt::format("{}", fmt::join(known, ", "));
+    throw Error(ErrorKind::usage,
+                {fmt::format("'{}' is not one of: {}", text, expected), option, suggest_word(text, known)});
+}
+
+} // namespace relief::cli

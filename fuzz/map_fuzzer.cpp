@@ -1,0 +1,24 @@
+// Bytes of an image must end in texels or in an Error. The first bytes tell the kind, as in a file of that
+// name.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "io/image_input.h"
+#include "relief/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    const char* name = bytes.starts_with("#?")        ? "fuzz.hdr"
+                       : bytes.starts_with("\x89PNG") ? "fuzz.png"
+                                                      : "fuzz.exr";
+    try {
+        const relief::Texture texture = relief::parse_texture(bytes, name);
+        const size_t samples = 4 * size_t(texture.width) * texture.height;
+        if (texture.floats.size() + texture.halves.size() != samples) std::abort();
+    } catch (const relief::Error&) {
+        // refused with a message: what is wanted
+    }
+    return 0;
+}

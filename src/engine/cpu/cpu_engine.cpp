@@ -1,0 +1,177 @@
+// The CPU engine: tiles of the picture over all threads, pass by pass; batches of rays for other programs.
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "engine/cpu/path_tracer.h"
+#include "engine/cpu/tracer.h"
+#include "engine/engine.h"
+
+namespace relief {
+
+namespace cpu {
+
+namespace {
+
+/// Rays that one worker traces between two looks at the queue.
+constexpr size_t kBatchSize = 1024;
+constexpr double kReportInterval = 0.1;  ///< seconds between two reports of progress
+constexpr int kLongestPass = 16;         ///< samples a pixel between two passes over the picture
+
+/// The picture's grid of tiles, cut at absolute multiples of the tile edge so that crops trace the same packets.
+std::vector<Window> make_tiles(const Window& window) {
+    std::vector<Window> tiles;
+    for (int y = window.y0 / kTileEdge * kTileEdge; y < window.y1; y += kTileEdge)
+        for (int x = window.x0 / kTileEdge * kTileEdge; x < window.x1; x += kTileEdge)
+            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0), std::min(x + kTileEdge, window.x1),
+                             std::min(y + kTileEdge, window.y1)});
+    return tiles;
+}
+
+/// Tells the observer how far the work is: from whichever worker is free to, never from two at once.
+class Reporter {
+  public:
+    Reporter(RenderObserver* observer, uint64_t total, int samples) : observer_(observer), total_(total) {
+        progress_.samples_total = samples;
+    }
+
+    bool is_cancelled() const { return observer_ && observer_->is_cancelled(); }
+
+    void finish_tile(uint64_t pixel_samples, uint64_t rays) {
+        done_ += pixel_samples, rays_ += rays;
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (lock && timer_.seconds() - progress_.elapsed_s >= kReportInterval) report();
+    }
+
+    void finish_pass(int samples_done) {
+        const std::lock_guard lock(mutex_);
+        progress_.samples_done = samples_done;
+        report();
+    }
+
+  private:
+    void report() {
+        if (!observer_) return;
+        progress_.fraction = double(done_) / double(total_);
+        progress_.rays = rays_;
+        progress_.elapsed_s = timer_.seconds();
+        observer_->on_progress(progress_);
+    }
+
+    RenderObserver* observer_;
+    uint64_t total_;
+    std::atomic<uint64_t> done_{0}, rays_{0};
+    std::mutex mutex_;
+    Progress progress_;
+    Timer timer_;
+};
+
+class CpuEngine final : public Engine {
+  public:
+    CpuEngine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
+        : settings_(settings), tracer_(std::move(scene), settings), lights_(tracer_) {}
+
+    bool render(Film& film, RenderObserver* observer) override {
+        const Timer timer;
+        const std::vector<Window> tiles = make_tiles(film.window());
+        const uint64_t pixels = uint64_t(film.window().x1 - film.window().x0) * uint64_t(film.window().y1 - film.window().y0);
+        Reporter reporter(observer, std::max<uint64_t>(1, pixels * uint64_t(settings_.spp)), settings_.spp);
+        int done = 0, length = 1;
+        while (done < settings_.spp && !reporter.is_cancelled()) {
+            const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
+            render_pass(film, tiles, samples, reporter);
+            if (reporter.is_cancelled()) break;
+            done += samples.count;
+            if (first_image_s_ == 0) first_image_s_ = timer.seconds();
+            reporter.finish_pass(done);
+            length = std::min(2 * length, kLongestPass);
+        }
+        return done == settings_.spp;
+    }
+
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override {
+        parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
+            std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
+            std::vector<TraceHit> found(batch.size());
+            tracer_.closest_hits(batch, found);
+            for (size_t k = 0; k < found.size(); ++k) hits[begin + k] = make_ray_hit(found[k]);
+        });
+    }
+
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override {
+        parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
+            const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
+            tracer_.any_hits(batch, hits.subspan(begin, end - begin));
+        });
+    }
+
+    void add_statistics(Statistics& statistics) const override {
+        statistics.engine = "cpu";
+        statistics.device = "cpu";
+        statistics.first_image_s += first_image_s_;
+        statistics.camera_rays += counters_.camera_rays;
+        statistics.shadow_rays += counters_.shadow_rays;
+        statistics.bounce_rays += counters_.bounce_rays;
+        statistics.shade_s += counters_.shade_s;
+        statistics.film_s += counters_.film_s;
+        tracer_.add_statistics(statistics);
+    }
+
+  private:
+    void render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
+        std::mutex mutex;
+        parallel_for("render_pass", tiles.size(), 1, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k < end && !reporter.is_cancelled(); ++k) {
+                const Window& tile = tiles[k];
+                TileCounters counters;
+                trace_tile({tracer_, lights_, settings_}, film, tile, samples, counters);
+                reporter.finish_tile(uint64_t(tile.x1 - tile.x0) * uint64_t(tile.y1 - tile.y0) * uint64_t(samples.count),
+                                     counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
+                const std::lock_guard lock(mutex);
+                counters_.camera_rays += counters.camera_rays;
+                counters_.shadow_rays += counters.shadow_rays;
+                counters_.bounce_rays += counters.bounce_rays;
+                counters_.shade_s += counters.shade_s;
+                counters_.film_s += counters.film_s;
+            }
+        });
+    }
+
+    static std::vector<TraceRay> make_batch(std::span<const Ray> rays) {
+        std::vector<TraceRay> batch;
+        batch.reserve(rays.size());
+        for (const Ray& ray : rays) batch.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, 0});
+        return batch;
+    }
+
+    RayHit make_ray_hit(const TraceHit& found) const {
+        RayHit hit;
+        if (!found.is_hit()) return hit;
+        hit.t = found.t;
+        hit.object = found.instance;
+        hit.patch = found.patch;
+        hit.uv = {found.u, found.v};
+        hit.normal = tracer_.make_surface_point(found).geometric_normal;
+        return hit;
+    }
+
+    RenderSettings settings_;
+    Tracer tracer_;
+    LightSet lights_;
+    TileCounters counters_;
+    double first_image_s_ = 0;
+};
+
+} // namespace
+
+} // namespace cpu
+
+std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings) {
+    return std::make_unique<cpu::CpuEngine>(std::move(scene), settings);
+}
+
+} // namespace relief

@@ -1,0 +1,151 @@
+#include "io/asset_cache.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <Imath/half.h>
+#include <fmt/format.h>
+
+#include "io/tonemap.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kUdimToken = "<UDIM>";
+constexpr size_t kMaxTiles = 255;
+
+float decode_half(uint16_t bits) { return imath_half_to_float(bits); }
+
+bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
+
+/// Throws bad_input with pixel and tile for a NaN or an infinity in the first three channels.
+void check_finite(const Texture& texture, int udim) {
+    const size_t count = size_t(texture.width) * texture.height;
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t c = 0; c < 3; ++c) {
+            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[4 * i + c])
+                                                       : !std::isfinite(texture.floats[4 * i + c]);
+            if (!is_bad) continue;
+            const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
+            const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
+            const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", c),
+                         fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
+                         "repair the pixel, for example by painting over it, and export again"});
+        }
+    }
+}
+
+void decode_colours(Texture& texture) {
+    const bool is_integer =
+        texture.source_type == SampleType::uint8 || texture.source_type == SampleType::uint16;
+    if (!is_integer) return;
+    const bool is_grey = texture.channel_count < 3;
+    for (size_t i = 0; i < texture.floats.size(); i += 4) {
+        for (size_t c = 0; c < (is_grey ? 1 : 3); ++c)
+            texture.floats[i + c] = decode_srgb(texture.floats[i + c]);
+    }
+}
+
+/// A picture with one channel is grey: it counts for red, green and blue.
+void spread_grey(Texture& texture) {
+    if (texture.channel_count >= 3) return;
+    const auto spread = [](auto& texels) {
+        for (size_t i = 0; i < texels.size(); i += 4) texels[i + 1] = texels[i + 2] = texels[i];
+    };
+    spread(texture.floats), spread(texture.halves);
+}
+
+bool lift_negatives(Texture& texture) {
+    bool has_lifted = false;
+    for (size_t i = 0; i < texture.floats.size(); ++i)
+        if (i % 4 != 3 && texture.floats[i] < 0) texture.floats[i] = 0, has_lifted = true;
+    for (size_t i = 0; i < texture.halves.size(); ++i)
+        if (i % 4 != 3 && texture.halves[i] > 0x8000) texture.halves[i] = 0, has_lifted = true;
+    return has_lifted;
+}
+
+} // namespace
+
+float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel) {
+    const size_t i = 4 * (size_t(y) * texture.width + x) + channel;
+    return texture.floats.empty() ? decode_half(texture.halves[i]) : texture.floats[i];
+}
+
+bool has_udim_token(const std::string& file) { return file.find(kUdimToken) != std::string::npos; }
+
+std::vector<std::pair<int, fs::path>> find_udim_tiles(const fs::path& pattern) {
+    const std::string name = pattern.filename().string();
+    const size_t at = name.find(kUdimToken);
+    const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
+    std::vector<std::pair<int, fs::path>> tiles;
+    if (at != std::string::npos) {
+        const std::string prefix = name.substr(0, at), suffix = name.substr(at + kUdimToken.size());
+        std::error_code code;
+        for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+            const std::string entry = it->path().filename().string();
+            if (entry.size() != prefix.size() + 4 + suffix.size() || !entry.starts_with(prefix) ||
+                !entry.ends_with(suffix))
+                continue;
+            const std::string digits = entry.substr(prefix.size(), 4);
+            if (!std::all_of(digits.begin(), digits.end(),
+                             [](unsigned char c) { return std::isdigit(c) != 0; }))
+                continue;
+            if (const int udim = std::stoi(digits); udim >= 1001) tiles.emplace_back(udim, it->path());
+        }
+    }
+    if (tiles.empty())
+        throw Error(ErrorKind::bad_input,
+                    {"no tile file found", pattern.string(),
+                     "<UDIM> stands for the four digits 1001, 1002, ... in a file name"});
+    if (tiles.size() > kMaxTiles)
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxTiles),
+                     pattern.string(), "split the mesh"});
+    std::sort(tiles.begin(), tiles.end());
+    return tiles;
+}
+
+fs::path AssetCache::resolve(const std::string& file) const {
+    const fs::path path(file);
+    return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
+}
+
+std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use) {
+    const fs::path path = resolve(file);
+    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use}];
+    if (cached) return cached;
+    auto texture = std::make_shared<Texture>(read_texture(path));
+    if (use != TextureUse::data) {
+        check_finite(*texture, 0);
+        if (use == TextureUse::colour) decode_colours(*texture);
+        spread_grey(*texture);
+        if (use == TextureUse::radiance && lift_negatives(*texture))
+            warnings_.push_back(fmt::format("{}: negative radiance counts as 0", path.string()));
+    }
+    return cached = std::move(texture);
+}
+
+std::vector<MapTile> AssetCache::load_displacement(const std::string& file) {
+    std::vector<MapTile> tiles;
+    if (!has_udim_token(file)) {
+        tiles.push_back({1001, load(file, TextureUse::data)});
+        check_finite(*tiles.back().texture, 0);
+        return tiles;
+    }
+    for (const auto& [udim, path] : find_udim_tiles(resolve(file))) {
+        const fs::path absolute = fs::absolute(path);
+        tiles.push_back({udim, load(absolute.string(), TextureUse::data)});
+        check_finite(*tiles.back().texture, udim);
+    }
+    return tiles;
+}
+
+} // namespace relief

@@ -1,0 +1,24 @@
+#include "io/content_hash.h"
+
+#include <set>
+
+namespace relief {
+
+void add_scene_content(ContentHash& hash, const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
+        hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
+    }
+    std::set<const Texture*> seen;
+    const auto add_texture = [&](const std::shared_ptr<const Texture>& texture) {
+        if (!texture || !seen.insert(texture.get()).second) return;
+        hash.add(texture->floats), hash.add(texture->halves);
+    };
+    for (const Displacement& displacement : scene.displacements)
+        for (const MapTile& tile : displacement.tiles) add_texture(tile.texture);
+    for (const Material& material : scene.materials)
+        add_texture(material.base_color_texture), add_texture(material.roughness_texture);
+    if (scene.environment) add_texture(scene.environment->texture);
+}
+
+} // namespace relief

@@ -1,0 +1,122 @@
+#include "io/file_system.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/suggest.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string suggest_file(const fs::path& file) {
+    std::error_code code;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, code))
+        return fmt::format("the folder '{}' does not exist", folder.string());
+    constexpr size_t kMostNames = 1000;
+    std::vector<std::string> names;
+    for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMostNames;
+         it.increment(code))
+        names.push_back(it->path().filename().string());
+    std::sort(names.begin(), names.end());
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string hint = suggest_word(file.filename().string(), views);
+    return hint.starts_with("did") ? hint
+                                   : std::string("check the name; paths in a scene are relative to its file");
+}
+
+} // namespace
+
+std::string get_extension(const fs::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+void require_file(const fs::path& file) {
+    std::error_code code;
+    const fs::file_status status = fs::status(file, code);
+    if (!fs::exists(status))
+        throw Error(ErrorKind::bad_input, {"file not found", file.string(), suggest_file(file)});
+    if (!fs::is_regular_file(status))
+        throw Error(ErrorKind::bad_input, {"not a regular file", file.string(), "give the name of a file"});
+    if (::access(file.c_str(), R_OK) != 0)
+        throw Error(ErrorKind::bad_input, {fmt::format("cannot be read: {}", std::strerror(errno)),
+                                           file.string(), "check its rights"});
+}
+
+std::string read_file_bytes(const fs::path& file) {
+    require_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    std::string bytes;
+    try {
+        bytes.resize(size_t(fs::file_size(file)));
+    } catch (const std::exception& error) {
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("cannot be read: {}", error.what()), file.string(), ""});
+    }
+    stream.read(bytes.data(), std::streamsize(bytes.size()));
+    if (!stream || size_t(stream.gcount()) != bytes.size())
+        throw Error(ErrorKind::bad_input, {"cannot be read to its end", file.string(), "check the disk"});
+    return bytes;
+}
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+    temporary_ = target_;
+    temporary_ += fmt::format(".{}.tmp", ::getpid());
+    std::error_code code;
+    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    if (!target_.has_filename() || fs::is_directory(target_, code))
+        throw Error(ErrorKind::failed, {"is a folder, not a file", target_.string(), "add a file name"});
+    if (!fs::is_directory(folder, code))
+        throw Error(ErrorKind::failed, {fmt::format("the folder '{}' does not exist", folder.string()),
+                                        target_.string(), "make the folder first"});
+}
+
+AtomicFile::~AtomicFile() {
+    std::error_code code;
+    if (!is_committed_) fs::remove(temporary_, code);
+}
+
+void AtomicFile::fail(const std::string& message) const {
+    throw Error(ErrorKind::failed,
+                {message, target_.string(), "check free space and rights, or write to another place"});
+}
+
+void AtomicFile::commit() {
+    std::error_code code;
+    const auto size = fs::file_size(temporary_, code);
+    if (code || size == 0) fail("cannot be written: nothing reached the disk");
+    fs::rename(temporary_, target_, code);
+    if (code) fail("cannot be put in place: " + code.message());
+    is_committed_ = true;
+}
+
+void write_text_file(const fs::path& file, std::string_view text) {
+    AtomicFile atomic(file);
+    std::FILE* stream = std::fopen(atomic.temporary().c_str(), "wb");
+    if (!stream) atomic.fail(fmt::format("cannot be written: {}", std::strerror(errno)));
+    const bool is_written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+    const int write_error = errno;
+    const bool is_closed = std::fclose(stream) == 0;
+    if (!is_written || !is_closed)
+        atomic.fail(fmt::format("cannot be written: {}", std::strerror(is_written ? errno : write_error)));
+    atomic.commit();
+}
+
+} // namespace relief

@@ -1,0 +1,42 @@
+// Input files as bytes, with messages that help; output files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace relief {
+
+/// Lower-case extension with its dot: ".exr".
+std::string get_extension(const std::filesystem::path& file);
+
+/// Throws bad_input unless the path names a regular file; the hint names a similar file of the folder if
+/// there is one.
+void require_file(const std::filesystem::path& file);
+
+/// Whole content. Throws bad_input with the name.
+std::string read_file_bytes(const std::filesystem::path& file);
+
+/// A temporary name beside `target` that becomes the target on commit and is removed otherwise.
+class AtomicFile {
+  public:
+    /// Throws Error{failed} where the folder does not exist or the target is a folder.
+    explicit AtomicFile(std::filesystem::path target);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    const std::filesystem::path& temporary() const { return temporary_; }
+    /// Renames. Throws Error{failed} for an empty or missing temporary, or when the rename fails.
+    void commit();
+    [[noreturn]] void fail(const std::string& message) const;
+
+  private:
+    std::filesystem::path target_, temporary_;
+    bool is_committed_ = false;
+};
+
+/// Writes a text file atomically. Throws Error{failed}.
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+} // namespace relief

@@ -1,0 +1,103 @@
+// The whole path: scene -> surfaces and levels -> trees -> rays -> film -> image.
+#include "relief/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "engine/cpu/kernels.h"
+#include "engine/engine.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+void require(bool condition, const char* message, const char* hint) {
+    if (!condition) throw Error(ErrorKind::usage, {message, "", hint});
+}
+
+void validate_settings(const RenderSettings& s) {
+    require(s.width >= 1 && s.width <= 65536 && s.height >= 1 && s.height <= 65536, "the picture size is out of range",
+            "1 to 65536 pixels a side");
+    require(s.spp >= 1 && s.spp <= 1 << 20, "the number of samples is out of range", "1 to 1048576 a pixel");
+    require(s.first_sample >= 0 && s.first_sample <= (1 << 30), "the first sample is out of range", "0 to 1073741824");
+    require(s.bounces >= 0 && s.bounces <= 1000, "the number of bounces is out of range", "0 to 1000");
+    require(s.threads >= 0 && s.threads <= 4096, "the number of threads is out of range", "0 (all cores) to 4096");
+    require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
+            "auto, or 0 to 12");
+    require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range", "above 0, at most 1e6 pixels");
+    require(s.crop == Window{} || (s.crop.x0 >= 0 && s.crop.y0 >= 0 && s.crop.x0 < s.crop.x1 && s.crop.y0 < s.crop.y1 &&
+                                   s.crop.x1 <= s.width && s.crop.y1 <= s.height),
+            "the crop is empty or leaves the picture", "x0,y0,x1,y1 in pixels, half open, inside the picture");
+}
+
+void count_scene(const PreparedScene& scene, Statistics& statistics) {
+    statistics.meshes = scene.surfaces.size();
+    statistics.instances = scene.instances.size();
+    std::vector<const Texture*> seen;
+    for (const Surface& surface : scene.surfaces) {
+        for (const Quad& quad : surface.quads) {
+            if (surface.has_displacement) ++statistics.patches;
+            else statistics.triangles += quad.is_triangle() ? 1 : 2;
+        }
+        for (const DisplacementMap::Tile& tile : surface.map.tiles) {
+            if (std::find(seen.begin(), seen.end(), tile.texture.get()) != seen.end()) continue;
+            seen.push_back(tile.texture.get());
+            statistics.displacement_texels += uint64_t(tile.texture->width) * tile.texture->height;
+            statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
+        }
+    }
+}
+
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, int samples_end, Image& image) {
+    image.metadata["relief:version"] = RELIEF_VERSION;
+    image.metadata["relief:seed"] = std::to_string(settings.seed);
+    image.metadata["relief:samples"] = fmt::format("{}:{}", settings.first_sample, samples_end);
+    image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+}
+
+} // namespace
+
+RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer) {
+    validate_settings(settings);
+    const uint64_t scene_hash = scene.hash;
+    RenderResult result;
+    Statistics& statistics = result.statistics;
+    const Timer total;
+    with_threads(settings.threads, [&] {
+        const std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
+        const std::unique_ptr<Engine> engine = make_cpu_engine(prepared, settings);
+        Film film(settings.width, settings.height, settings.crop, settings.layers);
+        statistics.prepare_s = total.seconds();
+
+        const Timer timer;
+        result.is_complete = engine->render(film, observer);
+        statistics.render_s = timer.seconds();
+        result.image = film.resolve();
+
+        engine->add_statistics(statistics);
+        statistics.threads = thread_count();
+        statistics.first_image_s += statistics.prepare_s;
+        statistics.ray_buffers_bytes += film.byte_count();
+        statistics.warnings = prepared->warnings;
+        count_scene(*prepared, statistics);
+    });
+    add_metadata(settings, scene_hash, settings.first_sample + settings.spp, result.image);
+    statistics.total_s = total.seconds();
+    statistics.peak_resident_bytes = peak_resident_bytes();
+    return result;
+}
+
+std::vector<std::string> available_isas() {
+    std::vector<std::string> names;
+    for (const Isa isa : {Isa::avx512, Isa::avx2, Isa::neon, Isa::sse4, Isa::scalar})
+        if (const cpu::Kernels* kernels = cpu::find_kernels(isa)) names.push_back(kernels->name);
+    return names;
+}
+
+} // namespace relief

@@ -1,0 +1,190 @@
+// validate_scene: every index, range and number of a scene, before anything is built from it.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "math/affine.h"
+#include "relief/error.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& message, const std::string& hint = {}) {
+    throw Error(ErrorKind::bad_input, {message, where, hint});
+}
+
+std::string describe(const char* kind, const std::string& name, size_t index) {
+    return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} '{}'", kind, name);
+}
+
+void check_range(const std::string& where, const char* what, float value, float low, float high) {
+    if (!(value >= low && value <= high))
+        fail(where, fmt::format("{} is {}, not in [{}, {}]", what, value, low, high));
+}
+
+void check_range(const std::string& where, const char* what, const Vec3f& value, float low, float high) {
+    check_range(where, what, value.x, low, high);
+    check_range(where, what, value.y, low, high);
+    check_range(where, what, value.z, low, high);
+}
+
+constexpr float kHuge = 3e38f;
+
+void check_indices(const std::string& where, const char* what, const std::vector<uint32_t>& indices,
+                   size_t corners, size_t count) {
+    if (indices.size() != corners)
+        fail(where, fmt::format("has {} {} indices for {} corners", indices.size(), what, corners));
+    for (size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] >= count)
+            fail(where,
+                 fmt::format("{} index {} of corner {} is out of range: there are {}", what, indices[i], i,
+                             count),
+                 "the mesh is damaged: export it again");
+    }
+}
+
+void check_mesh(const Mesh& mesh, size_t index) {
+    std::string where = describe("mesh", mesh.name, index);
+    if (!mesh.source.empty()) where += " (" + mesh.source + ")";
+    size_t corners = 0;
+    for (size_t f = 0; f < mesh.face_sizes.size(); ++f) {
+        if (mesh.face_sizes[f] < 3) fail(where, fmt::format("face {} has {} corners", f, mesh.face_sizes[f]));
+        corners += mesh.face_sizes[f];
+    }
+    if (mesh.face_sizes.empty()) fail(where, "has no faces");
+    check_indices(where, "position", mesh.position_indices, corners, mesh.positions.size());
+    if (!mesh.uv_indices.empty()) check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
+    if (!mesh.normal_indices.empty())
+        check_indices(where, "normal", mesh.normal_indices, corners, mesh.normals.size());
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!is_finite(mesh.positions[i])) fail(where, fmt::format("position {} is not finite", i));
+    for (size_t i = 0; i < mesh.uvs.size(); ++i)
+        if (!std::isfinite(mesh.uvs[i].x) || !std::isfinite(mesh.uvs[i].y))
+            fail(where, fmt::format("uv {} is not finite", i));
+    for (size_t i = 0; i < mesh.normals.size(); ++i)
+        if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
+}
+
+void check_texture(const std::string& where, const Texture& texture) {
+    constexpr uint32_t kMaxSide = 65536;
+    const size_t samples = 4 * size_t(texture.width) * texture.height;
+    if (samples == 0 || texture.width > kMaxSide || texture.height > kMaxSide)
+        fail(where, fmt::format("texture of {} x {} texels", texture.width, texture.height),
+             fmt::format("each side must be in [1, {}]", kMaxSide));
+    const bool has_floats = texture.floats.size() == samples && texture.halves.empty();
+    const bool has_halves = texture.halves.size() == samples && texture.floats.empty();
+    if (!has_floats && !has_halves) fail(where, "texture holds another number of texels than its size says");
+}
+
+void check_displacement(const Displacement& map, size_t index) {
+    const std::string where = describe("displacement", map.name, index);
+    constexpr size_t kMaxTiles = 255;
+    if (map.tiles.empty() || map.tiles.size() > kMaxTiles || (!map.is_udim && map.tiles.size() > 1))
+        fail(where, fmt::format("has {} tiles", map.tiles.size()));
+    for (const MapTile& tile : map.tiles) {
+        if (!tile.texture) fail(where, fmt::format("tile {} has no texture", tile.udim));
+        if (tile.udim < 1001) fail(where, fmt::format("tile number {} is below 1001", tile.udim));
+        check_texture(fmt::format("{}, tile {}", where, tile.udim), *tile.texture);
+    }
+    uint32_t used = 0;
+    for (size_t c = 0; c < 3; ++c) {
+        if (map.axes.axis[c] < 3) used |= 1u << map.axes.axis[c];
+        if (map.axes.sign[c] != 1 && map.axes.sign[c] != -1)
+            fail(where, "axes have a sign other than 1 and -1");
+    }
+    if (used != 7) fail(where, "axes are no permutation");
+    check_range(where, "midlevel", map.midlevel, -kHuge, kHuge);
+    check_range(where, "scale", map.scale, -kHuge, kHuge);
+}
+
+void check_material(const Material& material, size_t index) {
+    const std::string where = describe("material", material.name, index);
+    check_range(where, "base_color", material.base_color, 0, 1);
+    check_range(where, "roughness", material.roughness, 0, 1);
+    check_range(where, "metallic", material.metallic, 0, 1);
+    check_range(where, "ior", material.ior, 1, kHuge);
+    check_range(where, "emission", material.emission, 0, kHuge);
+    if (material.base_color_texture)
+        check_texture(where + ", base_color_texture", *material.base_color_texture);
+    if (material.roughness_texture) check_texture(where + ", roughness_texture", *material.roughness_texture);
+}
+
+void check_object(const Scene& scene, const Object& object, size_t index) {
+    const std::string where = describe("object", object.name, index);
+    if (object.mesh >= scene.meshes.size()) fail(where, fmt::format("mesh {} does not exist", object.mesh));
+    if (object.displacement != kNoIndex && object.displacement >= scene.displacements.size())
+        fail(where, fmt::format("displacement {} does not exist", object.displacement));
+    if (object.material != kNoIndex && object.material >= scene.materials.size())
+        fail(where, fmt::format("material {} does not exist", object.material));
+    if (!invert(object.world_from_object))
+        fail(where, "the transform is singular or not finite", "no scale factor may be 0");
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (object.displacement != kNoIndex && mesh.uv_indices.empty())
+        fail(where,
+             fmt::format("{} has no uvs, which its displacement needs",
+                         describe("mesh", mesh.name, object.mesh)),
+             "export the mesh with texture coordinates");
+}
+
+void check_camera(const Camera& camera) {
+    const std::string where = "camera";
+    if (!is_finite(camera.from) || !is_finite(camera.to) || !is_finite(camera.up))
+        fail(where, "is not finite");
+    const Vec3f axis = normalize(camera.to - camera.from);
+    if (length(axis) == 0) fail(where, "'from' and 'to' are the same point");
+    if (length(cross(axis, normalize(camera.up))) < 1e-5f)
+        fail(where, "'up' has no length or points along the view", "use another 'up', for example [0, 0, 1]");
+    if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+        fail(where, fmt::format("fov_degrees is {}, not in (0, 180)", camera.fov_degrees));
+    check_range(where, "aperture_radius", camera.aperture_radius, 0, kHuge);
+    if (!(camera.focus_distance > 0 && camera.focus_distance <= kHuge))
+        fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
+}
+
+void check_light(const Light& light, size_t index) {
+    const std::string where = fmt::format("light {}", index);
+    check_range(where, "color", light.color, 0, kHuge);
+    check_range(where, "strength", light.strength, 0, kHuge);
+    if (light.type == LightType::sun) {
+        if (!is_finite(light.direction) || length(normalize(light.direction)) == 0)
+            fail(where, "direction has no length or is not finite");
+        check_range(where, "angle_degrees", light.angle_degrees, 0, 90);
+    } else {
+        check_range(where, "position", light.position, -kHuge, kHuge);
+        check_range(where, "radius", light.radius, 0, kHuge);
+    }
+}
+
+void check_picture(const PictureDefaults& picture) {
+    const auto check = [](const char* what, const std::optional<int>& value, int low, int high) {
+        if (value && (*value < low || *value > high))
+            fail("render", fmt::format("{} is {}, not in [{}, {}]", what, *value, low, high));
+    };
+    check("width", picture.width, 1, 65536);
+    check("height", picture.height, 1, 65536);
+    check("spp", picture.spp, 1, 1 << 20);
+    check("bounces", picture.bounces, 0, 1024);
+}
+
+} // namespace
+
+void validate_scene(const Scene& scene) {
+    for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh(scene.meshes[i], i);
+    for (size_t i = 0; i < scene.displacements.size(); ++i) check_displacement(scene.displacements[i], i);
+    for (size_t i = 0; i < scene.materials.size(); ++i) check_material(scene.materials[i], i);
+    for (size_t i = 0; i < scene.objects.size(); ++i) check_object(scene, scene.objects[i], i);
+    for (size_t i = 0; i < scene.lights.size(); ++i) check_light(scene.lights[i], i);
+    if (scene.environment) {
+        const Environment& environment = *scene.environment;
+        check_range("environment", "color", environment.color, 0, kHuge);
+        check_range("environment", "strength", environment.strength, 0, kHuge);
+        check_range("environment", "rotate_degrees", environment.rotate_degrees, -kHuge, kHuge);
+        if (environment.texture) check_texture("environment", *environment.texture);
+    }
+    check_camera(scene.camera);
+    check_picture(scene.picture);
+}
+
+} // namespace relief

@@ -1,0 +1,185 @@
+// Whole renders: the picture, its parts, its statistics and its interruption.
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "relief/io.h"
+
+namespace relief::cli {
+namespace {
+
+using nlohmann::json;
+
+class Render : public CommandTest {
+  protected:
+    void render_ok(const std::string& output, const std::vector<std::string>& more) {
+        const CommandResult result = render_bump(output, more);
+        ASSERT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_NE(result.output.find("wrote " + output + "\n"), std::string::npos) << result.output;
+    }
+    void expect_same(const std::string& a, const std::string& b, const char* threshold) {
+        const CommandResult result = run({"compare", a, b, "--threshold", threshold, "--json"});
+        EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+    }
+};
+
+TEST_F(Render, makes_a_picture_with_layers_and_a_header) {
+    render_ok("a.exr", {"--layers", "depth,N,id", "--seed", "7"});
+    const Image image = read_image(folder_ / "a.exr");
+    EXPECT_EQ(image.width, 24);
+    EXPECT_EQ(image.height, 16);
+    for (const char* name : {"R", "G", "B", "A", "depth.Z", "N.X", "id.I", "samples.Y"})
+        EXPECT_TRUE(image.find_channel(name).has_value()) << name;
+    EXPECT_EQ(image.metadata.at("relief:seed"), "7");
+    EXPECT_EQ(image.metadata.at("relief:samples"), "0:4");
+    EXPECT_EQ(image.metadata.at("relief:scene_hash").size(), 16u);
+    EXPECT_TRUE(image.metadata.count("relief:version"));
+    float covered = 0;
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 24; ++x) covered += image.at(x, y, *image.find_channel("A"));
+    EXPECT_GT(covered, 40) << "the plane is in view";
+}
+
+TEST_F(Render, writes_png_and_hdr_by_extension) {
+    render_ok("a.png", {});
+    render_ok("a.hdr", {});
+    EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
+    EXPECT_EQ(read("a.hdr").substr(0, 2), "#?");
+}
+
+TEST_F(Render, tiles_and_sample_ranges_merge_into_the_whole) {
+    render_ok("whole.exr", {});
+    std::vector<std::string> merge = {"merge", "-o", "merged.exr"};
+    for (const char* tile : {"0/3", "1/3", "2/3"}) {
+        const std::string name = std::string("tile") + tile[0] + ".exr";
+        render_ok(name, {"--tile", tile});
+        merge.push_back(name);
+    }
+    ASSERT_EQ(run(merge).exit_code, 0);
+    expect_same("whole.exr", "merged.exr", "0");
+
+    render_ok("s0.exr", {"--samples", "0:1"});
+    render_ok("s1.exr", {"--samples", "1:4"});
+    const CommandResult merged = run({"merge", "s1.exr", "s0.exr", "-o", "samples.exr"});
+    ASSERT_EQ(merged.exit_code, 0) << merged.errors;
+    expect_same("whole.exr", "samples.exr", "1e-4");
+}
+
+TEST_F(Render, gives_the_same_bits_for_any_number_of_threads) {
+    render_ok("one.exr", {"--threads", "1"});
+    render_ok("two.exr", {"--threads", "2"});
+    expect_same("one.exr", "two.exr", "0");
+}
+
+TEST_F(Render, compare_exits_7_above_the_threshold_only) {
+    render_ok("a.exr", {"--seed", "1"});
+    render_ok("b.exr", {"--seed", "2"});
+    const CommandResult result = run({"compare", "a.exr", "b.exr", "--json"});
+    EXPECT_EQ(result.exit_code, 7);
+    const json difference = json::parse(result.output);
+    EXPECT_EQ(difference["pixels"], 24 * 16);
+    EXPECT_GT(difference["over_threshold"], 0);
+    EXPECT_GT(difference["max"], 0.0);
+    EXPECT_EQ(run({"compare", "a.exr", "b.exr", "--threshold", "1e6"}).exit_code, 0);
+}
+
+TEST_F(Render, statistics_hold_every_stable_key) {
+    render_ok("a.exr", {"--stats", "s.json"});
+    const json s = json::parse(read("s.json"));
+    for (const char* key : {"/relief/version",
+                            "/device/engine",
+                            "/device/name",
+                            "/device/threads",
+                            "/device/isa",
+                            "/image/width",
+                            "/image/height",
+                            "/image/spp",
+                            "/image/bounces",
+                            "/scene/meshes",
+                            "/scene/instances",
+                            "/scene/patches",
+                            "/scene/triangles",
+                            "/scene/displacement_texels",
+                            "/time_s/load",
+                            "/time_s/prepare",
+                            "/time_s/first_image",
+                            "/time_s/render",
+                            "/time_s/write",
+                            "/time_s/total",
+                            "/stage_s/top_traversal",
+                            "/stage_s/sort",
+                            "/stage_s/bottom_build",
+                            "/stage_s/bottom_traversal",
+                            "/stage_s/shade",
+                            "/stage_s/film",
+                            "/rays/camera",
+                            "/rays/shadow",
+                            "/rays/bounce",
+                            "/rays/total",
+                            "/rays/per_second",
+                            "/pairs/emitted",
+                            "/pairs/with_hit",
+                            "/bottom/built",
+                            "/bottom/reused",
+                            "/bottom/levels",
+                            "/memory_bytes/geometry",
+                            "/memory_bytes/structures",
+                            "/memory_bytes/displacement",
+                            "/memory_bytes/bottom_cache",
+                            "/memory_bytes/ray_buffers",
+                            "/memory_bytes/total",
+                            "/memory_bytes/peak_resident",
+                            "/warnings"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    EXPECT_EQ(s["device"]["engine"], "cpu");
+    EXPECT_EQ(s["rays"]["camera"], 24 * 16 * 4);
+    EXPECT_EQ(s["scene"]["patches"], 1);
+    EXPECT_EQ(s["scene"]["displacement_texels"], 16 * 16);
+    EXPECT_GT(s["memory_bytes"]["total"], 0);
+    EXPECT_GT(s["time_s"]["total"], 0.0);
+}
+
+TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture) {
+    const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576", "--bounces",
+                                 "0", "--progress", "json", "-o", "part.exr"});
+    for (int i = 0; i < 1000 && read("stderr.txt").find("percent") == std::string::npos; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(process, SIGINT);
+    const CommandResult result = finish(process);
+    EXPECT_EQ(result.exit_code, 130) << result.errors;
+    const Image image = read_image(folder_ / "part.exr");
+    EXPECT_EQ(image.width, 64);
+    EXPECT_TRUE(image.find_channel("samples.Y").has_value());
+}
+
+TEST_F(Render, one_pixel_is_explained_without_a_picture) {
+    const CommandResult result = run({"render", "plane.obj", "--vdm", "bump.exr", "--preset", "blender-brush",
+                                      "--size", "25x25", "--spp", "2", "--pixel", "12,12"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    for (const char* part : {"object", "patch    0 ", "normal", "colour"})
+        EXPECT_NE(result.output.find(part), std::string::npos) << part << "\n" << result.output;
+    EXPECT_FALSE(exists("plane.exr"));
+}
+
+TEST_F(Render, a_written_sample_scene_can_be_rendered) {
+    const CommandResult written = run({"scene", "ear", "-o", "ear"});
+    ASSERT_EQ(written.exit_code, 0) << written.errors;
+    EXPECT_NE(written.output.find("wrote ear/scene.json\n"), std::string::npos) << written.output;
+    const CommandResult result =
+        run({"render", "ear/scene.json", "--size", "16x16", "--spp", "1", "--bounces", "0", "-o", "ear.exr"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(run({"scene", "eer", "-o", "x"}).exit_code, 0);
+}
+
+TEST_F(Render, devices_lists_the_cpu) {
+    const json devices = json::parse(run({"devices", "--json"}).output);
+    EXPECT_EQ(devices[0]["engine"], "cpu");
+    EXPECT_EQ(devices[0]["isa"].back(), "scalar");
+    EXPECT_GE(devices[0]["threads"], 1);
+}
+
+} // namespace
+} // namespace relief::cli

@@ -1,0 +1,103 @@
+// What is refused before any work is done, and how it is said.
+#include <algorithm>
+
+#include "command.h"
+
+namespace relief::cli {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+class Usage : public CommandTest {
+  protected:
+    /// Expects a usage error whose message holds `part`, and nothing on stdout.
+    void expect_refused(const std::vector<std::string>& arguments, const std::string& part,
+                        int exit_code = 2) {
+        const CommandResult result = run(arguments);
+        EXPECT_EQ(result.exit_code, exit_code) << result.errors;
+        EXPECT_TRUE(contains(result.errors, "relief: error: ")) << result.errors;
+        EXPECT_TRUE(contains(result.errors, part)) << result.errors;
+        EXPECT_EQ(result.output, "");
+    }
+};
+
+TEST_F(Usage, an_unknown_verb_names_the_nearest_one) { expect_refused({"rendr", "plane.obj"}, "'render'"); }
+
+TEST_F(Usage, an_unknown_option_names_the_nearest_one) {
+    expect_refused({"render", "plane.obj", "--sise", "8x8"}, "--size");
+    expect_refused({"compare", "a.exr", "b.exr", "--treshold=1"}, "--threshold");
+}
+
+TEST_F(Usage, no_verb_and_no_input_are_usage_errors) {
+    expect_refused({}, "no command");
+    expect_refused({"render"}, "no scene");
+    expect_refused({"render", "plane.obj", "other.obj"}, "unexpected argument 'other.obj'");
+}
+
+TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
+    expect_refused({"render", "plane.obj", "--size", "0x0"}, "from 1 to 65536");
+    expect_refused({"render", "plane.obj", "--size", "1000000x4"}, "from 1 to 65536");
+    expect_refused({"render", "plane.obj", "--size", "8"}, "--size");
+    expect_refused({"render", "plane.obj", "--spp", "-4"}, "from 1 to 1048576");
+    expect_refused({"render", "plane.obj", "--spp", "4x"}, "--spp");
+    expect_refused({"render", "plane.obj", "--level", "13"}, "from 0 to 12");
+    expect_refused({"render", "plane.obj", "--level", "fine"}, "'auto'");
+    expect_refused({"render", "plane.obj", "--pixel-error", "nan"}, "--pixel-error");
+    expect_refused({"render", "plane.obj", "--seed", "-1"}, "--seed");
+}
+
+TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
+    expect_refused({"render", "plane.obj", "--size", "8x8", "--crop", "0,0,9,8"}, "8x8");
+    expect_refused({"render", "plane.obj", "--crop", "4,0,4,8"}, "x0 < x1");
+    expect_refused({"render", "plane.obj", "--tile", "2/2"}, "i from 0");
+    expect_refused({"render", "plane.obj", "--size", "8x2", "--tile", "0/3"}, "2 rows");
+    expect_refused({"render", "plane.obj", "--samples", "4:4"}, "A < B");
+    expect_refused({"render", "plane.obj", "--spp", "4", "--samples", "2:6"}, "4 samples");
+    expect_refused({"render", "plane.obj", "--size", "8x8", "--pixel", "8,0"}, "8x8");
+}
+
+TEST_F(Usage, only_what_exists_can_be_chosen) {
+    expect_refused({"render", "plane.obj", "--engine", "vulkan"}, "one of: cpu");
+    expect_refused({"render", "plane.obj", "--surface", "tesselated"}, "'tessellated'");
+    expect_refused({"render", "plane.obj", "--layers", "depth,Normal"}, "unknown layer 'Normal'");
+    expect_refused({"render", "plane.obj", "-o", "a.png", "--layers", "depth"}, ".exr");
+}
+
+TEST_F(Usage, mesh_options_do_not_go_with_a_scene_file) {
+    write("scene.json", "{}");
+    expect_refused({"render", "scene.json", "--vdm", "bump.exr"}, "--vdm");
+}
+
+TEST_F(Usage, a_missing_file_is_bad_input_with_its_name) {
+    expect_refused({"render", "nothing.obj", "--size", "8x8"}, "nothing.obj", 3);
+    expect_refused({"inspect", "nothing.exr"}, "nothing.exr", 3);
+    expect_refused({"compare", "nothing.exr", "bump.exr"}, "nothing.exr", 3);
+}
+
+TEST_F(Usage, an_output_that_cannot_be_written_is_refused_before_the_render) {
+    // So many samples that the test would time out if the render started.
+    for (const std::string output : {"no/such/folder/a.exr", "a.jpeg2", "."}) {
+        const CommandResult result =
+            run({"render", "plane.obj", "--size", "4096x4096", "--spp", "1048576", "-o", output});
+        EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2 || result.exit_code == 3)
+            << result.exit_code;
+        EXPECT_TRUE(contains(result.errors, "relief: error: ")) << result.errors;
+    }
+    EXPECT_NE(run({"render", "plane.obj", "--spp", "1048576", "--stats", "no/folder/s.json"}).exit_code, 0);
+}
+
+TEST_F(Usage, every_help_fits_on_a_screen_and_goes_to_stdout) {
+    for (const std::string verb : {"render", "inspect", "scene", "compare", "merge", "devices"}) {
+        const CommandResult result = run({verb, "--help"});
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_EQ(result.errors, "");
+        EXPECT_LT(std::count(result.output.begin(), result.output.end(), '\n'), 60) << verb;
+    }
+    EXPECT_TRUE(contains(run({"--help"}).output, "render"));
+    EXPECT_TRUE(contains(run({"--version"}).output, "relief "));
+}
+
+} // namespace
+} // namespace relief::cli

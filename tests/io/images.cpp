@@ -1,0 +1,135 @@
+#include <csignal>
+#include <limits>
+
+#include <sys/resource.h>
+
+#include "io/image_input.h"
+#include "io/test_files.h"
+#include "io/tonemap.h"
+#include "relief/io.h"
+
+namespace relief {
+
+using ImageFiles = FileTest;
+
+namespace {
+
+Image make_image() {
+    Image image;
+    image.width = 3, image.height = 2, image.x0 = 4, image.y0 = 5, image.full_width = 16,
+    image.full_height = 9;
+    image.channels = {"R", "G", "B", "A", "depth.Z", "N.X", "id.I"};
+    for (size_t i = 0; i < 6 * image.channels.size(); ++i) image.pixels.push_back(0.1f * float(i) - 0.3f);
+    image.pixels[4] = std::numeric_limits<float>::infinity();
+    image.metadata = {{"relief:seed", "7"}, {"relief:samples", "0:16"}, {"Software", "Relief 0.1"}};
+    return image;
+}
+
+} // namespace
+
+TEST_F(ImageFiles, exr_layers_windows_and_metadata_round_trip) {
+    const Image image = make_image();
+    write_image(image, folder_ / "a.exr");
+    const Image read = read_image(folder_ / "a.exr");
+    EXPECT_EQ(read.width, 3);
+    EXPECT_EQ(read.height, 2);
+    EXPECT_EQ(read.x0, 4);
+    EXPECT_EQ(read.y0, 5);
+    EXPECT_EQ(read.full_width, 16);
+    EXPECT_EQ(read.full_height, 9);
+    ASSERT_EQ(read.channels.size(), image.channels.size());
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        const auto found = std::find(read.channels.begin(), read.channels.end(), image.channels[c]);
+        ASSERT_NE(found, read.channels.end()) << image.channels[c];
+        for (size_t i = 0; i < 6; ++i)
+            EXPECT_EQ(read.pixels[i * 7 + size_t(found - read.channels.begin())], image.pixels[i * 7 + c]);
+    }
+    for (const auto& [name, value] : image.metadata) EXPECT_EQ(read.metadata.at(name), value);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1)
+        << "a temporary file is left";
+}
+
+TEST_F(ImageFiles, png_is_tone_mapped_and_hdr_keeps_radiance) {
+    Image image;
+    image.width = 2, image.height = 1, image.channels = {"R", "G", "B"};
+    image.pixels = {0, 0, 0, 4, 4, 4};
+    write_image(image, folder_ / "a.png");
+    const Image png = read_image(folder_ / "a.png");
+    EXPECT_EQ(png.pixels[0], 0.0f);
+    EXPECT_GT(png.pixels[3], 0.9f);
+    EXPECT_NEAR(png.pixels[3], encode_srgb(apply_filmic_curve({4, 4, 4}).x), 0.003f);
+    write_image(image, folder_ / "a.hdr");
+    EXPECT_NEAR(read_image(folder_ / "a.hdr").pixels[3], 4.0f, 0.03f);
+}
+
+TEST_F(ImageFiles, texels_come_as_stored) {
+    const Texture u8 = read_texture(
+        write_pixels<uint8_t>("a.png", 2, 1, 4, OIIO::TypeDesc::UINT8, {255, 128, 0, 0, 10, 20, 30, 128}));
+    EXPECT_EQ(u8.source_type, SampleType::uint8);
+    const std::vector<int> bytes = {255, 128, 0, 0, 10, 20, 30, 128};
+    ASSERT_EQ(u8.floats.size(), bytes.size());
+    for (size_t i = 0; i < bytes.size(); ++i) EXPECT_FLOAT_EQ(u8.floats[i], float(bytes[i]) / 255);
+    const Texture u16 =
+        read_texture(write_pixels<uint16_t>("b.png", 2, 1, 1, OIIO::TypeDesc::UINT16, {32768, 65535}));
+    EXPECT_EQ(u16.channel_count, 1u);
+    EXPECT_EQ(u16.floats, (std::vector<float>{32768 / 65535.f, 0, 0, 1, 1, 0, 0, 1}));
+    const Texture tiff =
+        read_texture(write_pixels<float>("c.tif", 1, 1, 3, OIIO::TypeDesc::FLOAT, {-0.25f, 3.5f, 1e-3f}));
+    EXPECT_EQ(tiff.floats, (std::vector<float>{-0.25f, 3.5f, 1e-3f, 1}));
+    const Texture half = read_texture(
+        write_pixels<uint16_t>("d.exr", 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c00, 0xc000, 0x0001}));
+    EXPECT_EQ(half.source_type, SampleType::float16);
+    EXPECT_EQ(half.halves, (std::vector<uint16_t>{0x3c00, 0xc000, 0x0001, 0x3c00}));
+    EXPECT_TRUE(half.floats.empty());
+}
+
+TEST_F(ImageFiles, damaged_images_are_refused_with_their_names) {
+    const auto whole =
+        write_pixels<float>("w.exr", 64, 64, 3, OIIO::TypeDesc::FLOAT, std::vector<float>(64 * 64 * 3, 1.5f));
+    std::ifstream stream(whole, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    EXPECT_HAS(message_of([&] { read_texture(write("t.exr", bytes.substr(0, bytes.size() / 2))); }), "t.exr");
+    EXPECT_HAS(message_of([&] { read_texture(write("e.exr", "")); }), "e.exr");
+    EXPECT_HAS(message_of([&] {
+                   read_texture(write("z.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n"));
+               }),
+               "z.hdr");
+    EXPECT_HAS(message_of([&] {
+                   read_texture(write("l.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n"));
+               }),
+               "l.hdr");
+    EXPECT_HAS(message_of([&] { read_texture(write("a.txt", "x")); }), "unknown kind of image");
+    EXPECT_EQ(parse_texture(bytes, "memory.exr").width, 64u);
+}
+
+TEST_F(ImageFiles, unwritable_outputs_are_refused) {
+    EXPECT_HAS(message_of([&] { check_writable(folder_ / "none" / "a.exr"); }, ErrorKind::failed),
+               "does not exist");
+    EXPECT_HAS(message_of([&] { check_writable(folder_ / "a.exf"); }, ErrorKind::usage),
+               "did you mean '.exr'?");
+    std::filesystem::create_directory(folder_ / "d.png");
+    EXPECT_HAS(message_of([&] { write_image(make_image(), folder_ / "d.png"); }, ErrorKind::failed),
+               "is a folder");
+    EXPECT_NO_THROW(check_writable(folder_ / "a.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
+}
+
+TEST_F(ImageFiles, a_full_disk_is_noticed_and_leaves_nothing) {
+    Image image;
+    image.width = image.height = 128, image.channels = {"R", "G", "B"};
+    for (int i = 0; i < 128 * 128 * 3; ++i) image.pixels.push_back(float((i * 7919) % 1000) * 0.00137f);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit old_limit{};
+    getrlimit(RLIMIT_FSIZE, &old_limit);
+    for (const char* name : {"a.exr", "a.png", "a.hdr"}) {
+        const rlimit limit{200, old_limit.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        const std::string message =
+            message_of([&] { write_image(image, folder_ / name); }, ErrorKind::failed);
+        setrlimit(RLIMIT_FSIZE, &old_limit);
+        EXPECT_HAS(message, name);
+        EXPECT_TRUE(std::filesystem::is_empty(folder_)) << name;
+    }
+}
+
+} // namespace relief

@@ -1,0 +1,225 @@
+#include <limits>
+
+#include "io/displacement_reader.h"
+#include "io/scene_reader.h"
+#include "io/test_files.h"
+#include "relief/io.h"
+
+namespace relief {
+
+class SceneFiles : public FileTest {
+  protected:
+    SceneFiles() {
+        write("plane.obj", kQuadObj);
+        write_pixels<float>("map.exr", 2, 2, 3, OIIO::TypeDesc::FLOAT,
+                            {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, .5f, 0});
+    }
+    Scene parse(const std::string& text) const { return parse_scene(text, folder_, "s.json"); }
+    std::string error_of(const std::string& text) const {
+        return message_of([&] { parse(text); });
+    }
+    std::string with_object(const std::string& members) const {
+        return R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane")" + members +
+               "}]}";
+    }
+    std::string with_map(const std::string& members) const {
+        return R"({"displacements": {"ear": {)" + members + "}}}";
+    }
+};
+
+TEST_F(SceneFiles, every_field_is_read) {
+    write_pixels<float>("env.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3, 4, 5, 6});
+    write_pixels<uint8_t>("color.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});
+    const Scene scene = parse(R"({ "version": 1, // comment
+      "render": {"width": 64, "height": 32, "spp": 4, "bounces": 2, "seed": 4294967295},
+      "camera": {"from": [0, 0, 4], "to": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 50, "aperture_radius": 0.5},
+      "environment": {"file": "env.exr", "color": [1, 1, 0.5], "strength": 2, "rotate_degrees": 40}, /* more */
+      "materials": {"clay": {"base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metallic": 1, "ior": 1.3,
+        "emission": [1, 2, 3], "base_color_texture": "color.png", "roughness_texture": "color.png"}},
+      "displacements": {"ear": {"type": "vector", "file": "map.exr", "preset": "mudbox", "midlevel": 0.25,
+        "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror"}},
+      "meshes": {"plane": {"file": "plane.obj"}},
+      "objects": [{"name": "o", "mesh": "plane", "displacement": "ear", "material": "clay",
+        "transform": {"translate": [1, 2, 3], "rotate_degrees": [0, 90, 0], "scale": 2}}],
+      "lights": [{"type": "sun", "direction": [0, -2, 0], "angle_degrees": 2, "strength": 3},
+                 {"type": "point", "position": [1, 1, 1], "radius": 0.5, "color": [1, 0, 0]}] })");
+    EXPECT_EQ(scene.picture.seed, 4294967295u);
+    EXPECT_EQ(scene.picture.width, 64);
+    EXPECT_EQ(scene.camera.focus_distance, 4);
+    EXPECT_EQ(scene.environment->texture->floats.at(4), 4);
+    EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
+    EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
+    EXPECT_EQ(scene.materials[0].roughness_texture->floats.at(1), 128 / 255.f);
+    const Displacement& map = scene.displacements.at(0);
+    EXPECT_EQ(map.axes.axis, (std::array<uint8_t, 3>{0, 2, 1}));
+    EXPECT_EQ(map.midlevel, (Vec3f{.25f, .25f, .25f}));
+    EXPECT_EQ(map.scale, (Vec3f{1, 2, 3}));
+    EXPECT_TRUE(map.flip_v);
+    EXPECT_EQ(map.wrap, WrapMode::mirror);
+    EXPECT_EQ(scene.objects.at(0).world_from_object.translation, (Vec3f{1, 2, 3}));
+    EXPECT_EQ(scene.objects[0].world_from_object.rows[0], (Vec3f{0, 0, 2}));
+    EXPECT_EQ(scene.lights.at(1).radius, 0.5f);
+    EXPECT_NE(scene.hash, 0u);
+}
+
+TEST_F(SceneFiles, broken_text_is_located) {
+    EXPECT_HAS(error_of("{\n  \"camera\": {\n    \"from\" [1]\n"), "s.json, line 3, column 12");
+    EXPECT_HAS(error_of(R"({"materials": {"a": {}, "a": {}}})"), "'a' stands twice");
+    EXPECT_HAS(message_of([&] { load_scene(folder_ / "none.json"); }), "file not found");
+}
+
+TEST_F(SceneFiles, unknown_keys_get_a_suggestion) {
+    EXPECT_EQ(error_of(R"({"materials": {"clay": {"rougness": 1}}})"),
+              "s.json: unknown key 'rougness' in materials.clay (did you mean 'roughness'?)");
+    EXPECT_HAS(error_of(R"({"matrials": {}})"), "did you mean 'materials'?");
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "preset": "mudbx")")), "did you mean 'mudbox'?");
+    EXPECT_HAS(error_of(R"({"objects": [{"mesh": "plane"}]})"), "objects[0].mesh: there is no mesh 'plane'");
+}
+
+TEST_F(SceneFiles, wrong_values_are_named_with_their_path) {
+    EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": "big"})")), "objects[0].transform.scale");
+    EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": [1, 0, 1]})")), "singular");
+    EXPECT_HAS(error_of(with_object(R"(, "transform": {"matrix": [1, 2]})")), "16 numbers");
+    EXPECT_HAS(error_of(R"({"camera": {"fov_degrees": 200}})"), "camera.fov_degrees: must be in");
+    EXPECT_HAS(error_of(R"({"render": {"width": 0}})"), "render.width");
+    EXPECT_HAS(error_of(R"({"render": {"spp": -4}})"), "render.spp");
+    EXPECT_HAS(error_of(R"({"materials": {"m": {"base_color": [1, 2, 0]}}})"), "materials.m.base_color[1]");
+    EXPECT_HAS(error_of("[]"), "must be an object");
+}
+
+TEST_F(SceneFiles, axes_are_signed_permutations_of_one_set_of_letters) {
+    const AxisText axes = parse_axes("x, -z ,y");
+    EXPECT_EQ(axes.axes.axis, (std::array<uint8_t, 3>{0, 2, 1}));
+    EXPECT_EQ(axes.axes.sign, (std::array<int8_t, 3>{1, -1, 1}));
+    EXPECT_FALSE(axes.is_tangent);
+    for (const char* text : {"", "t,b", "t,t,n", "t,b,z", "t,b,n,n", "tbn", "t,b,--n"})
+        EXPECT_THROW(parse_axes(text), Error) << text;
+    EXPECT_EQ(format_axes(parse_axes("t,-n,b").axes, DisplacementSpace::tangent), "t,-n,b");
+    EXPECT_EQ(parse(with_map(R"("file": "map.exr", "axes": "x,-z,y")")).displacements[0].space,
+              DisplacementSpace::object);
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "axes": "t,b,n", "space": "object")")), "do not fit");
+}
+
+TEST_F(SceneFiles, integer_maps_are_centred_with_a_warning) {
+    write_pixels<uint8_t>("m.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {128, 128, 255});
+    const Scene scene = parse(with_map(R"("file": "m.png", "preset": "genvdm")"));
+    EXPECT_EQ(scene.displacements[0].midlevel, (Vec3f{.5f, .5f, .5f}));
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    EXPECT_HAS(scene.warnings[0], "8-bit map");
+    EXPECT_HAS(scene.warnings[1], "0.5 is assumed");
+    EXPECT_EQ(parse(with_map(R"("file": "m.png", "midlevel": 0)")).displacements[0].midlevel, (Vec3f{}));
+    write_pixels<float>("h.exr", 1, 1, 1, OIIO::TypeDesc::FLOAT, {1});
+    EXPECT_EQ(parse(with_map(R"("file": "h.exr")")).displacements[0].type, DisplacementType::height);
+}
+
+TEST_F(SceneFiles, bad_texels_are_named_with_pixel_and_tile) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    write_pixels<float>("n.exr", 2, 2, 3, OIIO::TypeDesc::FLOAT, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, nan, 0});
+    write_pixels<uint16_t>("u.1012.exr", 2, 1, 3, OIIO::TypeDesc::HALF, {0, 0, 0, 0, 0, 0x7c00});
+    const std::string message = error_of(with_map(R"("file": "n.exr")"));
+    EXPECT_HAS(message, "displacements.ear");
+    EXPECT_HAS(message, "n.exr, pixel (1, 1): NaN in channel 1");
+    EXPECT_HAS(error_of(with_map(R"("file": "u.<UDIM>.exr")")),
+               "pixel (1, 0), tile 1012: infinity in channel 2");
+    EXPECT_HAS(error_of(R"({"environment": {"file": "n.exr"}})"), "pixel (1, 1)");
+}
+
+TEST_F(SceneFiles, missing_uvs_and_singular_objects_are_refused) {
+    write("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    const std::string message = error_of(R"({"meshes": {"bare": {"file": "bare.obj"}},
+        "displacements": {"ear": {"file": "map.exr"}}, "objects": [{"name": "o", "mesh": "bare", "displacement": "ear"}]})");
+    EXPECT_HAS(message, "object 'o': mesh 'bare' has no uvs");
+    MeshSceneOptions options;
+    options.displacement_map = folder_ / "map.exr";
+    EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "bare.obj", options); }), "has no uvs");
+}
+
+TEST_F(SceneFiles, udim_tiles_are_found_and_files_are_shared) {
+    for (const char* name : {"t.1011.exr", "t.1001.exr", "t.x001.exr"})
+        write_pixels<float>(name, 1, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3});
+    const Scene scene = parse(R"({"displacements": {"a": {"file": "t.<UDIM>.exr"}, "b": {"file": "map.exr"},
+                                  "c": {"file": "./map.exr"}}})");
+    const Displacement& map = scene.displacements.at(0);
+    ASSERT_EQ(map.tiles.size(), 2u);
+    EXPECT_EQ(map.tiles[0].udim, 1001);
+    EXPECT_EQ(map.tiles[1].udim, 1011);
+    EXPECT_EQ(scene.displacements[1].tiles[0].texture, scene.displacements[2].tiles[0].texture);
+    EXPECT_HAS(error_of(with_map(R"("file": "none.<UDIM>.exr")")), "no tile file found");
+}
+
+TEST_F(SceneFiles, the_hash_follows_the_content_and_not_the_picture_size) {
+    const std::string object = with_object("");
+    const auto with_render = [&](const char* render) {
+        return R"({"render": )" + std::string(render) + "," + object.substr(1);
+    };
+    const uint64_t hash = parse(with_render(R"({"width": 10})")).hash;
+    EXPECT_EQ(hash, parse(with_render(R"({"width": 20, "spp": 3})")).hash);
+    EXPECT_NE(hash, parse(with_object(R"(, "transform": {"scale": 2})")).hash);
+    std::string text = kQuadObj;
+    write("plane.obj", text.replace(2, 2, "-2"));
+    EXPECT_NE(hash, parse(with_render(R"({"width": 10})")).hash);
+}
+
+TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
+    write_pixels<float>("env.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3, 4, 5, 6});
+    for (const char* name : {"h.1001.exr", "h.1002.exr"})
+        write_pixels<uint16_t>(name, 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c01, 1, 0x8000});
+    Scene scene = parse(R"({"render": {"seed": 3}, "environment": {"file": "env.exr", "strength": 0.1},
+        "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3, "base_color_texture": "env.exr"}},
+        "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1},
+                          "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black"}},
+        "meshes": {"p/q": {"file": "plane.obj"}}, "lights": [{"type": "point", "strength": 0.3}],
+        "objects": [{"mesh": "p/q", "displacement": "a", "material": "m n",
+                     "transform": {"rotate_degrees": [10, 20, 30], "scale": 0.3}}, {"mesh": "p/q", "displacement": "z"}]})");
+    scene.meshes[0].positions[0] = {0.1f, 1e-20f, 12345.678f};
+    save_scene(scene, folder_ / "out");
+    const Scene read = load_scene(folder_ / "out" / "scene.json");
+    EXPECT_EQ(read.meshes.at(0).positions, scene.meshes[0].positions);
+    EXPECT_EQ(read.meshes[0].uvs, scene.meshes[0].uvs);
+    EXPECT_EQ(read.meshes[0].uv_indices, scene.meshes[0].uv_indices);
+    EXPECT_EQ(read.meshes[0].name, "p/q");
+    ASSERT_EQ(read.displacements.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        const Displacement &a = read.displacements[i], &b = scene.displacements[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.axes, b.axes);
+        EXPECT_EQ(a.space, b.space);
+        EXPECT_EQ(a.wrap, b.wrap);
+        EXPECT_EQ(a.midlevel, b.midlevel);
+        EXPECT_EQ(a.scale, b.scale);
+        ASSERT_EQ(a.tiles.size(), b.tiles.size());
+        for (size_t t = 0; t < a.tiles.size(); ++t) {
+            EXPECT_EQ(a.tiles[t].udim, b.tiles[t].udim);
+            EXPECT_EQ(a.tiles[t].texture->floats, b.tiles[t].texture->floats);
+            EXPECT_EQ(a.tiles[t].texture->halves, b.tiles[t].texture->halves);
+        }
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(read.objects.at(i).world_from_object, scene.objects[i].world_from_object);
+        EXPECT_EQ(read.objects[i].material, scene.objects[i].material);
+    }
+    EXPECT_EQ(read.camera.from, scene.camera.from);
+    EXPECT_EQ(read.environment->strength, 0.1f);
+    EXPECT_EQ(read.environment->texture->floats, scene.environment->texture->floats);
+    EXPECT_EQ(read.lights.at(0).strength, 0.3f);
+    EXPECT_EQ(read.picture.seed, 3u);
+    EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {
+    MeshSceneOptions options;
+    options.displacement_map = folder_ / "map.exr";
+    options.preset = "genvdm";
+    const Scene flat = load_mesh_scene(folder_ / "plane.obj", {});
+    options.scale = 3.0f;
+    const Scene scene = load_mesh_scene(folder_ / "plane.obj", options);
+    EXPECT_GT(scene.camera.from.z, 2.0f);
+    EXPECT_GT(scene.camera.focus_distance, flat.camera.focus_distance + 0.5f);
+    EXPECT_FLOAT_EQ(scene.camera.to.z, 1.5f);
+    EXPECT_EQ(scene.lights.size(), 1u);
+    EXPECT_NE(scene.hash, flat.hash);
+    options.axes = "t,q,b";
+    EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "plane.obj", options); }), "is no order of axes");
+}
+
+} // namespace relief

@@ -1,0 +1,106 @@
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "relief/error.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+namespace {
+
+Scene make_scene() {
+    Scene scene;
+    Mesh mesh;
+    mesh.name = "quad";
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.face_sizes = {4};
+    mesh.position_indices = mesh.uv_indices = {0, 1, 2, 3};
+    scene.meshes.push_back(mesh);
+    auto texture = std::make_shared<Texture>();
+    texture->width = texture->height = 1;
+    texture->channel_count = 3;
+    texture->floats = {0, 0, 0, 1};
+    Displacement map;
+    map.name = "ear";
+    map.tiles.push_back({1001, texture});
+    scene.displacements.push_back(map);
+    scene.materials.emplace_back();
+    Object object;
+    object.name = "thing";
+    object.displacement = object.material = 0;
+    scene.objects.push_back(object);
+    scene.lights.emplace_back();
+    scene.environment = Environment{};
+    return scene;
+}
+
+/// The message that the scene gets after `spoil`.
+std::string complaint(const std::function<void(Scene&)>& spoil) {
+    Scene scene = make_scene();
+    spoil(scene);
+    try {
+        validate_scene(scene);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+        return error.what();
+    }
+    return "accepted";
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+} // namespace
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST(ValidateScene, accepts_a_sound_scene) { EXPECT_NO_THROW(validate_scene(make_scene())); }
+
+TEST(ValidateScene, names_the_object_with_a_bad_index_or_transform) {
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].mesh = 1; }), "object 'thing': mesh 1");
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].displacement = 7; }), "displacement 7");
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].material = 7; }), "material 7");
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].world_from_object.rows[1] = {}; }),
+               "object 'thing': the transform");
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].world_from_object.translation.x = kNan; }),
+               "singular or not finite");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].uv_indices.clear(); }), "mesh 'quad' has no uvs");
+}
+
+TEST(ValidateScene, names_the_mesh_with_bad_arrays) {
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].position_indices[2] = 4; }),
+               "position index 4 of corner 2");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].uv_indices[0] = 9; }), "uv index 9");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].face_sizes[0] = 2; }), "2 corners");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].face_sizes[0] = 3; }),
+               "4 position indices for 3 corners");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].positions[3].z = kNan; }), "position 3 is not finite");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].uvs[1].x = kNan; }), "uv 1 is not finite");
+}
+
+TEST(ValidateScene, refuses_maps_that_mean_nothing) {
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].tiles.clear(); }), "displacement 'ear'");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].tiles[0].texture = nullptr; }), "no texture");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].tiles[0].texture = std::make_shared<Texture>(); }),
+               "0 x 0");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.axis = {0, 0, 2}; }), "no permutation");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.sign[1] = 0; }), "sign");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");
+}
+
+TEST(ValidateScene, refuses_values_out_of_range) {
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].roughness = 1.5f; }), "roughness is 1.5");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].ior = 0.5f; }), "ior");
+    EXPECT_HAS(complaint([](Scene& s) { s.lights[0].direction = {}; }), "light 0: direction");
+    EXPECT_HAS(complaint([](Scene& s) { s.lights[0].strength = -1; }), "light 0: strength");
+    EXPECT_HAS(complaint([](Scene& s) { s.environment->strength = kNan; }), "environment");
+    EXPECT_HAS(complaint([](Scene& s) { s.camera.to = s.camera.from; }), "same point");
+    EXPECT_HAS(complaint([](Scene& s) { s.camera.up = {0, 0, 1}; }), "'up'");
+    EXPECT_HAS(complaint([](Scene& s) { s.camera.fov_degrees = 180; }), "fov_degrees");
+    EXPECT_HAS(complaint([](Scene& s) { s.picture.spp = -1; }), "spp is -1");
+    EXPECT_HAS(complaint([](Scene& s) { s.picture.width = 70000; }), "width");
+}
+
+} // namespace relief
