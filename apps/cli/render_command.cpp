@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -34,14 +33,6 @@ Scene load_input(const RenderOptions& options) {
                                        : load_scene(options.input);
 }
 
-void add_metadata(Image& image, const RenderSettings& settings, uint64_t scene_hash) {
-    image.metadata["relief:version"] = RELIEF_VERSION;
-    image.metadata["relief:seed"] = std::to_string(settings.seed);
-    image.metadata["relief:samples"] =
-        fmt::format("{}:{}", settings.first_sample, settings.first_sample + settings.spp);
-    image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
-}
-
 void write_statistics(const std::filesystem::path& file, const Statistics& statistics,
                       const RenderSettings& settings) {
     std::ofstream stream(file);
@@ -65,14 +56,6 @@ void print_summary(const Statistics& s, const RenderSettings& settings) {
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
 
-/// Adds what the reader noticed and the renderer did not repeat.
-void add_missing_warnings(Statistics& statistics, const std::vector<std::string>& warnings) {
-    std::vector<std::string>& known = statistics.warnings;
-    for (const std::string& warning : warnings) {
-        if (std::find(known.begin(), known.end(), warning) == known.end()) known.push_back(warning);
-    }
-}
-
 int get_exit_code(const RenderOptions& options, const RenderResult& result, const Saved& saved) {
     if (saved.is_elsewhere) return int(ErrorKind::failed);
     if (!result.is_complete && get_interrupt() != 0) return kExitSignalBase + get_interrupt();
@@ -82,8 +65,6 @@ int get_exit_code(const RenderOptions& options, const RenderResult& result, cons
 
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene, double start,
                    double load_s) {
-    const std::vector<std::string> reader_warnings = scene.warnings;
-    const uint64_t scene_hash = scene.hash;
     catch_interrupts();
     RenderResult result;
     {
@@ -91,12 +72,11 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
         result = render(std::move(scene), settings, &progress);
     }
     Statistics& statistics = result.statistics;
-    add_missing_warnings(statistics, reader_warnings);
     if (!options.is_quiet) print_warnings(statistics.warnings);
-    add_metadata(result.image, settings, scene_hash);
     const double write_start = get_seconds();
     const Saved saved = save_with_fallback(result.image, options.output, get_fallback_folders(), write_image);
     statistics.load_s = load_s;
+    statistics.first_image_s += load_s; // from the start of the command, as a person waits for it
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - start;
     if (options.is_verbose) print_summary(statistics, settings);

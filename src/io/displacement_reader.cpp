@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "relief/error.h"
 
 namespace relief {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/file_system.h"
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "relief/error.h"
 
 namespace relief {

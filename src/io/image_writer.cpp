@@ -7,7 +7,7 @@
 
 #include "io/file_system.h"
 #include "io/image_output.h"
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "io/tonemap.h"
 #include "relief/error.h"
 #include "relief/io.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/suggest.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

@@ -7,7 +7,7 @@
 #include "io/file_system.h"
 #include "io/mesh_assimp.h"
 #include "io/mesh_obj.h"
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
 

@@ -10,7 +10,7 @@
 #include "io/file_system.h"
 #include "io/json_node.h"
 #include "io/scene_sections.h"
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
 

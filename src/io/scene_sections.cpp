@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/displacement_reader.h"
-#include "io/suggest.h"
+#include "relief/suggest.h"
 #include "math/affine.h"
 
 namespace relief {

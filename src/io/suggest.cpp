@@ -1,4 +1,4 @@
-#include "io/suggest.h"
+#include "relief/suggest.h"
 
 #include <algorithm>
 #include <vector>
