@@ -2,8 +2,10 @@
 // After Jarosz et al.: an image test must know the noise of both sides, or it is either blind or never quiet.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
