@@ -1,6 +1,6 @@
+// clang-format off
 // Every formula of this folder, for C++ instances (math/scalar.h and the SIMD instances). GLSL includes single files.
 // No include guard: each instance includes it inside a namespace of its own.
-// clang-format off
 #include "shared/lang.h"
 #include "shared/displace.h"
 #include "shared/constants.h"

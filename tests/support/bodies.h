@@ -10,7 +10,8 @@
 
 namespace relief::test {
 
-/// Cube-sphere of 6 n^2 quads, radius 1; each face of the cube has its own square of the uv plane, so edges are seams.
+/// Cube-sphere of 6 n^2 quads, radius 1; each face of the cube has its own square of the uv plane, so edges
+/// are seams.
 inline Mesh make_cube_sphere(uint32_t n) {
     Mesh mesh;
     mesh.name = "sphere";
@@ -26,22 +27,36 @@ inline Mesh make_cube_sphere(uint32_t n) {
                 const float a = warp(i), b = warp(j);
                 Vec3f p;
                 switch (face) {
-                case 0: p = {1, a, b}; break;
-                case 1: p = {-1, b, a}; break;
-                case 2: p = {b, 1, a}; break;
-                case 3: p = {a, -1, b}; break;
-                case 4: p = {a, b, 1}; break;
-                default: p = {b, a, -1}; break;
+                case 0:
+                    p = {1, a, b};
+                    break;
+                case 1:
+                    p = {-1, b, a};
+                    break;
+                case 2:
+                    p = {b, 1, a};
+                    break;
+                case 3:
+                    p = {a, -1, b};
+                    break;
+                case 4:
+                    p = {a, b, 1};
+                    break;
+                default:
+                    p = {b, a, -1};
+                    break;
                 }
                 const double length = std::sqrt(double(p.x) * p.x + double(p.y) * p.y + double(p.z) * p.z);
                 mesh.positions.push_back({float(p.x / length), float(p.y / length), float(p.z / length)});
-                mesh.uvs.push_back({(float(face % 3) + float(i) / float(n)) / 3, (float(face / 3) + float(j) / float(n)) / 2});
+                mesh.uvs.push_back({(float(face % 3) + float(i) / float(n)) / 3,
+                                    (float(face / 3) + float(j) / float(n)) / 2});
             }
         for (uint32_t j = 0; j < n; ++j)
             for (uint32_t i = 0; i < n; ++i) {
                 const uint32_t v = first + j * (n + 1) + i;
                 mesh.face_sizes.push_back(4);
-                for (const uint32_t corner : {v, v + 1, v + n + 2, v + n + 1}) mesh.position_indices.push_back(corner);
+                for (const uint32_t corner : {v, v + 1, v + n + 2, v + n + 1})
+                    mesh.position_indices.push_back(corner);
             }
     }
     mesh.uv_indices = mesh.position_indices;
@@ -56,10 +71,12 @@ inline Mesh make_torus(uint32_t rows, uint32_t columns) {
         for (uint32_t i = 0; i < columns; ++i) {
             const double a = 2 * std::numbers::pi * i / columns, b = 2 * std::numbers::pi * j / rows;
             const double r = 1 + 0.45 * std::cos(b);
-            mesh.positions.push_back({float(r * std::cos(a)), float(0.45 * std::sin(b)), float(-r * std::sin(a))});
+            mesh.positions.push_back(
+                {float(r * std::cos(a)), float(0.45 * std::sin(b)), float(-r * std::sin(a))});
         }
     for (uint32_t j = 0; j <= rows; ++j)
-        for (uint32_t i = 0; i <= columns; ++i) mesh.uvs.push_back({float(i) / float(columns), float(j) / float(rows)});
+        for (uint32_t i = 0; i <= columns; ++i)
+            mesh.uvs.push_back({float(i) / float(columns), float(j) / float(rows)});
     for (uint32_t j = 0; j < rows; ++j)
         for (uint32_t i = 0; i < columns; ++i) {
             const uint32_t i1 = (i + 1) % columns, j1 = (j + 1) % rows;
@@ -67,13 +84,15 @@ inline Mesh make_torus(uint32_t rows, uint32_t columns) {
             for (const uint32_t p : {j * columns + i, j * columns + i1, j1 * columns + i1, j1 * columns + i})
                 mesh.position_indices.push_back(p);
             const uint32_t t = j * (columns + 1) + i;
-            for (const uint32_t uv : {t, t + 1, t + columns + 2, t + columns + 1}) mesh.uv_indices.push_back(uv);
+            for (const uint32_t uv : {t, t + 1, t + columns + 2, t + columns + 1})
+                mesh.uv_indices.push_back(uv);
         }
     return mesh;
 }
 
 /// Smooth random vectors of length about `amplitude`, plus a little noise at texel scale.
-inline std::shared_ptr<Texture> make_random_map(uint32_t width, uint32_t height, float amplitude, uint32_t seed) {
+inline std::shared_ptr<Texture> make_random_map(uint32_t width, uint32_t height, float amplitude,
+                                                uint32_t seed) {
     std::mt19937 random(seed);
     const auto uniform = [&] { return double(random()) / 4294967296.0; };
     double phase[12], frequency[12];
@@ -86,7 +105,8 @@ inline std::shared_ptr<Texture> make_random_map(uint32_t width, uint32_t height,
             for (int c = 0; c < 3; ++c) {
                 double value = 0.2 * (uniform() - 0.5);
                 for (int k = 0; k < 4; ++k)
-                    value += 0.3 * std::sin(6.2831853 * (frequency[4 * c + k] * x / width + frequency[(4 * c + k + 5) % 12] * y / height) +
+                    value += 0.3 * std::sin(6.2831853 * (frequency[4 * c + k] * x / width +
+                                                         frequency[(4 * c + k + 5) % 12] * y / height) +
                                             phase[4 * c + k]);
                 map->floats.push_back(float(amplitude * value));
             }

@@ -62,6 +62,14 @@ std::vector<double> integrate_row(const Texture& texture, uint32_t row, const Ve
     return result;
 }
 
+/// Part of texel `texel` of `texels` that lies in cell `cell` of `cells` along one axis; cells are not
+/// narrower than texels.
+double compute_overlap(uint64_t texel, uint64_t texels, uint64_t cell, uint64_t cells) {
+    const uint64_t low = std::max(texel * cells, cell * texels);
+    const uint64_t high = std::min((texel + 1) * cells, (cell + 1) * texels);
+    return high > low ? double(high - low) / double(cells) : 0.0;
+}
+
 } // namespace
 
 EnvironmentLight::EnvironmentLight(const Environment& environment)
@@ -83,27 +91,26 @@ void EnvironmentLight::build_distribution() {
         for (size_t cell_y = begin; cell_y < end; ++cell_y) {
             const std::span<float> cells = std::span(columns_).subspan(cell_y * (cells_x_ + 1), cells_x_ + 1);
             std::vector<double> sums(cells_x_, 0.0);
-            // A texel belongs to the cell of its first column and row, and to the next one where it
-            // straddles.
             const uint32_t first = uint32_t(cell_y * texture.height / cells_y_);
             const uint32_t last = uint32_t(((cell_y + 1) * texture.height + cells_y_ - 1) / cells_y_);
             for (uint32_t y = first; y < last; ++y) {
-                const double sine = std::sin(std::numbers::pi * (y + 0.5) / texture.height);
+                const double sine_integral = std::cos(std::numbers::pi * y / texture.height) -
+                                             std::cos(std::numbers::pi * (y + 1) / texture.height);
+                const double share_y = sine_integral * compute_overlap(y, texture.height, cell_y, cells_y_);
                 const std::vector<double> row = integrate_row(texture, y, scale_);
                 for (uint32_t x = 0; x < texture.width; ++x) {
                     const uint32_t cell = uint32_t(uint64_t(x) * cells_x_ / texture.width);
-                    sums[cell] += row[x] * sine;
-                    const uint32_t next = uint32_t((uint64_t(x + 1) * cells_x_ - 1) / texture.width);
-                    if (next != cell) sums[next] += row[x] * sine;
+                    const double share = compute_overlap(x, texture.width, cell, cells_x_);
+                    sums[cell] += row[x] * share_y * share;
+                    if (share < 1) sums[cell + 1] += row[x] * share_y * (1 - share);
                 }
             }
             for (uint32_t x = 0; x < cells_x_; ++x) cells[x + 1] = float(sums[x]);
             rows_[cell_y + 1] = float(accumulate(cells));
         }
     });
-    const double sum = accumulate(rows_);
-    // The texels' mean weighted by sin(theta) needs the weights' own sum: 2 / pi of the texels.
-    mean_luminance_ = float(sum / (double(texture.width) * texture.height) * std::numbers::pi / 2);
+    // The sine integrals sum up to 2 over the rows.
+    mean_luminance_ = float(accumulate(rows_) / (2.0 * texture.width));
 }
 
 Vec3f EnvironmentLight::local_from_world(const Vec3f& d) const {

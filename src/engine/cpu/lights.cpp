@@ -199,11 +199,8 @@ float LightSet::emitter_density(uint32_t emitter, const Vec3f& origin, const Sur
     const float distance2 = dot(to, to);
     const float cosine = std::fabs(dot(point.geometric_normal, to)) / std::sqrt(distance2);
     if (!(cosine > 0) || !(point.area_per_uv > 0)) return 0;
-    const Instance& instance = tracer_.scene().instances[point.instance];
-    const bool is_triangle = tracer_.scene().surfaces[instance.surface].quads[point.patch].is_triangle();
-    const float uv_density = is_triangle ? 2.0f : 1.0f;
     const float probability = float(emitter_cumulative_[emitter + 1] - emitter_cumulative_[emitter]);
-    return probability * uv_density / point.area_per_uv * (distance2 / cosine);
+    return probability / point.area_per_uv * (distance2 / cosine);
 }
 
 float LightSet::emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const {

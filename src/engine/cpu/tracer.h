@@ -38,7 +38,7 @@ struct SurfacePoint {
     Vec3f geometric_normal{};  ///< of the micro-triangle, unit length, side of the winding (not of the ray)
     Vec3f shading_normal{};    ///< unit length, same side as geometric_normal
     Vec2f uv{};                ///< texture coordinates; (0, 0) without
-    float area_per_uv = 0;     ///< world area of the micro-triangle over its area in the patch's (u, v)
+    float area_per_uv = 0;     ///< world area of the micro-triangle over its share of the patch's (u, v), which sum to 1
     uint32_t instance = kNoIndex;
     uint32_t patch = kNoIndex;
 };

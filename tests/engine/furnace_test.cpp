@@ -1,0 +1,91 @@
+// In a furnace every surface that absorbs nothing is invisible: it looks like its surroundings.
+#include <gtest/gtest.h>
+
+#include "support/shading_scenes.h"
+
+namespace relief {
+namespace {
+
+Scene make_furnace(const Material& material, SphereNormals normals) {
+    Scene scene;
+    add_object(scene, make_sphere(12, normals), material);
+    scene.environment = Environment{};
+    scene.camera.from = {0.5f, 1, 4};
+    scene.camera.fov_degrees = 32;
+    return scene;
+}
+
+Mean render_mean(Scene scene, const RenderSettings& settings) {
+    return compute_covered_mean(render(std::move(scene), settings).image);
+}
+
+TEST(Furnace, white_matte_sphere_is_invisible) {
+    for (SphereNormals normals : {SphereNormals::facets, SphereNormals::smooth}) {
+        const Mean mean = render_mean(make_furnace(make_matte(1), normals), make_small_settings(32, 64, 4));
+        EXPECT_GT(mean.pixels, 300u);
+        EXPECT_NEAR(mean.value, 1, 0.004 + 4 * mean.standard_error);
+        EXPECT_LT(mean.standard_error, 0.005);
+    }
+}
+
+TEST(Furnace, grey_matte_sphere_shows_its_albedo) {
+    const Mean mean =
+        render_mean(make_furnace(make_matte(0.5f), SphereNormals::facets), make_small_settings(32, 64, 2));
+    EXPECT_NEAR(mean.value, 0.5, 0.002 + 4 * mean.standard_error);
+}
+
+TEST(Furnace, white_metal_of_any_roughness_is_invisible) {
+    for (float roughness : {0.0f, 0.15f, 0.4f, 0.7f, 1.0f}) {
+        Material metal;
+        metal.base_color = {1, 1, 1};
+        metal.metallic = 1;
+        metal.roughness = roughness;
+        const Mean mean =
+            render_mean(make_furnace(metal, SphereNormals::facets), make_small_settings(32, 64, 4));
+        EXPECT_NEAR(mean.value, 1, 0.01 + 4 * mean.standard_error) << roughness;
+        EXPECT_LT(mean.standard_error, 0.01) << roughness;
+    }
+}
+
+TEST(Furnace, white_base_under_a_coat_is_invisible) {
+    for (float roughness : {0.0f, 0.3f, 0.6f, 1.0f}) {
+        Material coated;
+        coated.base_color = {1, 1, 1};
+        coated.roughness = roughness;
+        const Mean mean =
+            render_mean(make_furnace(coated, SphereNormals::smooth), make_small_settings(32, 64, 4));
+        EXPECT_NEAR(mean.value, 1, 0.015 + 4 * mean.standard_error) << roughness;
+    }
+}
+
+TEST(Furnace, environment_image_of_one_colour_equals_the_constant_one) {
+    Scene scene = make_furnace(make_matte(0.8f), SphereNormals::facets);
+    auto texture = std::make_shared<Texture>();
+    texture->width = 16, texture->height = 8, texture->channel_count = 3;
+    texture->floats.assign(4 * 16 * 8, 1.0f);
+    scene.environment->texture = texture;
+    const Mean mean = render_mean(std::move(scene), make_small_settings(32, 64, 2));
+    EXPECT_NEAR(mean.value, 0.8, 0.003 + 4 * mean.standard_error);
+}
+
+TEST(Furnace, glowing_hollow_sphere_sums_up_the_series_of_its_bounces) {
+    // Radiance e (1 + a + ... + a^(N+1)) with N bounces: each vertex adds the direct light of the wall.
+    const double e = 0.7, a = 0.6;
+    for (int bounces : {0, 1, 4}) {
+        Material wall = make_matte(float(a));
+        wall.emission = {float(e), float(e), float(e)};
+        Scene scene;
+        add_object(scene, make_sphere(8, SphereNormals::facets), wall);
+        scene.camera.from = {0.2f, 0.1f, 0.3f};
+        scene.camera.to = {0, 0, -1};
+        scene.camera.fov_degrees = 60;
+        const Mean mean = render_mean(std::move(scene), make_small_settings(24, 128, bounces));
+        EXPECT_EQ(mean.pixels, 24u * 24u);
+        const double expected = e * (1 - std::pow(a, bounces + 2)) / (1 - a);
+        EXPECT_NEAR(mean.value, expected, 0.004 * expected + 4 * mean.standard_error) << bounces;
+        EXPECT_LT(mean.standard_error, 0.01 * expected);
+    }
+}
+
+} // namespace
+} // namespace relief
