@@ -14,7 +14,8 @@ namespace relief::cpu {
 
 namespace {
 
-/// One batch in so many measures how much of its time goes into patches; the clock would cost too much in all of them.
+/// One batch in so many measures how much of its time goes into patches; the clock would cost too much in all
+/// of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
 std::vector<Box> compute_patch_boxes(const Surface& surface) {
@@ -41,20 +42,24 @@ WideBvh build_instance_tree(const PreparedScene& scene, const std::vector<WideBv
     return make_wide_bvh(SahBvhBuilder::build(boxes, config));
 }
 
-/// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the patch.
+/// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the
+/// patch.
 struct MicroTriangle {
     Vec3f corner[3];
-    float weight_b, weight_c;  ///< barycentric, of corners 1 and 2
-    float uv_area;             ///< in the patch's (u, v)
+    float weight_b, weight_c; ///< barycentric, of corners 1 and 2
+    float uv_area;            ///< in the patch's (u, v)
 };
 
-MicroTriangle make_micro_triangle(const Surface& surface, uint32_t patch, const PatchLevels& levels, const TraceHit& hit) {
+MicroTriangle make_micro_triangle(const Surface& surface, uint32_t patch, const PatchLevels& levels,
+                                  const TraceHit& hit) {
     const float side = float(1u << levels.patch);
     const float x = std::clamp(hit.u * side - float(hit.i), 0.0f, 1.0f);
     const float y = std::clamp(hit.v * side - float(hit.j), 0.0f, 1.0f);
     MicroTriangle triangle;
     if (surface.has_displacement) {
-        const auto vertex = [&](uint32_t i, uint32_t j) { return evaluate_vertex(surface, patch, levels, hit.i + i, hit.j + j); };
+        const auto vertex = [&](uint32_t i, uint32_t j) {
+            return evaluate_vertex(surface, patch, levels, hit.i + i, hit.j + j);
+        };
         triangle.corner[0] = vertex(0, 0);
         triangle.corner[1] = hit.is_upper ? vertex(1, 1) : vertex(1, 0);
         triangle.corner[2] = hit.is_upper ? vertex(0, 1) : vertex(1, 1);
@@ -74,7 +79,8 @@ MicroTriangle make_micro_triangle(const Surface& surface, uint32_t patch, const 
 /// (i, j, is_upper) of the cell that holds hit.u, hit.v; on a triangle (u, v) is folded into v <= u.
 void locate_cell(bool is_triangle, uint32_t side, TraceHit& hit) {
     if (is_triangle && hit.v > hit.u) std::swap(hit.u, hit.v);
-    const float x = std::clamp(hit.u, 0.0f, 1.0f) * float(side), y = std::clamp(hit.v, 0.0f, 1.0f) * float(side);
+    const float x = std::clamp(hit.u, 0.0f, 1.0f) * float(side),
+                y = std::clamp(hit.v, 0.0f, 1.0f) * float(side);
     hit.i = uint16_t(std::min(uint32_t(x), side - 1));
     hit.j = uint16_t(std::min(uint32_t(y), side - 1));
     hit.is_upper = !is_triangle && y - float(hit.j) > x - float(hit.i);
@@ -86,7 +92,8 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
     if (!surface.has_displacement) {
         // Two triangles: linear on each, as their positions are.
-        return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
+        return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v
+                      : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
     }
     return (uv(0) * (1 - u) + uv(1) * u) * (1 - v) + (uv(3) * (1 - u) + uv(2) * u) * v;
 }
@@ -100,8 +107,7 @@ struct Tracer::Implementation {
     std::unique_ptr<BottomCache> cache;
     SceneView view;
 
-    template <class Trace>
-    void trace_batch(const Trace& trace) const {
+    template <class Trace> void trace_batch(const Trace& trace) const {
         TraceContext& context = cache->acquire();
         context.is_timed = context.batch_count++ % kTimedBatchInterval == 0;
         const Timer timer;
@@ -124,27 +130,36 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     Implementation& self = *implementation_;
     self.kernels = find_kernels(settings.isa);
     if (!self.kernels)
-        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for", "",
-                                                "`relief devices` lists those that work"});
+        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
+                                                "", "`relief devices` lists those that work"});
     for (const Surface& surface : scene_->surfaces) self.surface_trees.push_back(build_surface_tree(surface));
     self.instance_tree = build_instance_tree(*scene_, self.surface_trees);
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
-    const float pixel = float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
-    self.view = {scene_->instances.data(), scene_->surfaces.data(), self.surface_trees.data(), &self.instance_tree,
-                 self.cache.get(),         settings.leaf,           settings.lod,              settings.pixel_error * pixel};
+    const float pixel =
+        float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
+    self.view = {scene_->instances.data(),
+                 scene_->surfaces.data(),
+                 self.surface_trees.data(),
+                 &self.instance_tree,
+                 self.cache.get(),
+                 settings.leaf,
+                 settings.lod,
+                 settings.pixel_error * pixel};
 }
 
 Tracer::~Tracer() = default;
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
     implementation_->trace_batch([&](TraceContext& context) {
-        implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(), rays.size());
+        implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(),
+                                               rays.size());
     });
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded) const {
     implementation_->trace_batch([&](TraceContext& context) {
-        implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(), rays.size());
+        implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(),
+                                           rays.size());
     });
 }
 
@@ -157,7 +172,8 @@ SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
 
     SurfacePoint point;
     point.instance = hit.instance, point.patch = hit.patch;
-    const Vec3f local = a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
+    const Vec3f local =
+        a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
     point.position = transform_point(instance.world_from_object, local);
     const Vec3f edge_b = transform_vector(instance.world_from_object, b - a);
     const Vec3f edge_c = transform_vector(instance.world_from_object, c - a);
@@ -184,7 +200,8 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
 }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
-    // Interpolating and transforming a point errs by a dozen units in the last place of its largest coordinate.
+    // Interpolating and transforming a point errs by a dozen units in the last place of its largest
+    // coordinate.
     constexpr float kRelativeOffset = 64 * 0x1p-24f;
     const Vec3f& p = point.position;
     const float largest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -201,7 +218,8 @@ void Tracer::add_statistics(Statistics& statistics) const {
     statistics.bottom_levels.resize(kTileLevel + 1);
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
-    const double share = counters.sampled_trace_s > 0 ? counters.sampled_bottom_s / counters.sampled_trace_s : 0;
+    const double share =
+        counters.sampled_trace_s > 0 ? counters.sampled_bottom_s / counters.sampled_trace_s : 0;
     statistics.bottom_build_s += counters.bottom_build_s;
     statistics.bottom_traversal_s += counters.trace_s * share;
     statistics.top_traversal_s += counters.trace_s * (1 - share);
