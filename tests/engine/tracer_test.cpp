@@ -166,14 +166,17 @@ INSTANTIATE_TEST_SUITE_P(Levels, TracerTest,
                              return std::string(info.param.name);
                          });
 
+std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& settings) {
+    return prepare_scene(test::make_body_scene(test::make_torus(6, 9),
+                                               test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
+                                                                       DisplacementSpace::tangent)),
+                         settings);
+}
+
 TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
     RenderSettings settings;
     settings.level = 6;
-    const auto prepared =
-        prepare_scene(test::make_body_scene(test::make_torus(6, 9),
-                                            test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
-                                                                    DisplacementSpace::tangent)),
-                      settings);
+    const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<std::vector<cpu::TraceHit>> results;
     for (const size_t cap : {size_t(256) << 20, size_t(0), size_t(200000)}) {
@@ -198,11 +201,7 @@ TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
 TEST(Tracer, box_leaves_hold_every_exact_hit) {
     RenderSettings settings;
     settings.level = 4;
-    const auto prepared =
-        prepare_scene(test::make_body_scene(test::make_torus(6, 9),
-                                            test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
-                                                                    DisplacementSpace::tangent)),
-                      settings);
+    const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<cpu::TraceHit> exact(rays.size()), box(rays.size());
     cpu::Tracer(prepared, settings).closest_hits(rays, exact);

@@ -9,6 +9,7 @@
 
 #include "engine/cpu/bottom_tree.h"
 #include "math/lanes-inl.h"
+#include "surface/texels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -39,15 +40,6 @@ HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
             for (int c = 0; c < 3; ++c) values.value[kFrame + 3 * a + c] = get_component(axes[a], c);
     }
     return values;
-}
-
-/// Row and column of a texel, wrapped into the map.
-HWY_INLINE int32_t wrap_index(int32_t index, int32_t size, WrapMode wrap) {
-    if (wrap == WrapMode::clamp) return index < 0 ? 0 : index >= size ? size - 1 : index;
-    const int32_t period = wrap == WrapMode::mirror ? 2 * size : size;
-    index %= period;
-    if (index < 0) index += period;
-    return index < size ? index : period - 1 - index;
 }
 
 HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
