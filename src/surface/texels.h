@@ -2,29 +2,27 @@
 #pragma once
 
 #include <array>
-#include <bit>
+#include <cmath>
 #include <cstdint>
 
+#include "math/half.h"
 #include "relief/scene.h"
 
 namespace relief {
 
-/// Exact value of an IEEE 754 binary16 pattern.
-inline float half_to_float(uint16_t half) {
-    const uint32_t sign = uint32_t(half & 0x8000u) << 16;
-    const uint32_t exponent = (half >> 10) & 31u;
-    const uint32_t mantissa = half & 1023u;
-    if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000u | mantissa << 13);
-    if (exponent != 0) return std::bit_cast<float>(sign | (exponent + 112) << 23 | mantissa << 13);
-    const float magnitude = float(mantissa) * 0x1p-24f;
-    return sign ? -magnitude : magnitude;
+/// std::floor without the call that it is on instruction sets that have no rounding.
+inline float floor_texel(float x) {
+    if (!(std::fabs(x) < 0x1p23f)) return x; // whole already, or not finite
+    const float whole = float(int32_t(x));
+    return whole > x ? whole - 1 : whole;
 }
 
 /// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black.
 inline int64_t wrap_index(int64_t index, int64_t size, WrapMode wrap) {
+    if (index >= 0 && index < size) return index;
     switch (wrap) {
     case WrapMode::clamp:
-        return index < 0 ? 0 : index >= size ? size - 1 : index;
+        return index < 0 ? 0 : size - 1;
     case WrapMode::repeat: {
         const int64_t rest = index % size;
         return rest < 0 ? rest + size : rest;
@@ -37,7 +35,7 @@ inline int64_t wrap_index(int64_t index, int64_t size, WrapMode wrap) {
     case WrapMode::black:
         break;
     }
-    return index < 0 || index >= size ? -1 : index;
+    return -1;
 }
 
 /// First three channels of the texel in column x and row y, both inside the texture.
