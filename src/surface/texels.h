@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -10,11 +11,19 @@
 
 namespace relief {
 
+/// std::floor without the call that it is on instruction sets that have no rounding.
+inline float floor_texel(float x) {
+    if (!(std::fabs(x) < 0x1p23f)) return x; // whole already, or not finite
+    const float whole = float(int32_t(x));
+    return whole > x ? whole - 1 : whole;
+}
+
 /// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
 /// representable.
 template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
-    if (wrap == WrapMode::clamp) return index < 0 ? 0 : index >= size ? size - 1 : index;
-    if (wrap == WrapMode::black) return index < 0 || index >= size ? -1 : index;
+    if (index >= 0 && index < size) return index;
+    if (wrap == WrapMode::clamp) return index < 0 ? 0 : size - 1;
+    if (wrap == WrapMode::black) return -1;
     const Index period = wrap == WrapMode::mirror ? 2 * size : size;
     Index rest = index % period;
     if (rest < 0) rest += period;

@@ -67,12 +67,12 @@ class TileTracer {
     void record_first_hit(Path& path, const Vertex& vertex) const;
     void add_emission(Path& path, const Vertex& vertex) const;
     void sample_light(uint32_t index, const Vertex& vertex);
-    bool continue_path(Path& path, const Vertex& vertex) const;
+    bool continue_path(Path& path, const Vertex& vertex);
     bool survives_roulette(Path& path) const;
-    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) const;
+    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
     void trace_shadow_rays();
     void finish_paths();
-    Vertex make_vertex(const Path& path) const;
+    Vertex make_vertex(const Path& path);
     Vec2f random_pair(const Path& path, BouncePair pair) const;
 
     const Tracer& tracer_;
@@ -89,6 +89,7 @@ class TileTracer {
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
+    PatchSamplesCache patches_;
 };
 
 scalar::CameraFrame make_camera(const PreparedScene& scene) {
@@ -141,7 +142,8 @@ void TileTracer::start_paths() {
 
 void TileTracer::start_path(Path& path) const {
     const Vec2f jitter = scalar::sobol_pair(path.seed, sample_index_, kPixelPair);
-    const Vec2f lens = scalar::sobol_pair(path.seed, sample_index_, kLensPair);
+    const Vec2f lens =
+        camera_.aperture_radius > 0 ? scalar::sobol_pair(path.seed, sample_index_, kLensPair) : Vec2f{};
     const Vec2f position{float(path.x) + jitter.x, float(path.y) + jitter.y};
     const scalar::CameraRay ray = scalar::make_camera_ray(camera_, position, lens);
     path.depth = 0;
@@ -189,10 +191,10 @@ void TileTracer::add_background(Path& path) const {
         path.result.radiance += lights_.environment_radiance(path.ray.direction);
 }
 
-Vertex TileTracer::make_vertex(const Path& path) const {
+Vertex TileTracer::make_vertex(const Path& path) {
     const PreparedScene& scene = tracer_.scene();
     Vertex v;
-    v.point = tracer_.make_surface_point(path.hit);
+    v.point = tracer_.make_surface_point(path.hit, patches_);
     v.material = scene.materials[scene.instances[path.hit.instance].material];
     if (v.material.base_color_texture)
         v.material.base_color =
@@ -262,7 +264,7 @@ void TileTracer::sample_light(uint32_t index, const Vertex& vertex) {
     path.result.cost += 1;
 }
 
-bool TileTracer::continue_path(Path& path, const Vertex& vertex) const {
+bool TileTracer::continue_path(Path& path, const Vertex& vertex) {
     const float u_lobe = random_pair(path, kPickPair).y;
     const scalar::BsdfSample drawn =
         scalar::sample_bsdf(vertex.bsdf, vertex.wo_local, u_lobe, random_pair(path, kBsdfPair));
@@ -291,12 +293,13 @@ bool TileTracer::survives_roulette(Path& path) const {
 
 /// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
 void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction,
-                                  bool is_wide) const {
+                                  bool is_wide) {
     const TraceHit& hit = path.hit;
     uint32_t bias = hit.bias;
     Vec3f origin = tracer_.offset_origin(vertex.point, direction);
     if (is_wide && settings_.level == kAutoLevel && bias < kLargestBias) {
-        const SurfacePoint coarse = tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1);
+        const SurfacePoint coarse = 
+            tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
         const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
         if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
     }
