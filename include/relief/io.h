@@ -25,7 +25,10 @@ struct MeshSceneOptions {
     std::filesystem::path environment; ///< empty: a soft sky and a sun
 };
 
-/// A mesh alone: automatic camera (from above, front, whole object in view) and light.
+/// A mesh alone: automatic camera (from above, front; the object fills 85 % of the height of a square or
+/// wider picture) and light. The strength of an environment given here is set so that a white diffuse surface
+/// has radiance 0.6: one that faces the camera or, where that is brighter, one lit evenly from all
+/// directions.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
 
 /// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).
