@@ -121,9 +121,10 @@ void extend_by_displacement(Reach& reach, const Mesh& mesh, const Displacement& 
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
         const FaceFrame face = make_face_frame(mesh, first, size);
-        for (int j = 0; j <= steps; ++j) {
-            for (int i = 0; i <= steps; ++i) {
-                const float u = float(i) / float(steps), v = float(j) / float(steps);
+        for (int j = 0; j < steps; ++j) {
+            for (int i = 0; i < steps; ++i) {
+                // Never on the border, where the uv may belong to the next tile.
+                const float u = (float(i) + 0.5f) / float(steps), v = (float(j) + 0.5f) / float(steps);
                 const auto mix = [&](const auto& c) {
                     return (c[0] * (1 - u) + c[1] * u) * (1 - v) + (c[3] * (1 - u) + c[2] * u) * v;
                 };
@@ -134,10 +135,10 @@ void extend_by_displacement(Reach& reach, const Mesh& mesh, const Displacement& 
     }
 }
 
-/// Rounds what the displacement adds to the reach of the bare mesh to thirtieths of the mesh's size, which
+/// Rounds what the displacement adds to the reach of the bare mesh to fifteenths of the mesh's size, which
 /// the margin has room for: so coding errors rarely move the camera.
 void coarsen(Reach& reach, const std::array<float, 4>& bare) {
-    const float step = std::max(bare[0] + bare[1], bare[2] + bare[3]) / 30;
+    const float step = std::max(bare[0] + bare[1], bare[2] + bare[3]) / 15;
     if (!(step > 0)) return;
     for (size_t k = 0; k < 4; ++k) {
         const float steps = std::round((reach.sides[k] - bare[k]) / step);

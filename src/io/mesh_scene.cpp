@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,28 +18,47 @@ namespace relief {
 
 namespace {
 
-/// Radiance of a white diffuse surface with normal `normal` under an image of a sky, and of one that gets
-/// light evenly from all directions; the brighter of the two.
-float measure_brightness(const Texture& sky, const Vec3f& normal) {
-    double facing = 0, mean = 0, weights = 0;
-    for (uint32_t y = 0; y < sky.height; ++y) {
-        const float v = (float(y) + 0.5f) / float(sky.height);
+/// Normals of surfaces that the camera sees, spread evenly.
+std::vector<Vec3f> make_visible_normals(const Vec3f& view) {
+    std::vector<Vec3f> normals = {view};
+    constexpr int kCount = 64;
+    constexpr float kGoldenAngle = 2.3999632f;
+    for (int k = 0; k < kCount; ++k) {
+        const float y = 1 - 2 * (float(k) + 0.5f) / kCount, radius = std::sqrt(1 - y * y);
+        const float turn = kGoldenAngle * float(k);
+        const Vec3f normal{radius * std::sin(turn), y, radius * std::cos(turn)};
+        if (dot(normal, view) > 0.2f) normals.push_back(normal);
+    }
+    return normals;
+}
+
+/// Radiance of the brightest of all white diffuse surfaces that the camera sees under an image of a sky.
+float measure_brightness(const Texture& sky, const Vec3f& view) {
+    const std::vector<Vec3f> normals = make_visible_normals(view);
+    std::vector<double> received(normals.size());
+    double weights = 0;
+    const uint32_t columns = std::max(sky.width, 128u), rows = std::max(sky.height, 64u);
+    for (uint32_t row = 0; row < rows; ++row) {
+        const float v = (float(row) + 0.5f) / float(rows);
+        const uint32_t y = uint32_t(uint64_t(row) * sky.height / rows);
         const double weight = std::sin(std::numbers::pi * double(v));
-        for (uint32_t x = 0; x < sky.width; ++x) {
+        weights += weight * columns;
+        for (uint32_t column = 0; column < columns; ++column) {
+            const uint32_t x = uint32_t(uint64_t(column) * sky.width / columns);
             const Vec3f radiance{get_texel(sky, x, y, 0), get_texel(sky, x, y, 1), get_texel(sky, x, y, 2)};
             const double light = weight * double(scalar::luminance(radiance));
             const Vec3f direction =
-                scalar::latlong_to_direction(Vec2f{(float(x) + 0.5f) / float(sky.width), v});
-            facing += light * std::max(0.0, double(dot(direction, normal)));
-            mean += light, weights += weight;
+                scalar::latlong_to_direction(Vec2f{(float(column) + 0.5f) / float(columns), v});
+            for (size_t k = 0; k < normals.size(); ++k)
+                received[k] += light * double(std::max(0.0f, dot(direction, normals[k])));
         }
     }
     // The mean of max(0, cos) over the sphere is 1/4.
-    return float(std::max(4 * facing, mean) / weights);
+    return float(4 * *std::max_element(received.begin(), received.end()) / weights);
 }
 
 void add_image_light(Scene& scene, std::shared_ptr<const Texture> sky, const Vec3f& view) {
-    constexpr float kWhite = 0.6f;
+    constexpr float kWhite = 1;
     Environment environment;
     const float brightness = measure_brightness(*sky, view);
     if (brightness > 0) environment.strength = kWhite / brightness;
