@@ -122,8 +122,7 @@ std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
     case Kind::environment: {
         const auto drawn = environment_->draw_direction(random.u);
         if (!(drawn.pdf > 0)) return std::nullopt;
-        result = {drawn.direction, kInfinity, environment_->radiance(drawn.direction) * (1 / drawn.pdf),
-                  drawn.pdf, std::nullopt};
+        result = {drawn.direction, kInfinity, drawn.radiance * (1 / drawn.pdf), drawn.pdf, std::nullopt};
         break;
     }
     case Kind::sun:
@@ -221,8 +220,8 @@ Vec3f LightSet::gather(const Vec3f& origin, const Vec3f& direction, float distan
         Vec3f radiance{};
         float pdf = 0;
         if (source.kind == Kind::environment && distance == kInfinity) {
-            radiance = environment_->radiance(direction);
-            pdf = environment_->pdf(direction);
+            const auto seen = environment_->look_up(direction);
+            radiance = seen.radiance, pdf = seen.pdf;
         } else if (source.kind == Kind::sun && source.cone > 0 && distance == kInfinity) {
             // 1 - cos from the chord between the unit vectors, exact for small angles.
             const Vec3f chord = direction - source.basis.n;
@@ -239,9 +238,9 @@ Vec3f LightSet::gather(const Vec3f& origin, const Vec3f& direction, float distan
             radiance = shape_radiance(light, cone);
             pdf = scalar::cone_pdf(cone);
         }
-        if (pdf > 0)
-            sum += radiance *
-                   scalar::power_heuristic(bsdf_pdf, pdf * (estimate_irradiance(source, origin) / total));
+        if (radiance == Vec3f{}) continue;
+        const float share = total > 0 ? estimate_irradiance(source, origin) / total : 0.0f;
+        sum += radiance * scalar::power_heuristic(bsdf_pdf, pdf * share);
     }
     return sum;
 }

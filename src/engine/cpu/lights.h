@@ -38,6 +38,9 @@ class LightSet {
     };
     std::optional<LightSample> draw(const Vec3f& position, uint32_t bias, const RandomNumbers& random) const;
 
+    /// False: `u_emitter` is never looked at.
+    bool has_emitters() const { return emitter_cumulative_.size() > 1; }
+
     /// Radiance of the environment along a direction; black without one.
     Vec3f environment_radiance(const Vec3f& direction) const;
 
