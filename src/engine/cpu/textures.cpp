@@ -2,15 +2,16 @@
 
 #include <cmath>
 
-#include "math/half.h"
-#include "math/vec.h"
 #include "surface/texels.h"
 
 namespace relief::cpu {
 
 namespace {
 
-Vec3f blend(const Vec3f& a, const Vec3f& b, float s) { return a * (1 - s) + b * s; }
+Vec3f make_color(const Texture& texture, const std::array<float, 4>& channels) {
+    if (texture.channel_count < 3) return {channels[0], channels[0], channels[0]};
+    return {channels[0], channels[1], channels[2]};
+}
 
 /// Bilinear value at (x, y), in texels from the centre of texel (0, 0); repeated in x.
 Vec3f fetch_bilinear(const Texture& texture, float x, float y, WrapMode wrap_y) {
@@ -20,22 +21,15 @@ Vec3f fetch_bilinear(const Texture& texture, float x, float y, WrapMode wrap_y) 
     const auto row = [&](int64_t i) { return uint32_t(wrap_index(i, texture.height, wrap_y)); };
     const uint32_t x0 = column(int64_t(whole_x)), x1 = column(int64_t(whole_x) + 1);
     const uint32_t y0 = row(int64_t(whole_y)), y1 = row(int64_t(whole_y) + 1);
-    return blend(blend(fetch_texel(texture, x0, y0), fetch_texel(texture, x1, y0), fx),
-                 blend(fetch_texel(texture, x0, y1), fetch_texel(texture, x1, y1), fx), fy);
+    return make_color(texture, filter_channels(read_channels(texture, x0, y0), read_channels(texture, x1, y0),
+                                               read_channels(texture, x0, y1), read_channels(texture, x1, y1),
+                                               fx, fy));
 }
 
 } // namespace
 
 Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
-    const size_t i = (size_t(y) * texture.width + x) * 4;
-    const bool is_grey = texture.channel_count < 3;
-    if (!texture.floats.empty()) {
-        const float* f = texture.floats.data() + i;
-        return is_grey ? Vec3f{f[0], f[0], f[0]} : Vec3f{f[0], f[1], f[2]};
-    }
-    const uint16_t* h = texture.halves.data() + i;
-    const float first = half_to_float(h[0]);
-    return is_grey ? Vec3f{first, first, first} : Vec3f{first, half_to_float(h[1]), half_to_float(h[2])};
+    return make_color(texture, read_channels(texture, x, y));
 }
 
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
