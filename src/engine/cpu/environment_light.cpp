@@ -143,15 +143,18 @@ float EnvironmentLight::cell_density(uint32_t column, uint32_t row, const Vec3f&
 }
 
 EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
-    if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf(), scale_};
+    if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf()};
     const Interval row = find_interval(rows_, u.y);
     const size_t start = size_t(row.index) * (cells_x_ + 1);
     const Interval column = find_interval(std::span(columns_).subspan(start, cells_x_ + 1), u.x);
     const Vec2f position{(float(column.index) + column.position) / float(cells_x_),
                          (float(row.index) + row.position) / float(cells_y_)};
     const Vec3f direction = world_from_local(scalar::latlong_to_direction(position));
-    return {direction, cell_density(column.index, row.index, direction),
-            fetch_latlong(*environment_.texture, position) * scale_};
+    return {direction, cell_density(column.index, row.index, direction), position};
+}
+
+Vec3f EnvironmentLight::radiance(const DirectionSample& drawn) const {
+    return environment_.texture ? fetch_latlong(*environment_.texture, drawn.position) * scale_ : scale_;
 }
 
 EnvironmentLight::Lookup EnvironmentLight::look_up(const Vec3f& direction) const {

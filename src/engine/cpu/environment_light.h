@@ -16,13 +16,14 @@ class EnvironmentLight {
 
     struct DirectionSample {
         Vec3f direction;
-        float pdf; ///< per solid angle; 0: nothing could be drawn
-        Vec3f radiance;
+        float pdf;         ///< per solid angle; 0: nothing could be drawn
+        Vec2f position{};  ///< in the image
     };
     /// Draws from a piecewise constant density over latitude and longitude, luminance times sin(theta);
     /// uniformly over the sphere without an image (Pharr, Jakob and Humphreys 2023, Physically Based
     /// Rendering, section 12.5.2).
     DirectionSample draw_direction(const Vec2f& u) const;
+    Vec3f radiance(const DirectionSample& drawn) const;
     float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
 
     /// Radiance from a direction and the density with which it is drawn, both at once.

@@ -107,8 +107,8 @@ float LightSet::total_irradiance(const Vec3f& position) const {
     return total;
 }
 
-std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
-                                          const RandomNumbers& random) const {
+std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumbers& random) const {
+    const Vec3f& position = at.position;
     const float total = total_irradiance(position);
     if (!(total > 0)) return std::nullopt;
     const float target = random.u_light * total;
@@ -121,8 +121,10 @@ std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
     switch (source.kind) {
     case Kind::environment: {
         const auto drawn = environment_->draw_direction(random.u);
-        if (!(drawn.pdf > 0)) return std::nullopt;
-        result = {drawn.direction, kInfinity, drawn.radiance * (1 / drawn.pdf), drawn.pdf, std::nullopt};
+        // Half of the directions lead into the surface: the image, far too large for a cache, is not read for them.
+        if (!(drawn.pdf > 0) || dot(drawn.direction, at.normal) <= 0) return std::nullopt;
+        result = {drawn.direction, kInfinity, environment_->radiance(drawn) * (1 / drawn.pdf), drawn.pdf,
+                  std::nullopt};
         break;
     }
     case Kind::sun:
@@ -132,10 +134,10 @@ std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
         result = draw_point(source, position, random.u);
         break;
     case Kind::emitters:
-        result = draw_emitter(position, bias, random.u_emitter, random.u);
+        result = draw_emitter(position, at.bias, random.u_emitter, random.u);
         break;
     }
-    if (!(result.pdf > 0)) return std::nullopt;
+    if (!(result.pdf > 0) || dot(result.direction, at.normal) <= 0) return std::nullopt;
     const float probability = estimate / total;
     result.pdf *= probability;
     result.weight *= 1 / probability;

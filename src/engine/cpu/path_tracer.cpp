@@ -174,17 +174,21 @@ void TileTracer::shade_paths() {
     const Timer timer;
     shadow_rays_.clear();
     shadows_.clear();
+    // The background in a short loop of its own: reads of the image, which wait for memory, overlap.
+    const auto is_finished_outside = [this](uint32_t i) {
+        add_background(paths_[i]);
+        return !paths_[i].hit.is_hit();
+    };
+    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished_outside), active_.end());
     const auto is_finished = [this](uint32_t i) { return !shade_path(i); };
     active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished), active_.end());
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
 
-/// Adds the light of one vertex; true when the path goes on, its next ray set.
+/// Adds the light that reaches one vertex; true when the path goes on, its next ray set.
 bool TileTracer::shade_path(uint32_t index) {
     Path& path = paths_[index];
-    add_background(path);
-    if (!path.hit.is_hit()) return false;
     const Vertex vertex = make_vertex(path);
     if (path.depth == 0) record_first_hit(path, vertex);
     add_emission(path, vertex);
@@ -252,9 +256,9 @@ void TileTracer::add_emission(Path& path, const Vertex& vertex) const {
 void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random) {
     Path& path = paths_[index];
     const SurfacePoint& point = vertex.point;
-    const auto light =
-        lights_.draw(point.position, path.hit.bias, {random.u_light, random.u_emitter, random.light});
-    if (!light || dot(point.geometric_normal, light->direction) <= 0) return;
+    const auto light = lights_.draw({point.position, point.geometric_normal, path.hit.bias},
+                                    {random.u_light, random.u_emitter, random.light});
+    if (!light) return;
     const Vec3f wi = scalar::to_local(vertex.basis, light->direction);
     const scalar::BsdfValue bsdf = scalar::evaluate_bsdf(vertex.bsdf, vertex.wo_local, wi);
     const bool is_last = path.depth == settings_.bounces;
