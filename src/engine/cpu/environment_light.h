@@ -16,21 +16,32 @@ class EnvironmentLight {
 
     struct DirectionSample {
         Vec3f direction;
-        float pdf; ///< per solid angle; 0: nothing could be drawn
+        float pdf;        ///< per solid angle; 0: nothing could be drawn
+        Vec2f position{}; ///< in the image
     };
     /// Draws from a piecewise constant density over latitude and longitude, luminance times sin(theta);
     /// uniformly over the sphere without an image (Pharr, Jakob and Humphreys 2023, Physically Based
     /// Rendering, section 12.5.2).
     DirectionSample draw_direction(const Vec2f& u) const;
-    float pdf(const Vec3f& direction) const;
+    Vec3f radiance(const DirectionSample& drawn) const;
+    float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
+
+    /// Radiance from a direction and the density with which it is drawn, both at once.
+    struct Lookup {
+        Vec3f radiance;
+        float pdf;
+    };
+    Lookup look_up(const Vec3f& direction) const;
 
     /// Mean over all directions.
     float mean_luminance() const { return mean_luminance_; }
-    size_t byte_count() const { return (rows_.size() + columns_.size()) * sizeof(float); }
+    size_t byte_count() const {
+        return (rows_.size() + columns_.size()) * sizeof(float) + guides_.size() * sizeof(uint16_t);
+    }
 
   private:
     void build_distribution();
-    float cell_probability(uint32_t column, uint32_t row) const;
+    float cell_density(uint32_t column, uint32_t row, const Vec3f& direction) const;
     Vec3f local_from_world(const Vec3f& d) const;
     Vec3f world_from_local(const Vec3f& d) const;
 
@@ -41,6 +52,8 @@ class EnvironmentLight {
     uint32_t cells_x_ = 0, cells_y_ = 0;
     std::vector<float> rows_;    ///< cells_y_ + 1 cumulative probabilities
     std::vector<float> columns_; ///< cells_x_ + 1 cumulative probabilities a row
+    /// Where to search for a random number: the cells of each row, then the rows.
+    std::vector<uint16_t> guides_;
 };
 
 } // namespace relief::cpu
