@@ -7,13 +7,14 @@
 
 #include "io/file_system.h"
 #include "relief/error.h"
+#include "relief/scene.h"
 #include "relief/suggest.h"
 
 namespace relief {
 
 namespace {
 
-constexpr int kMaxSide = 65536;
+constexpr int kMaxSide = kMaxPictureSize;
 constexpr int64_t kMaxTexels = int64_t(1) << 31;
 constexpr int kMaxChannels = 1024;
 constexpr std::array<std::string_view, 8> kExtensions = {".exr", ".tif", ".tiff", ".tx",
