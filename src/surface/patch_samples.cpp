@@ -33,15 +33,14 @@ Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& 
                                 wrap_index(int64_t(x0) + 1, texture.width, map.wrap)};
     const int64_t rows[2] = {wrap_index(int64_t(y0), texture.height, map.wrap),
                              wrap_index(int64_t(y0) + 1, texture.height, map.wrap)};
-    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
+    const std::array<float, 4> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z, 0};
     const auto read = [&](int64_t column, int64_t row) {
-        return column < 0 || row < 0 ? middle : read_texel(texture, column, row);
+        return column < 0 || row < 0 ? middle : read_channels(texture, column, row);
     };
     const auto t00 = read(columns[0], rows[0]), t10 = read(columns[1], rows[0]);
     const auto t01 = read(columns[0], rows[1]), t11 = read(columns[1], rows[1]);
-    std::array<float, 3> value;
-    for (int c = 0; c < 3; ++c)
-        value[c] = scalar::filter_texels(t00[c], t10[c], t01[c], t11[c], fx, fy) - middle[c];
+    std::array<float, 4> value = filter_channels(t00, t10, t01, t11, fx, fy);
+    for (size_t c = 0; c < 4; ++c) value[c] -= middle[c];
     const auto decode = [&](const Vec3f& row) {
         return scalar::decode_row(value[0], value[1], value[2], row.x, row.y, row.z);
     };
