@@ -29,8 +29,9 @@ Interval find_interval(std::span<const float> cumulative, float u) {
     return {index, std::min(position, 0x1.fffffep-1f)};
 }
 
-/// Turns weights that start at values[1] into cumulative probabilities; returns their sum. What is dim beside a
-/// lamp gets a share that floats can still tell from nothing: in the lamp's shadow it is all the light there is.
+/// Turns weights that start at values[1] into cumulative probabilities; returns their sum. What is dim beside
+/// a lamp gets a share that floats can still tell from nothing: in the lamp's shadow it is all the light
+/// there is.
 double accumulate(std::span<float> values) {
     constexpr double kLeastShare = 0.01; // of the mean weight
     double sum = 0;

@@ -16,8 +16,8 @@ class EnvironmentLight {
 
     struct DirectionSample {
         Vec3f direction;
-        float pdf;         ///< per solid angle; 0: nothing could be drawn
-        Vec2f position{};  ///< in the image
+        float pdf;        ///< per solid angle; 0: nothing could be drawn
+        Vec2f position{}; ///< in the image
     };
     /// Draws from a piecewise constant density over latitude and longitude, luminance times sin(theta);
     /// uniformly over the sphere without an image (Pharr, Jakob and Humphreys 2023, Physically Based

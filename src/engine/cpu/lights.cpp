@@ -121,7 +121,8 @@ std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumber
     switch (source.kind) {
     case Kind::environment: {
         const auto drawn = environment_->draw_direction(random.u);
-        // Half of the directions lead into the surface: the image, far too large for a cache, is not read for them.
+        // Half of the directions lead into the surface: the image, far too large for a cache, is not read for
+        // them.
         if (!(drawn.pdf > 0) || dot(drawn.direction, at.normal) <= 0) return std::nullopt;
         result = {drawn.direction, kInfinity, environment_->radiance(drawn) * (1 / drawn.pdf), drawn.pdf,
                   std::nullopt};

@@ -304,13 +304,12 @@ bool TileTracer::survives_roulette(Path& path, float u_roulette) {
 }
 
 /// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
-void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction,
-                                  bool is_wide) {
+void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) {
     const TraceHit& hit = path.hit;
     uint32_t bias = hit.bias;
     Vec3f origin = tracer_.offset_origin(vertex.point, direction);
     if (is_wide && settings_.level == kAutoLevel && bias < kLargestBias) {
-        const SurfacePoint coarse = 
+        const SurfacePoint coarse =
             tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
         const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
         if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
