@@ -25,7 +25,9 @@ struct MeshSceneOptions {
     std::filesystem::path environment; ///< empty: a soft sky and a sun
 };
 
-/// A mesh alone: automatic camera (from above, front, whole object in view) and light.
+/// A mesh alone: automatic camera (from above, front; the object fills about 85 % of the height of a square
+/// or wider picture) and light. The brightness of an environment given here is set so that the brightest
+/// white diffuse surface that the camera can see, whatever way it is turned, has radiance 1.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
 
 /// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).

@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
-#include "relief/suggest.h"
 #include "relief/error.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "io/file_system.h"
-#include "relief/suggest.h"
 #include "relief/error.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

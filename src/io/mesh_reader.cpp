@@ -7,9 +7,9 @@
 #include "io/file_system.h"
 #include "io/mesh_assimp.h"
 #include "io/mesh_obj.h"
-#include "relief/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

@@ -10,9 +10,9 @@
 #include "io/file_system.h"
 #include "io/json_node.h"
 #include "io/scene_sections.h"
-#include "relief/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

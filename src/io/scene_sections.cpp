@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "io/displacement_reader.h"
-#include "relief/suggest.h"
 #include "math/affine.h"
+#include "relief/suggest.h"
 
 namespace relief {
 

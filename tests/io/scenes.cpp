@@ -1,8 +1,11 @@
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "io/displacement_reader.h"
 #include "io/scene_reader.h"
 #include "io/test_files.h"
+#include "math/vec.h"
 #include "relief/io.h"
 
 namespace relief {
@@ -26,6 +29,20 @@ class SceneFiles : public FileTest {
         return R"({"displacements": {"ear": {)" + members + "}}}";
     }
 };
+
+/// Largest distance of the points from the middle of a square picture, 1 at its border.
+float measure_fill(const Camera& camera, const std::vector<Vec3f>& points) {
+    const Vec3f forward = normalize(camera.to - camera.from), right = normalize(cross(forward, camera.up));
+    const Vec3f up = cross(right, forward);
+    const float tangent = std::tan(camera.fov_degrees * std::numbers::pi_v<float> / 360);
+    float result = 0;
+    for (const Vec3f& p : points) {
+        const Vec3f d = p - camera.from;
+        const float side = std::max(std::fabs(dot(d, right)), std::fabs(dot(d, up)));
+        result = std::max(result, side / (dot(d, forward) * tangent));
+    }
+    return result;
+}
 
 TEST_F(SceneFiles, every_field_is_read) {
     write_pixels<float>("env.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3, 4, 5, 6});
@@ -215,11 +232,45 @@ TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {
     const Scene scene = load_mesh_scene(folder_ / "plane.obj", options);
     EXPECT_GT(scene.camera.from.z, 2.0f);
     EXPECT_GT(scene.camera.focus_distance, flat.camera.focus_distance + 0.5f);
-    EXPECT_FLOAT_EQ(scene.camera.to.z, 1.5f);
+    const float fill = measure_fill(flat.camera, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+    EXPECT_NEAR(fill, 0.85f, 1e-3f);
+    // The texel of 1 raises the top left quarter, that of 0.5 moves the bottom right one up.
+    const float raised = measure_fill(
+        scene.camera,
+        {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 3}, {0, 1, 3}, {-1, 0, 3}, {0, 1.5f, 0}, {1, 1.5f, 0}});
+    EXPECT_GT(raised, 0.79f);
+    EXPECT_LT(raised, 0.91f);
     EXPECT_EQ(scene.lights.size(), 1u);
     EXPECT_NE(scene.hash, flat.hash);
     options.axes = "t,q,b";
     EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "plane.obj", options); }), "is no order of axes");
+}
+
+TEST_F(SceneFiles, coding_errors_of_a_map_do_not_move_the_camera) {
+    MeshSceneOptions options;
+    options.displacement_map = folder_ / "map.exr";
+    options.preset = "genvdm";
+    const Camera exact = load_mesh_scene(folder_ / "plane.obj", options).camera;
+    write_pixels<float>("map.exr", 2, 2, 3, OIIO::TypeDesc::FLOAT,
+                        {.002f, 0, .998f, 0, -.002f, .002f, 0, 0, 0, -.002f, .502f, 0});
+    const Camera coarse = load_mesh_scene(folder_ / "plane.obj", options).camera;
+    EXPECT_EQ(coarse.from, exact.from);
+    EXPECT_EQ(coarse.to, exact.to);
+}
+
+TEST_F(SceneFiles, the_environment_of_a_mesh_alone_lights_visible_white_to_one) {
+    MeshSceneOptions options;
+    options.environment = folder_ / "sky.exr";
+    const auto load_strength = [&](const std::vector<float>& texels) {
+        write_pixels<float>("sky.exr", int(texels.size() / 3), 1, 3, OIIO::TypeDesc::FLOAT, texels);
+        return load_mesh_scene(folder_ / "plane.obj", options).environment.value().strength;
+    };
+    EXPECT_NEAR(load_strength({20, 20, 20, 20, 20, 20}), 0.05f, 0.005f);
+    EXPECT_EQ(load_strength({0, 0, 0, 0, 0, 0}), 1);
+    // Four columns: the outer two are behind the camera, which looks along -z, and light what it sees.
+    const float frontlit = load_strength({8, 8, 8, 0, 0, 0, 0, 0, 0, 8, 8, 8});
+    const float backlit = load_strength({0, 0, 0, 8, 8, 8, 8, 8, 8, 0, 0, 0});
+    EXPECT_LT(frontlit, 0.7f * backlit);
 }
 
 } // namespace relief
