@@ -1,9 +1,10 @@
-// Raw texels by integer coordinates: half to float, the wrap modes, four channels to three.
+// Raw texels by integer coordinates: the wrap modes, four channels to three.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "math/half.h"
 #include "math/scalar.h"
@@ -18,25 +19,16 @@ inline float floor_texel(float x) {
     return whole > x ? whole - 1 : whole;
 }
 
-/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black.
-inline int64_t wrap_index(int64_t index, int64_t size, WrapMode wrap) {
+/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
+/// representable.
+template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
     if (index >= 0 && index < size) return index;
-    switch (wrap) {
-    case WrapMode::clamp:
-        return index < 0 ? 0 : size - 1;
-    case WrapMode::repeat: {
-        const int64_t rest = index % size;
-        return rest < 0 ? rest + size : rest;
-    }
-    case WrapMode::mirror: {
-        int64_t rest = index % (2 * size);
-        if (rest < 0) rest += 2 * size;
-        return rest < size ? rest : 2 * size - 1 - rest;
-    }
-    case WrapMode::black:
-        break;
-    }
-    return -1;
+    if (wrap == WrapMode::clamp) return index < 0 ? 0 : size - 1;
+    if (wrap == WrapMode::black) return -1;
+    const Index period = wrap == WrapMode::mirror ? 2 * size : size;
+    Index rest = index % period;
+    if (rest < 0) rest += period;
+    return rest < size ? rest : period - 1 - rest;
 }
 
 /// The texel in column x and row y, both inside the texture: four channels, so that it fills a register.
