@@ -14,16 +14,32 @@ namespace relief::cpu {
 namespace {
 
 constexpr uint32_t kMaxCellsX = 1024, kMaxCellsY = 512;
+constexpr uint32_t kGuides = 64; ///< a row of cells; a power of two
 
 struct Interval {
     uint32_t index;
     float position; ///< within the interval, [0, 1)
 };
 
-/// Interval of a cumulative distribution (0 ... 1) that u falls into; never one of zero width.
-Interval find_interval(std::span<const float> cumulative, float u) {
-    const auto above = std::upper_bound(cumulative.begin() + 1, cumulative.end() - 1, u);
-    const uint32_t index = uint32_t(above - cumulative.begin()) - 1;
+/// Number of the interval of a cumulative distribution (0 ... 1) that u falls into, which lies in [first,
+/// last].
+uint32_t search_interval(std::span<const float> cumulative, float u, uint32_t first, uint32_t last) {
+    const auto above = std::upper_bound(cumulative.begin() + first + 1, cumulative.begin() + last + 1, u);
+    return uint32_t(above - cumulative.begin()) - 1;
+}
+
+/// Writes where the search for u in [k, k + 1) / kGuides starts and ends: entries k and k + 1.
+void fill_guide(std::span<const float> cumulative, std::span<uint16_t> guide) {
+    const uint32_t last = uint32_t(cumulative.size()) - 2;
+    for (uint32_t k = 0; k < kGuides; ++k)
+        guide[k] = uint16_t(search_interval(cumulative, float(k) / float(kGuides), 0, last));
+    guide[kGuides] = uint16_t(last);
+}
+
+/// Interval that u falls into; never one of zero width.
+Interval find_interval(std::span<const float> cumulative, const uint16_t* guide, float u) {
+    const uint32_t k = std::min(uint32_t(u * float(kGuides)), kGuides - 1);
+    const uint32_t index = search_interval(cumulative, u, guide[k], guide[k + 1]);
     const float width = cumulative[index + 1] - cumulative[index];
     const float position = width > 0 ? (u - cumulative[index]) / width : 0.5f;
     return {index, std::min(position, 0x1.fffffep-1f)};
@@ -94,6 +110,7 @@ void EnvironmentLight::build_distribution() {
     cells_x_ = std::min(texture.width, kMaxCellsX), cells_y_ = std::min(texture.height, kMaxCellsY);
     rows_.assign(cells_y_ + 1, 0.0f);
     columns_.assign(size_t(cells_y_) * (cells_x_ + 1), 0.0f);
+    guides_.assign(size_t(cells_y_ + 1) * (kGuides + 1), uint16_t(0));
     parallel_for("environment_rows", cells_y_, 1, [&](size_t begin, size_t end) {
         for (size_t cell_y = begin; cell_y < end; ++cell_y) {
             const std::span<float> cells = std::span(columns_).subspan(cell_y * (cells_x_ + 1), cells_x_ + 1);
@@ -114,10 +131,12 @@ void EnvironmentLight::build_distribution() {
             }
             for (uint32_t x = 0; x < cells_x_; ++x) cells[x + 1] = float(sums[x]);
             rows_[cell_y + 1] = float(accumulate(cells));
+            fill_guide(cells, std::span(guides_).subspan(cell_y * (kGuides + 1), kGuides + 1));
         }
     });
     // The sine integrals sum up to 2 over the rows.
     mean_luminance_ = float(accumulate(rows_) / (2.0 * texture.width));
+    fill_guide(rows_, std::span(guides_).last(kGuides + 1));
 }
 
 Vec3f EnvironmentLight::local_from_world(const Vec3f& d) const {
@@ -145,9 +164,11 @@ float EnvironmentLight::cell_density(uint32_t column, uint32_t row, const Vec3f&
 
 EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
     if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf()};
-    const Interval row = find_interval(rows_, u.y);
+    const auto guide = [this](uint32_t row) { return guides_.data() + size_t(row) * (kGuides + 1); };
+    const Interval row = find_interval(rows_, guide(cells_y_), u.y);
     const size_t start = size_t(row.index) * (cells_x_ + 1);
-    const Interval column = find_interval(std::span(columns_).subspan(start, cells_x_ + 1), u.x);
+    const Interval column =
+        find_interval(std::span(columns_).subspan(start, cells_x_ + 1), guide(row.index), u.x);
     const Vec2f position{(float(column.index) + column.position) / float(cells_x_),
                          (float(row.index) + row.position) / float(cells_y_)};
     const Vec3f direction = world_from_local(scalar::latlong_to_direction(position));

@@ -35,7 +35,9 @@ class EnvironmentLight {
 
     /// Mean over all directions.
     float mean_luminance() const { return mean_luminance_; }
-    size_t byte_count() const { return (rows_.size() + columns_.size()) * sizeof(float); }
+    size_t byte_count() const {
+        return (rows_.size() + columns_.size()) * sizeof(float) + guides_.size() * sizeof(uint16_t);
+    }
 
   private:
     void build_distribution();
@@ -50,6 +52,8 @@ class EnvironmentLight {
     uint32_t cells_x_ = 0, cells_y_ = 0;
     std::vector<float> rows_;    ///< cells_y_ + 1 cumulative probabilities
     std::vector<float> columns_; ///< cells_x_ + 1 cumulative probabilities a row
+    /// Where to search for a random number: the cells of each row, then the rows.
+    std::vector<uint16_t> guides_;
 };
 
 } // namespace relief::cpu
