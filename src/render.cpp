@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/memory.h"
+#include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
@@ -22,18 +22,22 @@ void require(bool condition, const char* message, const char* hint) {
 }
 
 void validate_settings(const RenderSettings& s) {
-    require(s.width >= 1 && s.width <= 65536 && s.height >= 1 && s.height <= 65536, "the picture size is out of range",
-            "1 to 65536 pixels a side");
+    require(s.width >= 1 && s.width <= 65536 && s.height >= 1 && s.height <= 65536,
+            "the picture size is out of range", "1 to 65536 pixels a side");
     require(s.spp >= 1 && s.spp <= 1 << 20, "the number of samples is out of range", "1 to 1048576 a pixel");
-    require(s.first_sample >= 0 && s.first_sample <= (1 << 30), "the first sample is out of range", "0 to 1073741824");
+    require(s.first_sample >= 0 && s.first_sample <= (1 << 30), "the first sample is out of range",
+            "0 to 1073741824");
     require(s.bounces >= 0 && s.bounces <= 1000, "the number of bounces is out of range", "0 to 1000");
-    require(s.threads >= 0 && s.threads <= 4096, "the number of threads is out of range", "0 (all cores) to 4096");
+    require(s.threads >= 0 && s.threads <= 4096, "the number of threads is out of range",
+            "0 (all cores) to 4096");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
             "auto, or 0 to 12");
-    require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range", "above 0, at most 1e6 pixels");
-    require(s.crop == Window{} || (s.crop.x0 >= 0 && s.crop.y0 >= 0 && s.crop.x0 < s.crop.x1 && s.crop.y0 < s.crop.y1 &&
-                                   s.crop.x1 <= s.width && s.crop.y1 <= s.height),
-            "the crop is empty or leaves the picture", "x0,y0,x1,y1 in pixels, half open, inside the picture");
+    require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",
+            "above 0, at most 1e6 pixels");
+    require(s.crop == Window{} || (s.crop.x0 >= 0 && s.crop.y0 >= 0 && s.crop.x0 < s.crop.x1 &&
+                                   s.crop.y0 < s.crop.y1 && s.crop.x1 <= s.width && s.crop.y1 <= s.height),
+            "the crop is empty or leaves the picture",
+            "x0,y0,x1,y1 in pixels, half open, inside the picture");
 }
 
 void count_scene(const PreparedScene& scene, Statistics& statistics) {
@@ -42,8 +46,10 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
     std::vector<const Texture*> seen;
     for (const Surface& surface : scene.surfaces) {
         for (const Quad& quad : surface.quads) {
-            if (surface.has_displacement) ++statistics.patches;
-            else statistics.triangles += quad.is_triangle() ? 1 : 2;
+            if (surface.has_displacement)
+                ++statistics.patches;
+            else
+                statistics.triangles += quad.is_triangle() ? 1 : 2;
         }
         for (const DisplacementMap::Tile& tile : surface.map.tiles) {
             if (std::find(seen.begin(), seen.end(), tile.texture.get()) != seen.end()) continue;

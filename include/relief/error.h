@@ -1,4 +1,5 @@
-// The one exception type of the library. What went wrong, where (file, object, place), and what to do about it.
+// The one exception type of the library. What went wrong, where (file, object, place), and what to do about
+// it.
 #pragma once
 
 #include <stdexcept>
@@ -13,12 +14,13 @@ enum class ErrorKind { failed = 1, usage = 2, bad_input = 3, device_missing = 4,
 class Error : public std::runtime_error {
   public:
     struct Parts {
-        std::string message;  ///< what is wrong, one sentence without a full stop
-        std::string where;    ///< file, line and column, object or pixel: whatever pins it down; may be empty
-        std::string hint;     ///< what the user can do; may be empty
+        std::string message; ///< what is wrong, one sentence without a full stop
+        std::string where;   ///< file, line and column, object or pixel: whatever pins it down; may be empty
+        std::string hint;    ///< what the user can do; may be empty
     };
 
-    Error(ErrorKind kind, Parts parts) : std::runtime_error(join(parts)), kind_(kind), parts_(std::move(parts)) {}
+    Error(ErrorKind kind, Parts parts)
+        : std::runtime_error(join(parts)), kind_(kind), parts_(std::move(parts)) {}
 
     ErrorKind kind() const { return kind_; }
     const std::string& message() const { return parts_.message; }

@@ -1,4 +1,5 @@
-// Images with named channels, textures with raw texels, and what is done with finished pictures: compare and merge.
+// Images with named channels, textures with raw texels, and what is done with finished pictures: compare and
+// merge.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +21,9 @@ struct Image {
     int width = 0, height = 0;
     int x0 = 0, y0 = 0;
     int full_width = 0, full_height = 0;
-    std::vector<std::string> channels;            ///< "R", "depth.Z", ...: one name a channel, all distinct
-    std::vector<float> pixels;                    ///< width * height * channels.size()
-    std::map<std::string, std::string> metadata;  ///< header entries, e.g. "relief:seed"
+    std::vector<std::string> channels;           ///< "R", "depth.Z", ...: one name a channel, all distinct
+    std::vector<float> pixels;                   ///< width * height * channels.size()
+    std::map<std::string, std::string> metadata; ///< header entries, e.g. "relief:seed"
     SampleType source_type = SampleType::float32;
 
     /// Index of a channel by its full name, or nothing.
@@ -32,37 +33,39 @@ struct Image {
     float at(int x, int y, size_t channel) const;
 };
 
-/// Texels as they came from the file, never colour converted: four interleaved channels (missing ones are 0, a missing
-/// fourth is 1; `channel_count` tells how many the file had), row 0 at the top. Exactly one of the arrays is filled.
+/// Texels as they came from the file, never colour converted: four interleaved channels (missing ones are 0,
+/// a missing fourth is 1; `channel_count` tells how many the file had), row 0 at the top. Exactly one of the
+/// arrays is filled.
 struct Texture {
     uint32_t width = 0, height = 0;
     uint32_t channel_count = 0;
     SampleType source_type = SampleType::float32;
-    std::vector<float> floats;      ///< 4 * width * height, or empty; integers are scaled to [0, 1]
-    std::vector<uint16_t> halves;   ///< 4 * width * height IEEE 754 binary16 bits, or empty
-    std::string file;               ///< for messages
+    std::vector<float> floats;    ///< 4 * width * height, or empty; integers are scaled to [0, 1]
+    std::vector<uint16_t> halves; ///< 4 * width * height IEEE 754 binary16 bits, or empty
+    std::string file;             ///< for messages
     /// Bytes of the texels held.
     size_t byte_count() const { return floats.size() * sizeof(float) + halves.size() * sizeof(uint16_t); }
 };
 
 /// Difference of two images over their common layer.
 struct ImageDifference {
-    size_t pixels = 0;          ///< pixels compared
-    size_t one_only = 0;        ///< pixels finite in one image only
-    size_t over_threshold = 0;  ///< pixels whose difference is above the threshold, one_only included
+    size_t pixels = 0;         ///< pixels compared
+    size_t one_only = 0;       ///< pixels finite in one image only
+    size_t over_threshold = 0; ///< pixels whose difference is above the threshold, one_only included
     double max = 0, mean = 0, rms = 0;
 };
 
-/// Compares layer `layer` ("" is R, G, B) of two images of the same data window. Differences are relative to the
-/// larger value for "depth", absolute for every other layer. Throws bad_input when the windows or channels differ.
+/// Compares layer `layer` ("" is R, G, B) of two images of the same data window. Differences are relative to
+/// the larger value for "depth", absolute for every other layer. Throws bad_input when the windows or
+/// channels differ.
 ImageDifference compare_images(const Image& a, const Image& b, const std::string& layer, double threshold);
 
-/// Joins tiles and sample ranges of one picture: each pixel is the mean of the parts weighted by their "samples.Y".
-/// Layers that cannot be averaged (id, depth, P, N, Ng, uv) come from the part with the lowest sample range; variance is
-/// that of the joint mean. Pixels that no part covers are 0, their depth infinity.
-/// Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer "samples".
-/// Throws bad_input for parts of different pictures (scene hash, seed, size, channels) or overlapping sample ranges of
-/// a pixel.
+/// Joins tiles and sample ranges of one picture: each pixel is the mean of the parts weighted by their
+/// "samples.Y". Layers that cannot be averaged (id, depth, P, N, Ng, uv) come from the part with the lowest
+/// sample range; variance is that of the joint mean. Pixels that no part covers are 0, their depth infinity.
+/// Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer
+/// "samples". Throws bad_input for parts of different pictures (scene hash, seed, size, channels) or
+/// overlapping sample ranges of a pixel.
 Image merge_images(std::span<const Image> parts);
 
 } // namespace relief

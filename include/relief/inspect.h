@@ -13,13 +13,13 @@ enum class Severity { note, warning, error };
 
 struct Finding {
     Severity severity = Severity::note;
-    std::string code;  ///< stable, e.g. "W-8BIT"
-    std::string text;  ///< with the remedy
+    std::string code; ///< stable, e.g. "W-8BIT"
+    std::string text; ///< with the remedy
 };
 
 struct Fact {
-    std::string name;   ///< stable key, e.g. "patches"
-    std::string value;  ///< with its unit
+    std::string name;  ///< stable key, e.g. "patches"
+    std::string value; ///< with its unit
 };
 
 struct Inspection {

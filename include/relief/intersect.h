@@ -13,16 +13,16 @@ namespace relief {
 struct Ray {
     Vec3f origin{};
     float t_min = 0;
-    Vec3f direction{};  ///< need not have unit length; t counts in its lengths
+    Vec3f direction{}; ///< need not have unit length; t counts in its lengths
     float t_max = std::numeric_limits<float>::infinity();
 };
 
 struct RayHit {
-    float t = std::numeric_limits<float>::infinity();  ///< infinity: nothing hit
-    uint32_t object = kNoIndex;   ///< index into Scene::objects
-    uint32_t patch = kNoIndex;    ///< face of the object's mesh after refinement to quads
-    Vec2f uv{};                   ///< position on the patch, [0, 1]^2
-    Vec3f normal{};               ///< geometric, world space, unit length, on the side of the winding
+    float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing hit
+    uint32_t object = kNoIndex;                       ///< index into Scene::objects
+    uint32_t patch = kNoIndex;                        ///< face of the object's mesh after refinement to quads
+    Vec2f uv{};                                       ///< position on the patch, [0, 1]^2
+    Vec3f normal{}; ///< geometric, world space, unit length, on the side of the winding
 };
 
 /// A scene made ready for rays. Levels come from `settings` (level, pixel_error, the scene's camera).
@@ -33,7 +33,8 @@ class Intersector {
     Intersector(Intersector&&) noexcept;
     Intersector& operator=(Intersector&&) noexcept;
 
-    /// Nearest hits with t in (t_min, t_max); spans of equal length. Thread safe, uses all of `settings.threads`.
+    /// Nearest hits with t in (t_min, t_max); spans of equal length. Thread safe, uses all of
+    /// `settings.threads`.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const;
 
     /// hits[i] = 1 where anything lies in (t_min, t_max), else 0. Thread safe.

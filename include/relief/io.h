@@ -1,4 +1,5 @@
-// Files: scenes, meshes, maps in; scenes and pictures out. Links against relief_io; the core works without it.
+// Files: scenes, meshes, maps in; scenes and pictures out. Links against relief_io; the core works without
+// it.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +17,12 @@ Scene load_scene(const std::filesystem::path& file);
 
 /// What the command line says of a mesh that comes without a scene file. Unset values come from the preset.
 struct MeshSceneOptions {
-    std::filesystem::path displacement_map;  ///< empty: none; may hold <UDIM>
-    std::string preset;                      ///< empty: none
+    std::filesystem::path displacement_map; ///< empty: none; may hold <UDIM>
+    std::string preset;                     ///< empty: none
     std::optional<std::string> space, axes;
     std::optional<float> midlevel, scale;
     bool flip_v = false;
-    std::filesystem::path environment;       ///< empty: a soft sky and a sun
+    std::filesystem::path environment; ///< empty: a soft sky and a sun
 };
 
 /// A mesh alone: automatic camera (from above, front, whole object in view) and light.

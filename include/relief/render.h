@@ -21,24 +21,24 @@ inline constexpr int kAutoLevel = -1;
 inline constexpr int kMaxLevel = 12;
 
 struct Window {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< half open, pixels; all zero: the whole picture
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0; ///< half open, pixels; all zero: the whole picture
     friend bool operator==(const Window&, const Window&) = default;
 };
 
 struct RenderSettings {
-    int width = 1280, height = 720;  ///< pixels, [1, 65536] each
-    int spp = 64;                    ///< samples a pixel, [1, 2^20]
-    int bounces = 4;                 ///< path length; 0: primary ray and direct light only
+    int width = 1280, height = 720; ///< pixels, [1, 65536] each
+    int spp = 64;                   ///< samples a pixel, [1, 2^20]
+    int bounces = 4;                ///< path length; 0: primary ray and direct light only
     uint32_t seed = 0;
-    int threads = 0;                 ///< 0: all cores
+    int threads = 0; ///< 0: all cores
     Isa isa = Isa::best;
     SurfaceMode surface = SurfaceMode::direct;
-    int level = kAutoLevel;          ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
-    float pixel_error = 1;           ///< auto level: cell size aimed at, pixels, > 0
+    int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
+    float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, > 0
     LodRule lod = LodRule::field;
     LeafKind leaf = LeafKind::exact;
-    size_t bottom_cache_bytes = size_t(256) << 20;  ///< cap of the bottom-level tree cache; 0 turns it off
-    Window crop;                     ///< part of the picture to render
+    size_t bottom_cache_bytes = size_t(256) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
+    Window crop;                                   ///< part of the picture to render
     int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel
     std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost
 };
@@ -49,22 +49,23 @@ struct Statistics {
     int threads = 0;
     uint64_t meshes = 0, instances = 0, patches = 0, triangles = 0, displacement_texels = 0;
     double load_s = 0, prepare_s = 0, first_image_s = 0, render_s = 0, write_s = 0, total_s = 0;
-    double top_traversal_s = 0, sort_s = 0, bottom_build_s = 0, bottom_traversal_s = 0, shade_s = 0, film_s = 0;
+    double top_traversal_s = 0, sort_s = 0, bottom_build_s = 0, bottom_traversal_s = 0, shade_s = 0,
+           film_s = 0;
     uint64_t camera_rays = 0, shadow_rays = 0, bounce_rays = 0;
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
     uint64_t bottom_built = 0, bottom_reused = 0;
-    std::vector<uint64_t> bottom_levels;  ///< trees built at level 0, 1, 2, ...
+    std::vector<uint64_t> bottom_levels; ///< trees built at level 0, 1, 2, ...
     uint64_t geometry_bytes = 0, structures_bytes = 0, displacement_bytes = 0, bottom_cache_bytes = 0;
     uint64_t ray_buffers_bytes = 0, peak_resident_bytes = 0;
     std::vector<std::string> warnings;
 };
 
 struct Progress {
-    double fraction = 0;      ///< [0, 1] of all samples
-    int samples_done = 0;     ///< whole passes over the picture
+    double fraction = 0;  ///< [0, 1] of all samples
+    int samples_done = 0; ///< whole passes over the picture
     int samples_total = 0;
-    uint64_t rays = 0;        ///< traced so far
-    double elapsed_s = 0;     ///< since rendering started
+    uint64_t rays = 0;    ///< traced so far
+    double elapsed_s = 0; ///< since rendering started
 };
 
 /// Called from one thread at a time, a few times a second.
@@ -77,9 +78,9 @@ class RenderObserver {
 };
 
 struct RenderResult {
-    Image image;         ///< R G B A and the layers asked for; linear, data window = crop
+    Image image; ///< R G B A and the layers asked for; linear, data window = crop
     Statistics statistics;
-    bool is_complete = true;  ///< false after a cancellation; "samples.Y" then tells how far each pixel came
+    bool is_complete = true; ///< false after a cancellation; "samples.Y" then tells how far each pixel came
 };
 
 /// Renders `scene`. The scene's polygons are released as soon as patches are made from them.

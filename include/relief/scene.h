@@ -1,5 +1,6 @@
 // What is to be rendered, as plain values: make one in memory, or load one with relief/io.h.
-// Right-handed, y up, lengths in scene units, angles in degrees where the name says so, colours linear Rec.709.
+// Right-handed, y up, lengths in scene units, angles in degrees where the name says so, colours linear
+// Rec.709.
 #pragma once
 
 #include <memory>
@@ -15,14 +16,14 @@ namespace relief {
 /// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
 struct Mesh {
     std::string name;
-    std::string source;                      ///< file it came from, for messages; may be empty
+    std::string source; ///< file it came from, for messages; may be empty
     std::vector<Vec3f> positions;
-    std::vector<Vec2f> uvs;                  ///< may be empty
-    std::vector<Vec3f> normals;              ///< may be empty; used for shading undisplaced faces only
-    std::vector<uint32_t> face_sizes;        ///< corners of each face, >= 3
-    std::vector<uint32_t> position_indices;  ///< one a corner, faces one after another, counter-clockwise
-    std::vector<uint32_t> uv_indices;        ///< one a corner, or empty
-    std::vector<uint32_t> normal_indices;    ///< one a corner, or empty
+    std::vector<Vec2f> uvs;                 ///< may be empty
+    std::vector<Vec3f> normals;             ///< may be empty; used for shading undisplaced faces only
+    std::vector<uint32_t> face_sizes;       ///< corners of each face, >= 3
+    std::vector<uint32_t> position_indices; ///< one a corner, faces one after another, counter-clockwise
+    std::vector<uint32_t> uv_indices;       ///< one a corner, or empty
+    std::vector<uint32_t> normal_indices;   ///< one a corner, or empty
 };
 
 enum class DisplacementType { vector, height };
@@ -42,8 +43,8 @@ struct MapTile {
     std::shared_ptr<const Texture> texture;
 };
 
-/// Displacement of a texel: A (value - midlevel) scale, A the signed permutation. A height map moves along n by
-/// (R - midlevel.x) scale.x. Row 0 of a map is v = 1 unless `flip_v`.
+/// Displacement of a texel: A (value - midlevel) scale, A the signed permutation. A height map moves along n
+/// by (R - midlevel.x) scale.x. Row 0 of a map is v = 1 unless `flip_v`.
 struct Displacement {
     std::string name;
     DisplacementType type = DisplacementType::vector;
@@ -52,7 +53,7 @@ struct Displacement {
     Vec3f midlevel{0, 0, 0};
     Vec3f scale{1, 1, 1};
     bool flip_v = false;
-    bool is_udim = false;  ///< tiles are addressed by floor(u), floor(v); a missing tile displaces by 0
+    bool is_udim = false; ///< tiles are addressed by floor(u), floor(v); a missing tile displaces by 0
     WrapMode wrap = WrapMode::clamp;
     std::vector<MapTile> tiles;
 };
@@ -60,34 +61,34 @@ struct Displacement {
 /// Metallic-roughness surface. Textures multiply the constants; row 0 of a texture is v = 1, wrap is repeat.
 struct Material {
     std::string name;
-    Vec3f base_color{0.8f, 0.8f, 0.8f};  ///< linear, each in [0, 1]
-    float roughness = 0.5f;              ///< [0, 1]; alpha of GGX is its square
-    float metallic = 0.0f;               ///< [0, 1]
-    float ior = 1.5f;                    ///< of the dielectric coat, >= 1; 1 removes it
-    Vec3f emission{0, 0, 0};             ///< radiance, >= 0
-    std::shared_ptr<const Texture> base_color_texture;  ///< linear values (the reader decodes sRGB)
-    std::shared_ptr<const Texture> roughness_texture;   ///< first channel, raw
+    Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
+    float roughness = 0.5f;                            ///< [0, 1]; alpha of GGX is its square
+    float metallic = 0.0f;                             ///< [0, 1]
+    float ior = 1.5f;                                  ///< of the dielectric coat, >= 1; 1 removes it
+    Vec3f emission{0, 0, 0};                           ///< radiance, >= 0
+    std::shared_ptr<const Texture> base_color_texture; ///< linear values (the reader decodes sRGB)
+    std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
 };
 
 struct Object {
     std::string name;
     uint32_t mesh = 0;
-    uint32_t displacement = kNoIndex;  ///< kNoIndex: plain polygons
-    uint32_t material = kNoIndex;      ///< kNoIndex: the default material
+    uint32_t displacement = kNoIndex; ///< kNoIndex: plain polygons
+    uint32_t material = kNoIndex;     ///< kNoIndex: the default material
     Affine world_from_object;
 };
 
 struct Camera {
     Vec3f from{0, 0, 5}, to{0, 0, 0}, up{0, 1, 0};
-    float fov_degrees = 35;     ///< vertical, in (0, 180)
-    float aperture_radius = 0;  ///< scene units; 0 is a pinhole
-    float focus_distance = 1;   ///< scene units along the view axis, > 0
+    float fov_degrees = 35;    ///< vertical, in (0, 180)
+    float aperture_radius = 0; ///< scene units; 0 is a pinhole
+    float focus_distance = 1;  ///< scene units along the view axis, > 0
 };
 
 /// Latitude-longitude radiance; the middle of the image looks along -z, turned by `rotate_degrees` about +y.
 struct Environment {
-    std::shared_ptr<const Texture> texture;  ///< may be null: constant `color`
-    Vec3f color{1, 1, 1};                    ///< multiplies the texture
+    std::shared_ptr<const Texture> texture; ///< may be null: constant `color`
+    Vec3f color{1, 1, 1};                   ///< multiplies the texture
     float strength = 1;
     float rotate_degrees = 0;
 };
@@ -96,12 +97,12 @@ enum class LightType { sun, point };
 
 struct Light {
     LightType type = LightType::sun;
-    Vec3f direction{0, -1, 0};    ///< sun: the way the light travels
-    float angle_degrees = 0.53f;  ///< sun: diameter of the disc, [0, 90]; 0 is a delta light
-    Vec3f position{0, 0, 0};      ///< point
-    float radius = 0;             ///< point: radius of its sphere; 0 is a delta light
+    Vec3f direction{0, -1, 0};   ///< sun: the way the light travels
+    float angle_degrees = 0.53f; ///< sun: diameter of the disc, [0, 90]; 0 is a delta light
+    Vec3f position{0, 0, 0};     ///< point
+    float radius = 0;            ///< point: radius of its sphere; 0 is a delta light
     Vec3f color{1, 1, 1};
-    float strength = 1;           ///< sun: irradiance at normal incidence; point: radiant intensity
+    float strength = 1; ///< sun: irradiance at normal incidence; point: radiant intensity
 };
 
 /// Picture settings that a scene file may carry; the command line overrides them.
@@ -119,9 +120,9 @@ struct Scene {
     std::optional<Environment> environment;
     Camera camera;
     PictureDefaults picture;
-    std::string source;                 ///< scene or mesh file, for messages
-    uint64_t hash = 0;                  ///< of the content that decides the picture; 0: made in memory
-    std::vector<std::string> warnings;  ///< what a reader noticed
+    std::string source;                ///< scene or mesh file, for messages
+    uint64_t hash = 0;                 ///< of the content that decides the picture; 0: made in memory
+    std::vector<std::string> warnings; ///< what a reader noticed
 };
 
 /// Checks every index, range and finiteness. Throws Error{bad_input} that names the object at fault.

@@ -7,14 +7,12 @@
 
 namespace relief {
 
-template <class T>
-struct Vec2 {
+template <class T> struct Vec2 {
     T x{}, y{};
     friend constexpr bool operator==(const Vec2&, const Vec2&) = default;
 };
 
-template <class T>
-struct Vec3 {
+template <class T> struct Vec3 {
     T x{}, y{}, z{};
     friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };

@@ -5,12 +5,12 @@
 #include <cstdlib>
 
 #ifdef RELIEF_DCHECKS
-#define DCHECK(condition)                                                                        \
-    do {                                                                                         \
-        if (!(condition)) {                                                                      \
-            std::fprintf(stderr, "%s:%d: DCHECK(%s) failed\n", __FILE__, __LINE__, #condition);  \
-            std::abort();                                                                        \
-        }                                                                                        \
+#define DCHECK(condition)                                                                                    \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            std::fprintf(stderr, "%s:%d: DCHECK(%s) failed\n", __FILE__, __LINE__, #condition);              \
+            std::abort();                                                                                    \
+        }                                                                                                    \
     } while (false)
 #else
 #define DCHECK(condition) static_cast<void>(sizeof(!(condition)))

@@ -6,9 +6,11 @@
 
 namespace relief {
 
-/// Runs `body(begin, end)` over disjoint ranges that cover [0, count), each at most `grain` long, on the threads of the
-/// enclosing ThreadScope (or all cores). The first exception thrown by a body is rethrown here.
-void parallel_for(const char* name, size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
+/// Runs `body(begin, end)` over disjoint ranges that cover [0, count), each at most `grain` long, on the
+/// threads of the enclosing ThreadScope (or all cores). The first exception thrown by a body is rethrown
+/// here.
+void parallel_for(const char* name, size_t count, size_t grain,
+                  const std::function<void(size_t, size_t)>& body);
 
 /// Runs both functions, possibly at the same time.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);

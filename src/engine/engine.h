@@ -15,8 +15,8 @@ class Engine {
   public:
     virtual ~Engine() = default;
 
-    /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when the observer
-    /// cancelled; the film then holds what was done.
+    /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when
+    /// the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
     /// Spans of equal length; thread safe.
@@ -28,6 +28,7 @@ class Engine {
 };
 
 /// Throws Error{device_missing} for an instruction set that this machine lacks.
-std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
+std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene,
+                                        const RenderSettings& settings);
 
 } // namespace relief

@@ -40,7 +40,8 @@ LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& set
     config.fixed_level = settings.level == kAutoLevel ? -1 : settings.level;
     config.pixel_error = settings.pixel_error;
     config.camera = scene.camera.from;
-    config.pixel_angle = float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
+    config.pixel_angle =
+        float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
     return config;
 }
 
@@ -51,7 +52,8 @@ void release_mesh(Scene& scene, uint32_t mesh) {
     scene.meshes[mesh] = std::move(empty);
 }
 
-/// One surface a key, in the order of the first object that needs it; mesh by mesh, so that polygons can be freed.
+/// One surface a key, in the order of the first object that needs it; mesh by mesh, so that polygons can be
+/// freed.
 void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
                    const std::vector<uint32_t>& first_object, std::vector<Surface>& surfaces) {
     std::vector<std::vector<uint32_t>> surfaces_of_mesh(scene.meshes.size());
@@ -89,7 +91,8 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSett
     std::vector<uint32_t> first_object;
     const uint32_t default_material = uint32_t(prepared->materials.size()) - 1;
     for (uint32_t k = 0; k < scene.objects.size(); ++k) {
-        const auto [place, is_new] = surface_of_key.try_emplace(make_key(scene, k), uint32_t(first_object.size()));
+        const auto [place, is_new] =
+            surface_of_key.try_emplace(make_key(scene, k), uint32_t(first_object.size()));
         if (is_new) first_object.push_back(k);
         prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
     }

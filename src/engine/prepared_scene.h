@@ -14,25 +14,27 @@ namespace relief {
 
 /// One placed surface.
 struct Instance {
-    uint32_t surface = 0;   ///< index into PreparedScene::surfaces
-    uint32_t material = 0;  ///< index into PreparedScene::materials
+    uint32_t surface = 0;  ///< index into PreparedScene::surfaces
+    uint32_t material = 0; ///< index into PreparedScene::materials
     Affine world_from_object, object_from_world;
-    bool is_mirrored = false;  ///< negative determinant: the winding is turned
+    bool is_mirrored = false; ///< negative determinant: the winding is turned
     std::shared_ptr<const LevelField> levels;
 };
 
 struct PreparedScene {
-    std::vector<Surface> surfaces;    ///< one a used (mesh, displacement) pair; one an object for world-space maps
-    std::vector<Instance> instances;  ///< in the order of Scene::objects
-    std::vector<Material> materials;  ///< the last one is the default material
+    std::vector<Surface>
+        surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
+    std::vector<Instance> instances; ///< in the order of Scene::objects
+    std::vector<Material> materials; ///< the last one is the default material
     std::vector<Light> lights;
     std::optional<Environment> environment;
     Camera camera;
-    int width = 0, height = 0;        ///< of the whole picture
+    int width = 0, height = 0; ///< of the whole picture
     std::vector<std::string> warnings;
 };
 
-/// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are used.
+/// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are
+/// used.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
 
 } // namespace relief

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "base/memory.h"
+#include "base/machine.h"
 #include "base/parallel.h"
 #include "relief/error.h"
 
@@ -18,7 +18,8 @@ constexpr uint64_t kBytesPerQuad = sizeof(Quad) + sizeof(Box) + 2 * 32 + sizeof(
 
 uint64_t count_cells(const Surface& surface, const LevelField& levels) {
     uint64_t cells = 0;
-    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) cells += uint64_t(1) << (2 * levels.at(patch).patch);
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
+        cells += uint64_t(1) << (2 * levels.at(patch).patch);
     return cells;
 }
 
@@ -49,8 +50,8 @@ PatchOffsets compute_offsets(const Surface& surface, const LevelField& levels) {
     return offsets;
 }
 
-void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t vertex, uint64_t cell,
-                      Surface& result) {
+void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t vertex,
+                      uint64_t cell, Surface& result) {
     const uint32_t side = 1u << levels.patch;
     const Quad& quad = surface.quads[patch];
     for (uint32_t j = 0; j <= side; ++j)
@@ -67,7 +68,8 @@ void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels&
     for (uint32_t j = 0; j < side; ++j)
         for (uint32_t i = 0; i < side; ++i) {
             const uint32_t first = uint32_t(vertex) + j * (side + 1) + i;
-            result.quads[cell + uint64_t(j) * side + i] = {{first, first + 1, first + side + 2, first + side + 1}};
+            result.quads[cell + uint64_t(j) * side + i] = {
+                {first, first + 1, first + side + 2, first + side + 1}};
         }
 }
 
@@ -102,10 +104,11 @@ uint64_t estimate_tessellation_bytes(const PreparedScene& scene) {
 void tessellate_scene(PreparedScene& scene) {
     const uint64_t needed = estimate_tessellation_bytes(scene), available = available_memory_bytes();
     if (needed > available)
-        throw Error(ErrorKind::out_of_memory,
-                    {fmt::format("the tessellated scene needs {} bytes ({:.1f} GiB), {:.1f} GiB are available", needed,
-                                 double(needed) / (1 << 30), double(available) / (1 << 30)),
-                     "", "render it directly (--surface direct) or lower --level"});
+        throw Error(
+            ErrorKind::out_of_memory,
+            {fmt::format("the tessellated scene needs {} bytes ({:.1f} GiB), {:.1f} GiB are available",
+                         needed, double(needed) / (1 << 30), double(available) / (1 << 30)),
+             "", "render it directly (--surface direct) or lower --level"});
     struct Done {
         uint32_t source, surface;
         std::shared_ptr<const LevelField> levels;

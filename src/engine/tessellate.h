@@ -1,15 +1,18 @@
-// The baseline that direct tracing is compared with: the same vertices, all of them, as plain quads in the same tracer.
+// The baseline that direct tracing is compared with: the same vertices, all of them, as plain quads in the
+// same tracer.
 #pragma once
 
 #include "engine/prepared_scene.h"
 
 namespace relief {
 
-/// Bytes that the tessellated scene would hold: vertices, quads, tree, and what building them takes at the peak.
+/// Bytes that the tessellated scene would hold: vertices, quads, tree, and what building them takes at the
+/// peak.
 uint64_t estimate_tessellation_bytes(const PreparedScene& scene);
 
-/// Replaces every displaced surface by its micro-quads at the levels of each instance (instances with equal levels
-/// share them). Throws Error{out_of_memory} beforehand, with the byte count, when the machine cannot hold it.
+/// Replaces every displaced surface by its micro-quads at the levels of each instance (instances with equal
+/// levels share them). Throws Error{out_of_memory} beforehand, with the byte count, when the machine cannot
+/// hold it.
 void tessellate_scene(PreparedScene& scene);
 
 } // namespace relief

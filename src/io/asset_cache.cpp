@@ -4,10 +4,10 @@
 #include <cctype>
 #include <cmath>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
-#include "io/tonemap.h"
+#include "math/half.h"
+#include "math/scalar.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::string_view kUdimToken = "<UDIM>";
 constexpr size_t kMaxTiles = 255;
-
-float decode_half(uint16_t bits) { return imath_half_to_float(bits); }
 
 bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
 
@@ -50,7 +48,7 @@ void decode_colours(Texture& texture) {
     const bool is_grey = texture.channel_count < 3;
     for (size_t i = 0; i < texture.floats.size(); i += 4) {
         for (size_t c = 0; c < (is_grey ? 1 : 3); ++c)
-            texture.floats[i + c] = decode_srgb(texture.floats[i + c]);
+            texture.floats[i + c] = scalar::decode_srgb(texture.floats[i + c]);
     }
 }
 
@@ -76,7 +74,7 @@ bool lift_negatives(Texture& texture) {
 
 float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel) {
     const size_t i = 4 * (size_t(y) * texture.width + x) + channel;
-    return texture.floats.empty() ? decode_half(texture.halves[i]) : texture.floats[i];
+    return texture.floats.empty() ? half_to_float(texture.halves[i]) : texture.floats[i];
 }
 
 bool has_udim_token(const std::string& file) { return file.find(kUdimToken) != std::string::npos; }

@@ -7,10 +7,10 @@
 
 #include "io/file_system.h"
 #include "io/image_output.h"
-#include "relief/suggest.h"
-#include "io/tonemap.h"
+#include "math/scalar.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "relief/suggest.h"
 
 namespace relief {
 
@@ -76,9 +76,9 @@ void write_png(const Image& image, const std::filesystem::path& file) {
     std::vector<uint8_t> bytes;
     bytes.reserve(3 * size_t(image.width) * image.height);
     for (const Vec3f& colour : gather_colours(image)) {
-        const Vec3f shown = apply_filmic_curve(colour);
+        const Vec3f shown = scalar::tone_map_filmic(colour);
         for (const float value : {shown.x, shown.y, shown.z})
-            bytes.push_back(uint8_t(encode_srgb(value) * 255.0f + 0.5f));
+            bytes.push_back(uint8_t(scalar::encode_srgb(value) * 255.0f + 0.5f));
     }
     write_pixels(file, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
 }

@@ -11,7 +11,9 @@ namespace relief {
 inline Vec3f transform_vector(const Affine& m, const Vec3f& v) {
     return {dot(m.rows[0], v), dot(m.rows[1], v), dot(m.rows[2], v)};
 }
-inline Vec3f transform_point(const Affine& m, const Vec3f& p) { return transform_vector(m, p) + m.translation; }
+inline Vec3f transform_point(const Affine& m, const Vec3f& p) {
+    return transform_vector(m, p) + m.translation;
+}
 
 /// Normal n of a surface under the map whose inverse is `inverse`: transpose(inverse) n, not normalised.
 inline Vec3f transform_normal(const Affine& inverse, const Vec3f& n) {

@@ -1,6 +1,7 @@
-// Sixteen (or eight, or four) floats as one value on every instruction set: one register on AVX-512, two on AVX2, four
-// on SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
-// Every operation rounds once and nothing is fused, so that results are the same bits on every target.
+// Sixteen (or eight, or four) floats as one value on every instruction set: one register on AVX-512, two on
+// AVX2, four on SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside
+// HWY_NAMESPACE only. Every operation rounds once and nothing is fused, so that results are the same bits on
+// every target.
 #if defined(RELIEF_MATH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_LANES_INL_H
 #undef RELIEF_MATH_LANES_INL_H
@@ -19,8 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// One bit a lane.
 using LaneMask = uint32_t;
 
-template <size_t kWidth>
-struct Lanes {
+template <size_t kWidth> struct Lanes {
     using D = hn::CappedTag<float, kWidth>;
     using V = hn::Vec<D>;
     static constexpr size_t kLanes = hn::MaxLanes(D());
@@ -64,12 +64,11 @@ struct Lanes {
     }
 };
 
-#define RELIEF_LANES_BINARY(name, function)                                          \
-    template <size_t W>                                                              \
-    HWY_INLINE Lanes<W> name(const Lanes<W>& a, const Lanes<W>& b) {                 \
-        Lanes<W> r;                                                                  \
-        for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]); \
-        return r;                                                                    \
+#define RELIEF_LANES_BINARY(name, function)                                                                  \
+    template <size_t W> HWY_INLINE Lanes<W> name(const Lanes<W>& a, const Lanes<W>& b) {                     \
+        Lanes<W> r;                                                                                          \
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);        \
+        return r;                                                                                            \
     }
 RELIEF_LANES_BINARY(operator+, Add)
 RELIEF_LANES_BINARY(operator-, Sub)
@@ -79,15 +78,13 @@ RELIEF_LANES_BINARY(min, Min)
 RELIEF_LANES_BINARY(max, Max)
 #undef RELIEF_LANES_BINARY
 
-template <size_t W>
-HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
+template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
     Lanes<W> r;
     for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::Floor(a.part[p]);
     return r;
 }
 
-template <class D, class M>
-HWY_INLINE LaneMask to_bits(D d, M mask) {
+template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     alignas(8) uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
     LaneMask bits = bytes[0];
@@ -95,22 +92,22 @@ HWY_INLINE LaneMask to_bits(D d, M mask) {
     return bits;
 }
 
-#define RELIEF_LANES_COMPARE(name, function)                                                             \
-    template <size_t W>                                                                                  \
-    HWY_INLINE LaneMask name(const Lanes<W>& a, const Lanes<W>& b) {                                     \
-        LaneMask bits = 0;                                                                               \
-        for (size_t p = 0; p < Lanes<W>::kParts; ++p)                                                    \
-            bits |= to_bits(typename Lanes<W>::D(), hn::function(a.part[p], b.part[p])) << (p * Lanes<W>::kLanes); \
-        return bits;                                                                                     \
+#define RELIEF_LANES_COMPARE(name, function)                                                                 \
+    template <size_t W> HWY_INLINE LaneMask name(const Lanes<W>& a, const Lanes<W>& b) {                     \
+        LaneMask bits = 0;                                                                                   \
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p)                                                        \
+            bits |= to_bits(typename Lanes<W>::D(), hn::function(a.part[p], b.part[p]))                      \
+                    << (p * Lanes<W>::kLanes);                                                               \
+        return bits;                                                                                         \
     }
 RELIEF_LANES_COMPARE(less_equal, Le)
 RELIEF_LANES_COMPARE(less, Lt)
 RELIEF_LANES_COMPARE(not_equal, Ne)
 #undef RELIEF_LANES_COMPARE
 
-/// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight triangle.
-template <size_t W>
-HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {
+/// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
+/// triangle.
+template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {
     const Lanes<W> zero(0.0f);
     return less_equal(zero, min(min(u, v), w)) | less_equal(max(max(u, v), w), zero);
 }

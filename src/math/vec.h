@@ -8,8 +8,12 @@
 
 namespace relief {
 
-template <class T> constexpr Vec2<T> operator+(const Vec2<T>& a, const Vec2<T>& b) { return {a.x + b.x, a.y + b.y}; }
-template <class T> constexpr Vec2<T> operator-(const Vec2<T>& a, const Vec2<T>& b) { return {a.x - b.x, a.y - b.y}; }
+template <class T> constexpr Vec2<T> operator+(const Vec2<T>& a, const Vec2<T>& b) {
+    return {a.x + b.x, a.y + b.y};
+}
+template <class T> constexpr Vec2<T> operator-(const Vec2<T>& a, const Vec2<T>& b) {
+    return {a.x - b.x, a.y - b.y};
+}
 template <class T> constexpr Vec2<T> operator*(const Vec2<T>& a, const T& s) { return {a.x * s, a.y * s}; }
 template <class T> constexpr Vec2<T> operator*(const T& s, const Vec2<T>& a) { return {a.x * s, a.y * s}; }
 
@@ -23,13 +27,19 @@ template <class T> constexpr Vec3<T> operator-(const Vec3<T>& a) { return {-a.x,
 template <class T> constexpr Vec3<T> operator*(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
-template <class T> constexpr Vec3<T> operator*(const Vec3<T>& a, const T& s) { return {a.x * s, a.y * s, a.z * s}; }
-template <class T> constexpr Vec3<T> operator*(const T& s, const Vec3<T>& a) { return {a.x * s, a.y * s, a.z * s}; }
+template <class T> constexpr Vec3<T> operator*(const Vec3<T>& a, const T& s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+template <class T> constexpr Vec3<T> operator*(const T& s, const Vec3<T>& a) {
+    return {a.x * s, a.y * s, a.z * s};
+}
 template <class T> constexpr Vec3<T>& operator+=(Vec3<T>& a, const Vec3<T>& b) { return a = a + b; }
 template <class T> constexpr Vec3<T>& operator*=(Vec3<T>& a, const T& s) { return a = a * s; }
 constexpr Vec3f operator/(const Vec3f& a, float s) { return {a.x / s, a.y / s, a.z / s}; }
 
-template <class T> constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <class T> constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class T> constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -56,7 +66,11 @@ inline Vec3f max(const Vec3f& a, const Vec3f& b) {
     return {std::fmax(a.x, b.x), std::fmax(a.y, b.y), std::fmax(a.z, b.z)};
 }
 inline float get_component(const Vec3f& a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
-inline void set_component(Vec3f& a, int axis, float value) { (axis == 0 ? a.x : axis == 1 ? a.y : a.z) = value; }
-inline bool is_finite(const Vec3f& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline void set_component(Vec3f& a, int axis, float value) {
+    (axis == 0 ? a.x : axis == 1 ? a.y : a.z) = value;
+}
+inline bool is_finite(const Vec3f& a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 } // namespace relief

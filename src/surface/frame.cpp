@@ -46,10 +46,14 @@ PackedFrame pack_frame(const Vec3f& normal, const Vec3f& tangent, float handedne
     return packed;
 }
 
+Vec3f unpack_normal(const PackedFrame& packed) {
+    return unfold(dequantize(packed.normal & 0xffffu, 16, kFine),
+                  dequantize(packed.normal >> 16, 16, kFine));
+}
+
 Frame unpack_frame(const PackedFrame& packed) {
     Frame frame;
-    frame.n =
-        unfold(dequantize(packed.normal & 0xffffu, 16, kFine), dequantize(packed.normal >> 16, 16, kFine));
+    frame.n = unpack_normal(packed);
     const Vec3f t = unfold(dequantize(packed.tangent >> 1 & 0x7fffu, 15, kCoarse),
                            dequantize(packed.tangent >> 16, 16, kFine));
     frame.t = normalize(t - frame.n * dot(frame.n, t));

@@ -27,21 +27,20 @@ Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& 
     const Texture& texture = *map.tiles[tile].texture;
     const float x = uv.x * float(texture.width) - 0.5f;
     const float y = (map.flip_v ? uv.y : 1.0f - uv.y) * float(texture.height) - 0.5f;
-    const float x0 = std::floor(x), y0 = std::floor(y);
+    const float x0 = floor_texel(x), y0 = floor_texel(y);
     const float fx = x - x0, fy = y - y0;
     const int64_t columns[2] = {wrap_index(int64_t(x0), texture.width, map.wrap),
                                 wrap_index(int64_t(x0) + 1, texture.width, map.wrap)};
     const int64_t rows[2] = {wrap_index(int64_t(y0), texture.height, map.wrap),
                              wrap_index(int64_t(y0) + 1, texture.height, map.wrap)};
-    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
+    const std::array<float, 4> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z, 0};
     const auto read = [&](int64_t column, int64_t row) {
-        return column < 0 || row < 0 ? middle : read_texel(texture, column, row);
+        return column < 0 || row < 0 ? middle : read_channels(texture, column, row);
     };
     const auto t00 = read(columns[0], rows[0]), t10 = read(columns[1], rows[0]);
     const auto t01 = read(columns[0], rows[1]), t11 = read(columns[1], rows[1]);
-    std::array<float, 3> value;
-    for (int c = 0; c < 3; ++c)
-        value[c] = scalar::filter_texels(t00[c], t10[c], t01[c], t11[c], fx, fy) - middle[c];
+    std::array<float, 4> value = filter_channels(t00, t10, t01, t11, fx, fy);
+    for (size_t c = 0; c < 4; ++c) value[c] -= middle[c];
     const auto decode = [&](const Vec3f& row) {
         return scalar::decode_row(value[0], value[1], value[2], row.x, row.y, row.z);
     };
@@ -95,6 +94,10 @@ VertexData blend_line(const VertexData& a, const VertexData& b, float s) {
 PatchSamples::PatchSamples(const Surface& surface, uint32_t patch) : map_(&surface.map) {
     const Quad& quad = surface.quads[patch];
     for (int k = 0; k < 4; ++k) corners_[k] = load_vertex(surface, quad.vertex[k]);
+    if (!surface.frames.empty())
+        for (int k = 0; k < 4; ++k)
+            normals_[k] = surface.map.is_tangent ? corners_[k].frame.n
+                                                 : unpack_normal(surface.frames[quad.vertex[k]]);
     for (int k = 0; k < 4; ++k) {
         const uint32_t own[2] = {quad.vertex[k], quad.vertex[(k + 1) & 3]};
         const uint32_t dominant = surface.dominant(own[0]);
@@ -126,12 +129,25 @@ Vec3f PatchSamples::interior(float u, float v) const {
     return displace(*map_, sample.tile, sample.position, sample.uv, sample.frame);
 }
 
+const PatchSamples& PatchSamplesCache::get(const Surface& surface, uint32_t patch) {
+    if (entries_.empty()) entries_.resize(mask_ + 1);
+    Entry& entry = entries_[patch & mask_];
+    if (entry.surface != &surface || entry.patch != patch) {
+        entry.samples.emplace(surface, patch);
+        entry.surface = &surface, entry.patch = patch;
+    }
+    return *entry.samples;
+}
+
 Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i,
                       uint32_t j) {
+    return evaluate_vertex(PatchSamples(surface, patch), levels, i, j);
+}
+
+Vec3f evaluate_vertex(const PatchSamples& samples, const PatchLevels& levels, uint32_t i, uint32_t j) {
     const uint32_t n = 1u << levels.patch;
     DCHECK(i <= n && j <= n);
     const float step = 1.0f / float(n);
-    const PatchSamples samples(surface, patch);
     const bool is_on_u_edge = j == 0 || j == n, is_on_v_edge = i == 0 || i == n;
     if (!is_on_u_edge && !is_on_v_edge) return samples.interior(float(i) * step, float(j) * step);
     if (is_on_u_edge && is_on_v_edge) return samples.corner(j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2));

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "surface/surface.h"
 
@@ -59,6 +61,8 @@ class PatchSamples {
     bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }
 
     const std::array<VertexData, 4>& corners() const { return corners_; }
+    /// Unit normals of the corners, whether the map is tangent or not; zero on a surface without frames.
+    const std::array<Vec3f, 4>& normals() const { return normals_; }
     const VertexData& first_of_line(int k) const { return lines_[k].first; }
     const VertexData& second_of_line(int k) const { return lines_[k].second; }
 
@@ -69,8 +73,33 @@ class PatchSamples {
     };
     const DisplacementMap* map_;
     std::array<VertexData, 4> corners_, dominants_;
+    std::array<Vec3f, 4> normals_{};
     std::array<Line, 4> lines_;
     std::array<bool, 4> is_corner_foreign_{};
+};
+
+/// evaluate_vertex and compute_shading_normal (surface/surface.h) of a patch that is unpacked already.
+Vec3f evaluate_vertex(const PatchSamples& samples, const PatchLevels& levels, uint32_t i, uint32_t j);
+Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples, uint32_t patch, int level,
+                             float u, float v);
+
+/// Patches unpacked lately, for one thread: neighbouring rays hit the same few over and over.
+class PatchSamplesCache {
+  public:
+    static constexpr uint32_t kDefaultSize = 32;
+    /// `size`: places for patches, a power of two.
+    explicit PatchSamplesCache(uint32_t size = kDefaultSize) : mask_(size - 1) {}
+    /// Valid until the next call. The surface must outlive the cache.
+    const PatchSamples& get(const Surface& surface, uint32_t patch);
+
+  private:
+    struct Entry {
+        const Surface* surface = nullptr;
+        uint32_t patch = 0;
+        std::optional<PatchSamples> samples;
+    };
+    uint32_t mask_;
+    std::vector<Entry> entries_; ///< none before the first use; a patch has one place only
 };
 
 } // namespace relief

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/scalar.h"
 #include "surface/patch_samples.h"
 #include "surface/surface.h"
 
@@ -12,7 +13,7 @@ Vec3f blend(const Vec3f& a, const Vec3f& b, float s) { return a * (1 - s) + b * 
 
 std::array<Vec3f, 4> load_normals(const Surface& surface, const Quad& quad) {
     std::array<Vec3f, 4> normals;
-    for (int k = 0; k < 4; ++k) normals[k] = unpack_frame(surface.frames[quad.vertex[k]]).n;
+    for (int k = 0; k < 4; ++k) normals[k] = unpack_normal(surface.frames[quad.vertex[k]]);
     return normals;
 }
 
@@ -69,18 +70,23 @@ Derivative blend_difference(const VertexData& a, const VertexData& b, const Vert
 
 Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, float u, float v) {
     if (surface.frames.empty()) return {};
-    const Quad& quad = surface.quads[patch];
-    if (!surface.has_displacement) return compute_plain_normal(surface, quad, u, v);
+    if (!surface.has_displacement) return compute_plain_normal(surface, surface.quads[patch], u, v);
+    return compute_shading_normal(surface, PatchSamples(surface, patch), patch, level, u, v);
+}
 
-    const PatchSamples samples(surface, patch);
+Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples, uint32_t patch, int level,
+                             float u, float v) {
+    if (surface.frames.empty()) return {};
     const std::array<VertexData, 4>& c = samples.corners();
     Derivative along_u = blend_difference(c[0], c[1], c[3], c[2], v);
     Derivative along_v = blend_difference(c[0], c[3], c[1], c[2], u);
-    Vec3f normal = normalize(blend_normals(load_normals(surface, quad), u, v));
+    Vec3f normal = normalize(blend_normals(samples.normals(), u, v));
     if (normal == Vec3f{}) normal = normalize(cross(along_u.base, along_v.base));
 
     const auto fetch = [&](float at_u, float at_v) {
-        return fetch_displacement(surface.map, c[0].tile, blend_corners(c, at_u, at_v).uv);
+        const Vec2f uv{scalar::blend_quad(c[0].uv.x, c[1].uv.x, c[2].uv.x, c[3].uv.x, at_u, at_v),
+                       scalar::blend_quad(c[0].uv.y, c[1].uv.y, c[2].uv.y, c[3].uv.y, at_u, at_v)};
+        return fetch_displacement(surface.map, c[0].tile, uv);
     };
     // The uvs run on into the neighbour, except at a seam, where they would run into another part of the map.
     const float half = 0.5f / float(1u << level);

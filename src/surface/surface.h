@@ -46,6 +46,8 @@ struct Frame {
 
 PackedFrame pack_frame(const Vec3f& normal, const Vec3f& tangent, float handedness);
 Frame unpack_frame(const PackedFrame& packed);
+/// The normal of unpack_frame alone.
+Vec3f unpack_normal(const PackedFrame& packed);
 
 /// How raw texel values become a displacement: d = matrix (value - midlevel), in (t, b, n) or object (x, y,
 /// z).

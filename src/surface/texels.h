@@ -1,43 +1,54 @@
-// Raw texels by integer coordinates: half to float, the wrap modes, four channels to three.
+// Raw texels by integer coordinates: the wrap modes, four channels to three.
 #pragma once
 
 #include <array>
-#include <bit>
+#include <cmath>
 #include <cstdint>
+#include <type_traits>
 
+#include "math/half.h"
+#include "math/scalar.h"
 #include "relief/scene.h"
 
 namespace relief {
 
-/// Exact value of an IEEE 754 binary16 pattern.
-inline float half_to_float(uint16_t half) {
-    const uint32_t sign = uint32_t(half & 0x8000u) << 16;
-    const uint32_t exponent = (half >> 10) & 31u;
-    const uint32_t mantissa = half & 1023u;
-    if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000u | mantissa << 13);
-    if (exponent != 0) return std::bit_cast<float>(sign | (exponent + 112) << 23 | mantissa << 13);
-    const float magnitude = float(mantissa) * 0x1p-24f;
-    return sign ? -magnitude : magnitude;
+/// std::floor without the call that it is on instruction sets that have no rounding.
+inline float floor_texel(float x) {
+    if (!(std::fabs(x) < 0x1p23f)) return x; // whole already, or not finite
+    const float whole = float(int32_t(x));
+    return whole > x ? whole - 1 : whole;
 }
 
-/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black.
-inline int64_t wrap_index(int64_t index, int64_t size, WrapMode wrap) {
-    switch (wrap) {
-    case WrapMode::clamp:
-        return index < 0 ? 0 : index >= size ? size - 1 : index;
-    case WrapMode::repeat: {
-        const int64_t rest = index % size;
-        return rest < 0 ? rest + size : rest;
-    }
-    case WrapMode::mirror: {
-        int64_t rest = index % (2 * size);
-        if (rest < 0) rest += 2 * size;
-        return rest < size ? rest : 2 * size - 1 - rest;
-    }
-    case WrapMode::black:
-        break;
-    }
-    return index < 0 || index >= size ? -1 : index;
+/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
+/// representable.
+template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
+    if (index >= 0 && index < size) return index;
+    if (wrap == WrapMode::clamp) return index < 0 ? 0 : size - 1;
+    if (wrap == WrapMode::black) return -1;
+    const Index period = wrap == WrapMode::mirror ? 2 * size : size;
+    Index rest = index % period;
+    if (rest < 0) rest += period;
+    return rest < size ? rest : period - 1 - rest;
+}
+
+/// The texel in column x and row y, both inside the texture: four channels, so that it fills a register.
+inline std::array<float, 4> read_channels(const Texture& texture, int64_t x, int64_t y) {
+    const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));
+    std::array<float, 4> texel;
+    if (texture.halves.empty())
+        for (size_t c = 0; c < 4; ++c) texel[c] = texture.floats[offset + c];
+    else
+        for (size_t c = 0; c < 4; ++c) texel[c] = half_to_float(texture.halves[offset + c]);
+    return texel;
+}
+
+/// Bilinear value between four texels.
+inline std::array<float, 4> filter_channels(const std::array<float, 4>& t00, const std::array<float, 4>& t10,
+                                            const std::array<float, 4>& t01, const std::array<float, 4>& t11,
+                                            float fx, float fy) {
+    std::array<float, 4> value;
+    for (size_t c = 0; c < 4; ++c) value[c] = scalar::filter_texels(t00[c], t10[c], t01[c], t11[c], fx, fy);
+    return value;
 }
 
 /// First three channels of the texel in column x and row y, both inside the texture.

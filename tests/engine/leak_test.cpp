@@ -1,5 +1,6 @@
-// Watertight: from inside a closed displaced body every ray hits, whatever the levels, biases, frames and transforms.
-// Many of the rays aim at vertices and edges of the micro-mesh, many go in packets. RELIEF_LEAK_RAYS sets how many rays in all.
+// Watertight: from inside a closed displaced body every ray hits, whatever the levels, biases, frames and
+// transforms. Many of the rays aim at vertices and edges of the micro-mesh, many go in packets.
+// RELIEF_LEAK_RAYS sets how many rays in all.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -37,7 +38,8 @@ const Case kCases[] = {
     {"sphere_object_level5", Body::sphere, DisplacementSpace::object, 5, Placement::single},
     {"sphere_object_auto", Body::sphere, DisplacementSpace::object, kAutoLevel, Placement::single},
     {"sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single},
-    {"sphere_tangent_auto_instances", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::instances},
+    {"sphere_tangent_auto_instances", Body::sphere, DisplacementSpace::tangent, kAutoLevel,
+     Placement::instances},
     {"torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single},
     {"torus_tangent_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single},
     {"torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel, Placement::instances},
@@ -57,7 +59,8 @@ struct Random {
         return float(state >> 40) * 0x1p-24f;
     }
     Vec3f direction() {
-        const float z = 2 * uniform() - 1, angle = 6.2831853f * uniform(), r = std::sqrt(std::fmax(0.0f, 1 - z * z));
+        const float z = 2 * uniform() - 1, angle = 6.2831853f * uniform(),
+                    r = std::sqrt(std::fmax(0.0f, 1 - z * z));
         return {r * std::cos(angle), r * std::sin(angle), z};
     }
 };
@@ -74,7 +77,8 @@ Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t
     const uint32_t patch = uint32_t(random.uniform() * float(surface.patch_count()));
     const PatchLevels levels = instance.levels->at(patch).biased(bias);
     const uint32_t side = 1u << levels.patch;
-    uint32_t i = uint32_t(random.uniform() * float(side + 1)), j = uint32_t(random.uniform() * float(side + 1));
+    uint32_t i = uint32_t(random.uniform() * float(side + 1)),
+             j = uint32_t(random.uniform() * float(side + 1));
     if (random.uniform() < 0.5f) (random.uniform() < 0.5f ? i : j) = random.uniform() < 0.5f ? 0 : side;
     const Vec3f a = evaluate_vertex(surface, patch, levels, i, j);
     const Vec3f b = evaluate_vertex(surface, patch, levels, std::min(i + 1, side), j);
@@ -85,15 +89,17 @@ Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t
 Scene make_scene(const Case& c) {
     Mesh mesh = c.body == Body::sphere ? test::make_cube_sphere(4) : test::make_torus(8, 14);
     Scene scene = test::make_body_scene(
-        std::move(mesh), test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21), c.space));
+        std::move(mesh),
+        test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),
+                                c.space));
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
     scene.camera.from = c.body == Body::sphere ? Vec3f{0.75f, 0.1f, 0.2f} : Vec3f{1.2f, 0.1f, 0.1f};
     if (c.placement == Placement::instances)
         for (int k = 1; k <= 2; ++k) {
             Object copy = scene.objects[0];
-            copy.world_from_object = compose(
-                make_translation({float(5 * k), 1, -2}),
-                compose(make_rotation_degrees({20.0f * float(k), 35, 50}), make_scale({k == 1 ? -1.2f : 0.8f, 0.7f, 1.3f})));
+            copy.world_from_object = compose(make_translation({float(5 * k), 1, -2}),
+                                             compose(make_rotation_degrees({20.0f * float(k), 35, 50}),
+                                                     make_scale({k == 1 ? -1.2f : 0.8f, 0.7f, 1.3f})));
             scene.objects.push_back(copy);
         }
     return scene;
@@ -119,20 +125,23 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
             for (size_t k = 0; k < kBatch; ++k) {
                 const Instance& instance = prepared->instances[batch % prepared->instances.size()];
                 rays[k].bias = uint32_t(k / 1024);
-                rays[k].origin = transform_point(instance.world_from_object, make_inner_point(c.body, random));
+                rays[k].origin =
+                    transform_point(instance.world_from_object, make_inner_point(c.body, random));
                 if (k / 16 % 2 == 1 && k % 16 > 0) {
                     // Every other run of sixteen is a narrow bundle: a packet.
                     rays[k] = rays[k - k % 16];
                     rays[k].direction += random.direction() * (0.1f * length(rays[k].direction));
                 } else {
-                    rays[k].direction = k % 2 ? make_target(*prepared, instance, rays[k].bias, random) - rays[k].origin
-                                              : random.direction();
+                    rays[k].direction =
+                        k % 2 ? make_target(*prepared, instance, rays[k].bias, random) - rays[k].origin
+                              : random.direction();
                 }
             }
             tracer.closest_hits(rays, hits);
             for (size_t k = 0; k < kBatch; ++k) {
                 if (hits[k].is_hit()) continue;
-                if (leaks++ < 5) ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].bias;
+                if (leaks++ < 5)
+                    ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].bias;
             }
         }
     });
@@ -141,7 +150,9 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, LeakTest, testing::ValuesIn(kCases),
-                         [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+                         [](const testing::TestParamInfo<Case>& info) {
+                             return std::string(info.param.name);
+                         });
 
 } // namespace
 

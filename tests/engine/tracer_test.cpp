@@ -1,4 +1,5 @@
-// Direct tracing against brute force over the same micro-triangles, for every instruction set, leaf and level.
+// Direct tracing against brute force over the same micro-triangles, for every instruction set, leaf and
+// level.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +17,11 @@ namespace {
 std::vector<Isa> machine_isas() {
     std::vector<Isa> isas;
     for (const std::string& name : available_isas())
-        isas.push_back(name == "avx512" ? Isa::avx512 : name == "avx2" ? Isa::avx2 : name == "sse4" ? Isa::sse4
-                                                      : name == "neon" ? Isa::neon : Isa::scalar);
+        isas.push_back(name == "avx512" ? Isa::avx512
+                       : name == "avx2" ? Isa::avx2
+                       : name == "sse4" ? Isa::sse4
+                       : name == "neon" ? Isa::neon
+                                        : Isa::scalar);
     return isas;
 }
 
@@ -34,11 +38,13 @@ std::vector<Triangle> list_triangles(const PreparedScene& scene, uint32_t bias) 
             const PatchLevels levels = instance.levels->at(patch).biased(bias);
             const uint32_t side = 1u << levels.patch;
             const auto vertex = [&](uint32_t i, uint32_t j) {
-                return transform_point(instance.world_from_object, evaluate_vertex(surface, patch, levels, i, j));
+                return transform_point(instance.world_from_object,
+                                       evaluate_vertex(surface, patch, levels, i, j));
             };
             for (uint32_t j = 0; j < side; ++j)
                 for (uint32_t i = 0; i < side; ++i) {
-                    const Vec3f p00 = vertex(i, j), p10 = vertex(i + 1, j), p11 = vertex(i + 1, j + 1), p01 = vertex(i, j + 1);
+                    const Vec3f p00 = vertex(i, j), p10 = vertex(i + 1, j), p11 = vertex(i + 1, j + 1),
+                                p01 = vertex(i, j + 1);
                     triangles.push_back({p00, p10, p11});
                     triangles.push_back({p00, p11, p01});
                 }
@@ -47,21 +53,25 @@ std::vector<Triangle> list_triangles(const PreparedScene& scene, uint32_t bias) 
     return triangles;
 }
 
-/// Nearest t by Moeller and Trumbore in double precision; `margin` is how far the closest edge is, in barycentrics.
+/// Nearest t by Moeller and Trumbore in double precision; `margin` is how far the closest edge is, in
+/// barycentrics.
 double intersect_all(const std::vector<Triangle>& triangles, const cpu::TraceRay& ray, double& margin) {
     double best = INFINITY;
     margin = 1;
-    const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z}, d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+    const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z},
+                 d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
     for (const Triangle& triangle : triangles) {
         const double a[3] = {triangle.a.x, triangle.a.y, triangle.a.z};
         const double e1[3] = {triangle.b.x - a[0], triangle.b.y - a[1], triangle.b.z - a[2]};
         const double e2[3] = {triangle.c.x - a[0], triangle.c.y - a[1], triangle.c.z - a[2]};
-        const double p[3] = {d[1] * e2[2] - d[2] * e2[1], d[2] * e2[0] - d[0] * e2[2], d[0] * e2[1] - d[1] * e2[0]};
+        const double p[3] = {d[1] * e2[2] - d[2] * e2[1], d[2] * e2[0] - d[0] * e2[2],
+                             d[0] * e2[1] - d[1] * e2[0]};
         const double det = e1[0] * p[0] + e1[1] * p[1] + e1[2] * p[2];
         if (det == 0) continue;
         const double s[3] = {o[0] - a[0], o[1] - a[1], o[2] - a[2]};
         const double u = (s[0] * p[0] + s[1] * p[1] + s[2] * p[2]) / det;
-        const double q[3] = {s[1] * e1[2] - s[2] * e1[1], s[2] * e1[0] - s[0] * e1[2], s[0] * e1[1] - s[1] * e1[0]};
+        const double q[3] = {s[1] * e1[2] - s[2] * e1[1], s[2] * e1[0] - s[0] * e1[2],
+                             s[0] * e1[1] - s[1] * e1[0]};
         const double v = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det;
         const double t = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
         const double inside = std::min({u, v, 1 - u - v});
@@ -77,7 +87,8 @@ std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t bias, uint32_t see
     std::vector<cpu::TraceRay> rays;
     for (uint32_t k = 0; k < count; ++k) {
         cpu::TraceRay ray;
-        // Every second run of sixteen starts at one point and is a narrow bundle, so that packets are met too.
+        // Every second run of sixteen starts at one point and is a narrow bundle, so that packets are met
+        // too.
         if (k / 16 % 2 == 0 || k % 16 == 0) {
             const Vec3f from = normalize(Vec3f{normal(random), normal(random), normal(random)}) * 4.0f;
             const Vec3f to{normal(random) * 0.5f, normal(random) * 0.5f, normal(random) * 0.5f};
@@ -109,8 +120,8 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     RenderSettings settings;
     settings.level = c.level;
     settings.height = 60;
-    Scene scene = test::make_body_scene(test::make_cube_sphere(2),
-                                        test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), c.space));
+    Scene scene = test::make_body_scene(
+        test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), c.space));
     scene.camera.from = {2.5f, 0.4f, 0.6f};
     scene.camera.to = {0, 0, 0};
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
@@ -140,23 +151,32 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Levels, TracerTest,
-    testing::Values(Case{"object0", DisplacementSpace::object, 0, 0}, Case{"object1", DisplacementSpace::object, 1, 0},
-                    Case{"object2", DisplacementSpace::object, 2, 0}, Case{"tangent3", DisplacementSpace::tangent, 3, 0},
-                    Case{"object4", DisplacementSpace::object, 4, 0}, Case{"tangent5", DisplacementSpace::tangent, 5, 0},
-                    Case{"object6", DisplacementSpace::object, 6, 0}, Case{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
-                    Case{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
-                    Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1}),
-    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Levels, TracerTest,
+                         testing::Values(Case{"object0", DisplacementSpace::object, 0, 0},
+                                         Case{"object1", DisplacementSpace::object, 1, 0},
+                                         Case{"object2", DisplacementSpace::object, 2, 0},
+                                         Case{"tangent3", DisplacementSpace::tangent, 3, 0},
+                                         Case{"object4", DisplacementSpace::object, 4, 0},
+                                         Case{"tangent5", DisplacementSpace::tangent, 5, 0},
+                                         Case{"object6", DisplacementSpace::object, 6, 0},
+                                         Case{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
+                                         Case{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
+                                         Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1}),
+                         [](const testing::TestParamInfo<Case>& info) {
+                             return std::string(info.param.name);
+                         });
+
+std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& settings) {
+    return prepare_scene(test::make_body_scene(test::make_torus(6, 9),
+                                               test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
+                                                                       DisplacementSpace::tangent)),
+                         settings);
+}
 
 TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
     RenderSettings settings;
     settings.level = 6;
-    const auto prepared =
-        prepare_scene(test::make_body_scene(test::make_torus(6, 9), test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
-                                                                                            DisplacementSpace::tangent)),
-                      settings);
+    const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<std::vector<cpu::TraceHit>> results;
     for (const size_t cap : {size_t(256) << 20, size_t(0), size_t(200000)}) {
@@ -181,10 +201,7 @@ TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
 TEST(Tracer, box_leaves_hold_every_exact_hit) {
     RenderSettings settings;
     settings.level = 4;
-    const auto prepared =
-        prepare_scene(test::make_body_scene(test::make_torus(6, 9), test::make_displacement(test::make_random_map(64, 64, 0.1f, 5),
-                                                                                            DisplacementSpace::tangent)),
-                      settings);
+    const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<cpu::TraceHit> exact(rays.size()), box(rays.size());
     cpu::Tracer(prepared, settings).closest_hits(rays, exact);
@@ -203,8 +220,9 @@ TEST(Tracer, box_leaves_hold_every_exact_hit) {
 TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
     RenderSettings settings;
     settings.height = 200;
-    Scene scene = test::make_body_scene(test::make_cube_sphere(3),
-                                        test::make_displacement(test::make_random_map(128, 96, 0.1f, 8), DisplacementSpace::object));
+    Scene scene = test::make_body_scene(
+        test::make_cube_sphere(3),
+        test::make_displacement(test::make_random_map(128, 96, 0.1f, 8), DisplacementSpace::object));
     scene.camera.from = {3, 1, 2};
     scene.camera.to = {0, 0, 0};
     Object second = scene.objects[0];

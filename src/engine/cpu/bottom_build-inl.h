@@ -11,22 +11,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-template <size_t W>
-HWY_INLINE float reduce_min(const Lanes<W>& a) {
+template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
     auto least = a.part[0];
     for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
     return hn::GetLane(hn::MinOfLanes(typename Lanes<W>::D(), least));
 }
 
-template <size_t W>
-HWY_INLINE float reduce_max(const Lanes<W>& a) {
+template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
     auto greatest = a.part[0];
     for (size_t p = 1; p < Lanes<W>::kParts; ++p) greatest = hn::Max(greatest, a.part[p]);
     return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
 }
 
-/// Copies the 5 x 3 vertices of a block; a tile smaller than the block repeats its last column and row, which makes
-/// triangles without area that no ray hits.
+/// Copies the 5 x 3 vertices of a block; a tile smaller than the block repeats its last column and row, which
+/// makes triangles without area that no ray hits.
 HWY_INLINE void fill_block(const VertexGrid& grid, uint32_t column, uint32_t row, uint32_t cell_count,
                            cpu::Block& block) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -34,13 +32,13 @@ HWY_INLINE void fill_block(const VertexGrid& grid, uint32_t column, uint32_t row
         float* target = block.vertex[axis];
         for (uint32_t r = 0; r < 3; ++r)
             for (uint32_t c = 0; c < 5; ++c)
-                target[r * 5 + c] = source[HWY_MIN(row + r, cell_count) * VertexGrid::kPitch + HWY_MIN(column + c, cell_count)];
+                target[r * 5 + c] = source[HWY_MIN(row + r, cell_count) * VertexGrid::kPitch +
+                                           HWY_MIN(column + c, cell_count)];
         target[15] = target[14];
     }
 }
 
-template <class Node>
-HWY_INLINE void store_block_box(const cpu::Block& block, uint32_t child, Node& node) {
+template <class Node> HWY_INLINE void store_block_box(const cpu::Block& block, uint32_t child, Node& node) {
     for (int axis = 0; axis < 3; ++axis) {
         const Lanes16 v = Lanes16::load(block.vertex[axis]);
         node.bounds[axis][child] = reduce_min(v);

@@ -13,8 +13,8 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kProbeCount = 8;      ///< slots looked at for one key
-constexpr size_t kMeanTreeBytes = 4096;  ///< decides the size of the table
+constexpr size_t kProbeCount = 8;       ///< slots looked at for one key
+constexpr size_t kMeanTreeBytes = 4096; ///< decides the size of the table
 
 uint64_t hash_key(const TreeKey& key) {
     // Two rounds of the finalizer of Steele, Lea and Flood 2014 (SplitMix64).
@@ -69,7 +69,8 @@ TraceContext& BottomCache::acquire() {
         context->is_taken.store(true);
         context->tree_scratch.reset(allocate_aligned(BottomTree::size_bytes(kTileLevel)));
         context->next = contexts_.load();
-        while (!contexts_.compare_exchange_weak(context->next, context)) {}
+        while (!contexts_.compare_exchange_weak(context->next, context)) {
+        }
     }
     refresh(*context);
     return *context;
@@ -86,7 +87,8 @@ CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
         CachedTree* tree = slots_[(home + probe) & (slot_count_ - 1)].load(std::memory_order_seq_cst);
         if (tree && tree->key == key) {
-            if (!tree->is_recent.load(std::memory_order_relaxed)) tree->is_recent.store(1, std::memory_order_relaxed);
+            if (!tree->is_recent.load(std::memory_order_relaxed))
+                tree->is_recent.store(1, std::memory_order_relaxed);
             ++context.counters.reused;
             return tree;
         }
@@ -94,8 +96,9 @@ CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
     return nullptr;
 }
 
-const BottomTree& BottomCache::find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
-                                                  const PatchLevels& levels, BuildTreeFunction build) {
+const BottomTree& BottomCache::find_or_build_tree(TraceContext& context, const Surface& surface,
+                                                  const TreeKey& key, const PatchLevels& levels,
+                                                  BuildTreeFunction build) {
     if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
     const Timer timer;
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
@@ -147,11 +150,12 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
         if (!has_room()) return nullptr;
     }
     const size_t now = allocated_.fetch_add(bytes) + bytes;
-    if (now > cap_bytes_) {  // another worker took the room in between
+    if (now > cap_bytes_) { // another worker took the room in between
         allocated_.fetch_sub(bytes);
         return nullptr;
     }
-    for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {}
+    for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
+    }
     return allocate_aligned(bytes);
 }
 
@@ -198,7 +202,8 @@ void BottomCache::free_tree(CachedTree* tree) {
 
 TraceCounters BottomCache::sum_counters() const {
     TraceCounters sum;
-    for (const TraceContext* context = contexts_.load(); context; context = context->next) sum.add(context->counters);
+    for (const TraceContext* context = contexts_.load(); context; context = context->next)
+        sum.add(context->counters);
     return sum;
 }
 

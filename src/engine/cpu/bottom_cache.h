@@ -1,9 +1,10 @@
 // Bottom trees kept between rays, batches, samples and bounces, under a byte cap.
 //
-// No lock is taken inside a traversal: a look-up reads one slot of a fixed table; a miss builds privately and offers the
-// tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and freed when no worker can hold
-// it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom, section 5.2.3). When the cap leaves no
-// room, a tree lives in the worker's scratch memory for one visit. The image never depends on any of this.
+// No lock is taken inside a traversal: a look-up reads one slot of a fixed table; a miss builds privately and
+// offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and freed
+// when no worker can hold it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom,
+// section 5.2.3). When the cap leaves no room, a tree lives in the worker's scratch memory for one visit. The
+// image never depends on any of this.
 #pragma once
 
 #include <atomic>
@@ -24,14 +25,14 @@ struct TraceCounters {
     uint64_t built = 0, reused = 0;
     uint64_t built_at_level[kMaxLevel + 1] = {};
     double bottom_build_s = 0, trace_s = 0;
-    double sampled_trace_s = 0, sampled_bottom_s = 0;  ///< of the batches that were timed patch by patch
+    double sampled_trace_s = 0, sampled_bottom_s = 0; ///< of the batches that were timed patch by patch
 
     void add(const TraceCounters& other);
 };
 
 /// What one worker needs while it traces a batch. Taken with BottomCache::acquire, given back with release.
 struct TraceContext {
-    std::atomic<uint64_t> epoch{0};  ///< 0: holds no tree
+    std::atomic<uint64_t> epoch{0}; ///< 0: holds no tree
     std::atomic<bool> is_taken{false};
     TraceContext* next = nullptr;
 
@@ -46,7 +47,7 @@ struct TraceContext {
     std::unique_ptr<void, AlignedFree> tree_scratch, directory_scratch;
     size_t directory_scratch_bytes = 0;
     TraceCounters counters;
-    bool is_timed = false;      ///< this batch measures its bottom stage
+    bool is_timed = false; ///< this batch measures its bottom stage
     uint64_t batch_count = 0;
 };
 
@@ -64,11 +65,12 @@ class BottomCache {
     /// To be called between rays: trees returned before may be freed afterwards.
     void refresh(TraceContext& context) const { context.epoch.store(epoch_.load()); }
 
-    /// The returned trees stay valid until the context's next refresh, release, or (without room) its next call.
+    /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
+    /// call.
     const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
                                          const PatchLevels& levels, BuildTreeFunction build);
-    const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface, const TreeKey& key,
-                                                 const PatchLevels& levels);
+    const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
+                                                 const TreeKey& key, const PatchLevels& levels);
 
     /// Bytes held now and at most so far, table included.
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
@@ -85,7 +87,7 @@ class BottomCache {
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
     size_t cap_bytes_;
-    size_t slot_count_ = 0;  ///< power of two, or 0
+    size_t slot_count_ = 0; ///< power of two, or 0
     std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
     std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};
     mutable std::atomic<uint64_t> epoch_{1};

@@ -1,8 +1,9 @@
-// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over blocks of
-// 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis).
+// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over
+// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis).
 //
-// A bottom tree covers one tile of at most 32 x 32 cells. A patch finer than that has a directory: a tree of the same
-// sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever evaluated.
+// A bottom tree covers one tile of at most 32 x 32 cells. A patch finer than that has a directory: a tree of
+// the same sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever
+// evaluated.
 #pragma once
 
 #include <atomic>
@@ -13,8 +14,8 @@
 
 namespace relief::cpu {
 
-inline constexpr int kTileLevel = 5;                        ///< a tile has at most 2^5 cells a side
-inline constexpr uint32_t kDirectoryTile = 0xffffffffu;     ///< in place of a tile index: the patch's directory
+inline constexpr int kTileLevel = 5;                    ///< a tile has at most 2^5 cells a side
+inline constexpr uint32_t kDirectoryTile = 0xffffffffu; ///< in place of a tile index: the patch's directory
 
 /// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
 struct alignas(64) Node16 {
@@ -26,7 +27,8 @@ struct alignas(64) Node8 {
     float bounds[6][8];
 };
 
-/// 3 rows of 5 vertices, x then y then z; entry 15 repeats entry 14. Cell (c, r) has corners r*5+c, +1, +5, +6.
+/// 3 rows of 5 vertices, x then y then z; entry 15 repeats entry 14. Cell (c, r) has corners r*5+c, +1, +5,
+/// +6.
 struct alignas(64) Block {
     float vertex[3][16];
 };
@@ -34,7 +36,7 @@ struct alignas(64) Block {
 /// What a cached object is of; equal keys mean equal bits.
 struct TreeKey {
     uint32_t surface = 0, patch = 0, tile = 0;
-    uint32_t levels = 0;  ///< patch level and four edge levels, 5 x 4 bits
+    uint32_t levels = 0; ///< patch level and four edge levels, 5 x 4 bits
 
     friend bool operator==(const TreeKey&, const TreeKey&) = default;
 };
@@ -45,27 +47,32 @@ inline uint32_t pack_levels(const PatchLevels& levels) {
     return packed;
 }
 
-/// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock hand.
+/// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock
+/// hand.
 struct alignas(64) CachedTree {
     TreeKey key;
     uint32_t byte_count = 0;
     std::atomic<uint8_t> is_recent{0};
 };
 
-/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Arrays follow the head:
-///   level 5: root, 16 Node8, 128 blocks; group g = child of the root covers 8 x 8 cells, its block k 4 x 2 of them
-///   level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1
-///   level 3: one Node8, 8 blocks;   levels 2, 1, 0: no boxes, 2, 1, 1 blocks
+/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Arrays follow the
+/// head:
+///   level 5: root, 16 Node8, 128 blocks; group g = child of the root covers 8 x 8 cells, its block k 4 x 2
+///   of them level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1 level 3: one Node8,
+///   8 blocks;   levels 2, 1, 0: no boxes, 2, 1, 1 blocks
 struct BottomTree : CachedTree {
     uint32_t level = 0;
-    uint32_t cell_x = 0, cell_y = 0;  ///< first cell of the tile on the patch
+    uint32_t cell_x = 0, cell_y = 0; ///< first cell of the tile on the patch
 
     static constexpr uint32_t block_count(int level) {
         constexpr uint32_t kCounts[] = {1, 1, 2, 8, 32, 128};
         return kCounts[level];
     }
     static constexpr size_t node_bytes(int level) {
-        return level == 5 ? sizeof(Node16) + 16 * sizeof(Node8) : level == 4 ? sizeof(Node16) : level == 3 ? sizeof(Node8) : 0;
+        return level == 5   ? sizeof(Node16) + 16 * sizeof(Node8)
+               : level == 4 ? sizeof(Node16)
+               : level == 3 ? sizeof(Node8)
+                            : 0;
     }
     static constexpr size_t size_bytes(int level);
 
@@ -103,17 +110,21 @@ constexpr size_t BottomTree::size_bytes(int level) {
 inline const char* BottomTree::data() const {
     return reinterpret_cast<const char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
 }
-inline char* BottomTree::data() { return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64; }
+inline char* BottomTree::data() {
+    return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
+}
 
-/// Tree over the tiles of a patch above kTileLevel: 2^depth tiles a side. Step s has step_side(s)^2 nodes, row by row;
-/// a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd); the last step's children
-/// are tiles.
+/// Tree over the tiles of a patch above kTileLevel: 2^depth tiles a side. Step s has step_side(s)^2 nodes,
+/// row by row; a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd);
+/// the last step's children are tiles.
 struct TileDirectory : CachedTree {
     uint32_t depth = 0;
 
     static constexpr uint32_t step_count(uint32_t depth) { return (depth + 1) / 2; }
     /// Children a side of a node of step s.
-    static constexpr uint32_t fanout(uint32_t depth, uint32_t step) { return step == 0 && depth % 2 == 1 ? 2 : 4; }
+    static constexpr uint32_t fanout(uint32_t depth, uint32_t step) {
+        return step == 0 && depth % 2 == 1 ? 2 : 4;
+    }
     /// Nodes a side of step s.
     static constexpr uint32_t step_side(uint32_t depth, uint32_t step) {
         return step == 0 ? 1 : (depth % 2 == 1 ? 2u : 4u) << (2 * (step - 1));

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/path_tracer.h"
@@ -19,16 +20,17 @@ namespace {
 
 /// Rays that one worker traces between two looks at the queue.
 constexpr size_t kBatchSize = 1024;
-constexpr double kReportInterval = 0.1;  ///< seconds between two reports of progress
-constexpr int kLongestPass = 16;         ///< samples a pixel between two passes over the picture
+constexpr double kReportInterval = 0.1; ///< seconds between two reports of progress
+constexpr int kLongestPass = 16;        ///< samples a pixel between two passes over the picture
 
-/// The picture's grid of tiles, cut at absolute multiples of the tile edge so that crops trace the same packets.
+/// The picture's grid of tiles, cut at absolute multiples of the tile edge so that crops trace the same
+/// packets.
 std::vector<Window> make_tiles(const Window& window) {
     std::vector<Window> tiles;
     for (int y = window.y0 / kTileEdge * kTileEdge; y < window.y1; y += kTileEdge)
         for (int x = window.x0 / kTileEdge * kTileEdge; x < window.x1; x += kTileEdge)
-            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0), std::min(x + kTileEdge, window.x1),
-                             std::min(y + kTileEdge, window.y1)});
+            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0),
+                             std::min(x + kTileEdge, window.x1), std::min(y + kTileEdge, window.y1)});
     return tiles;
 }
 
@@ -78,7 +80,8 @@ class CpuEngine final : public Engine {
     bool render(Film& film, RenderObserver* observer) override {
         const Timer timer;
         const std::vector<Window> tiles = make_tiles(film.window());
-        const uint64_t pixels = uint64_t(film.window().x1 - film.window().x0) * uint64_t(film.window().y1 - film.window().y0);
+        const uint64_t pixels =
+            uint64_t(film.window().x1 - film.window().x0) * uint64_t(film.window().y1 - film.window().y0);
         Reporter reporter(observer, std::max<uint64_t>(1, pixels * uint64_t(settings_.spp)), settings_.spp);
         int done = 0, length = 1;
         while (done < settings_.spp && !reporter.is_cancelled()) {
@@ -111,7 +114,7 @@ class CpuEngine final : public Engine {
 
     void add_statistics(Statistics& statistics) const override {
         statistics.engine = "cpu";
-        statistics.device = "cpu";
+        statistics.device = processor_name();
         statistics.first_image_s += first_image_s_;
         statistics.camera_rays += counters_.camera_rays;
         statistics.shadow_rays += counters_.shadow_rays;
@@ -129,7 +132,8 @@ class CpuEngine final : public Engine {
                 const Window& tile = tiles[k];
                 TileCounters counters;
                 trace_tile({tracer_, lights_, settings_}, film, tile, samples, counters);
-                reporter.finish_tile(uint64_t(tile.x1 - tile.x0) * uint64_t(tile.y1 - tile.y0) * uint64_t(samples.count),
+                reporter.finish_tile(uint64_t(tile.x1 - tile.x0) * uint64_t(tile.y1 - tile.y0) *
+                                         uint64_t(samples.count),
                                      counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
                 const std::lock_guard lock(mutex);
                 counters_.camera_rays += counters.camera_rays;
@@ -170,7 +174,8 @@ class CpuEngine final : public Engine {
 
 } // namespace cpu
 
-std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings) {
+std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene,
+                                        const RenderSettings& settings) {
     return std::make_unique<cpu::CpuEngine>(std::move(scene), settings);
 }
 

@@ -29,15 +29,21 @@ Interval find_interval(std::span<const float> cumulative, float u) {
     return {index, std::min(position, 0x1.fffffep-1f)};
 }
 
-/// Turns weights that start at values[1] into cumulative probabilities; returns their sum.
+/// Turns weights that start at values[1] into cumulative probabilities; returns their sum. What is dim beside a
+/// lamp gets a share that floats can still tell from nothing: in the lamp's shadow it is all the light there is.
 double accumulate(std::span<float> values) {
+    constexpr double kLeastShare = 0.01; // of the mean weight
     double sum = 0;
     for (size_t i = 1; i < values.size(); ++i) sum += values[i];
+    const double least = kLeastShare * sum / double(values.size() - 1);
+    const auto raise = [least](float weight) { return weight > 0 ? std::max(double(weight), least) : 0.0; };
+    double raised = 0;
+    for (size_t i = 1; i < values.size(); ++i) raised += raise(values[i]);
     double running = 0;
     values[0] = 0;
     for (size_t i = 1; i < values.size(); ++i) {
-        running += values[i];
-        values[i] = sum > 0 ? float(running / sum) : float(i) / float(values.size() - 1);
+        running += raise(values[i]);
+        values[i] = sum > 0 ? float(running / raised) : float(i) / float(values.size() - 1);
     }
     values.back() = 1;
     return sum;
@@ -127,9 +133,13 @@ Vec3f EnvironmentLight::radiance(const Vec3f& direction) const {
            scale_;
 }
 
-float EnvironmentLight::cell_probability(uint32_t column, uint32_t row) const {
+/// Density per solid angle of a direction in a cell; 0 at the poles, which have no measure.
+float EnvironmentLight::cell_density(uint32_t column, uint32_t row, const Vec3f& direction) const {
     const float* cells = columns_.data() + size_t(row) * (cells_x_ + 1);
-    return (cells[column + 1] - cells[column]) * (rows_[row + 1] - rows_[row]);
+    const float probability = (cells[column + 1] - cells[column]) * (rows_[row + 1] - rows_[row]);
+    const float sine = std::sqrt(direction.x * direction.x + direction.z * direction.z);
+    constexpr float kSquareOfUnitSine = 2 * std::numbers::pi_v<float> * std::numbers::pi_v<float>;
+    return sine > 0 ? probability * float(cells_x_ * cells_y_) / (kSquareOfUnitSine * sine) : 0.0f;
 }
 
 EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
@@ -140,19 +150,19 @@ EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& 
     const Vec2f position{(float(column.index) + column.position) / float(cells_x_),
                          (float(row.index) + row.position) / float(cells_y_)};
     const Vec3f direction = world_from_local(scalar::latlong_to_direction(position));
-    const double sine = std::sin(std::numbers::pi * position.y);
-    const double density = double(cell_probability(column.index, row.index)) * cells_x_ * cells_y_;
-    return {direction, sine > 0 ? float(density / (2 * std::numbers::pi * std::numbers::pi * sine)) : 0.0f};
+    return {direction, cell_density(column.index, row.index, direction), position};
 }
 
-float EnvironmentLight::pdf(const Vec3f& direction) const {
-    if (!environment_.texture) return scalar::sphere_pdf();
+Vec3f EnvironmentLight::radiance(const DirectionSample& drawn) const {
+    return environment_.texture ? fetch_latlong(*environment_.texture, drawn.position) * scale_ : scale_;
+}
+
+EnvironmentLight::Lookup EnvironmentLight::look_up(const Vec3f& direction) const {
+    if (!environment_.texture) return {scale_, scalar::sphere_pdf()};
     const Vec2f position = scalar::direction_to_latlong(local_from_world(direction));
     const uint32_t column = std::min(uint32_t(position.x * float(cells_x_)), cells_x_ - 1);
     const uint32_t row = std::min(uint32_t(position.y * float(cells_y_)), cells_y_ - 1);
-    const double sine = std::sin(std::numbers::pi * position.y);
-    const double density = double(cell_probability(column, row)) * cells_x_ * cells_y_;
-    return sine > 0 ? float(density / (2 * std::numbers::pi * std::numbers::pi * sine)) : 0.0f;
+    return {fetch_latlong(*environment_.texture, position) * scale_, cell_density(column, row, direction)};
 }
 
 } // namespace relief::cpu

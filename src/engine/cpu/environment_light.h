@@ -16,13 +16,22 @@ class EnvironmentLight {
 
     struct DirectionSample {
         Vec3f direction;
-        float pdf; ///< per solid angle; 0: nothing could be drawn
+        float pdf;         ///< per solid angle; 0: nothing could be drawn
+        Vec2f position{};  ///< in the image
     };
     /// Draws from a piecewise constant density over latitude and longitude, luminance times sin(theta);
     /// uniformly over the sphere without an image (Pharr, Jakob and Humphreys 2023, Physically Based
     /// Rendering, section 12.5.2).
     DirectionSample draw_direction(const Vec2f& u) const;
-    float pdf(const Vec3f& direction) const;
+    Vec3f radiance(const DirectionSample& drawn) const;
+    float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
+
+    /// Radiance from a direction and the density with which it is drawn, both at once.
+    struct Lookup {
+        Vec3f radiance;
+        float pdf;
+    };
+    Lookup look_up(const Vec3f& direction) const;
 
     /// Mean over all directions.
     float mean_luminance() const { return mean_luminance_; }
@@ -30,7 +39,7 @@ class EnvironmentLight {
 
   private:
     void build_distribution();
-    float cell_probability(uint32_t column, uint32_t row) const;
+    float cell_density(uint32_t column, uint32_t row, const Vec3f& direction) const;
     Vec3f local_from_world(const Vec3f& d) const;
     Vec3f world_from_local(const Vec3f& d) const;
 

@@ -1,6 +1,7 @@
 // Compiles the kernels once for each instruction set (Highway's foreach_target) and picks by name.
 
-// Every target that the compiler can reach, the one without SIMD included; those left out are close to a neighbour.
+// Every target that the compiler can reach, the one without SIMD included; those left out are close to a
+// neighbour.
 #define HWY_COMPILE_ALL_ATTAINABLE
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 
@@ -30,8 +31,8 @@ bool is_coherent(const cpu::TraceRay* rays) {
 }
 
 template <Query kQuery, class Store>
-void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays, size_t count,
-                Store store) {
+void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+                size_t count, Store store) {
     size_t begin = 0;
     while (begin < count) {
         scene.cache->refresh(context);
@@ -60,8 +61,8 @@ void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const
     });
 }
 
-void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays, uint8_t* occluded,
-              size_t count) {
+void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+              uint8_t* occluded, size_t count) {
     trace_rays<Query::any>(scene, context, rays, count,
                            [&](size_t k, const cpu::TraceHit&, bool has_hit) { occluded[k] = has_hit; });
 }
@@ -89,21 +90,27 @@ const Kernels* pick(Isa isa) {
     [[maybe_unused]] const int64_t supported = hwy::SupportedTargets();
     switch (isa) {
 #if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512: return supported & HWY_AVX3 ? &N_AVX3::kernels("avx512") : nullptr;
+    case Isa::avx512:
+        return supported & HWY_AVX3 ? &N_AVX3::kernels("avx512") : nullptr;
 #endif
 #if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2: return supported & HWY_AVX2 ? &N_AVX2::kernels("avx2") : nullptr;
+    case Isa::avx2:
+        return supported & HWY_AVX2 ? &N_AVX2::kernels("avx2") : nullptr;
 #endif
 #if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4: return supported & HWY_SSE4 ? &N_SSE4::kernels("sse4") : nullptr;
+    case Isa::sse4:
+        return supported & HWY_SSE4 ? &N_SSE4::kernels("sse4") : nullptr;
 #endif
 #if HWY_TARGETS & HWY_NEON
-    case Isa::neon: return supported & HWY_NEON ? &N_NEON::kernels("neon") : nullptr;
+    case Isa::neon:
+        return supported & HWY_NEON ? &N_NEON::kernels("neon") : nullptr;
 #endif
 #if HWY_TARGETS & HWY_EMU128
-    case Isa::scalar: return &N_EMU128::kernels("scalar");
+    case Isa::scalar:
+        return &N_EMU128::kernels("scalar");
 #endif
-    default: return nullptr;
+    default:
+        return nullptr;
     }
 }
 

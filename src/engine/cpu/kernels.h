@@ -14,12 +14,12 @@ namespace relief::cpu {
 struct SceneView {
     const Instance* instances = nullptr;
     const Surface* surfaces = nullptr;
-    const WideBvh* surface_trees = nullptr;  ///< one a surface, over its patches
-    const WideBvh* instance_tree = nullptr;  ///< over the instances
+    const WideBvh* surface_trees = nullptr; ///< one a surface, over its patches
+    const WideBvh* instance_tree = nullptr; ///< over the instances
     BottomCache* cache = nullptr;
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;
-    float pixel_angle = 0;  ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
+    float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
 };
 
 struct Kernels {

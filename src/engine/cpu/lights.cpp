@@ -107,8 +107,8 @@ float LightSet::total_irradiance(const Vec3f& position) const {
     return total;
 }
 
-std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
-                                          const RandomNumbers& random) const {
+std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumbers& random) const {
+    const Vec3f& position = at.position;
     const float total = total_irradiance(position);
     if (!(total > 0)) return std::nullopt;
     const float target = random.u_light * total;
@@ -121,9 +121,10 @@ std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
     switch (source.kind) {
     case Kind::environment: {
         const auto drawn = environment_->draw_direction(random.u);
-        if (!(drawn.pdf > 0)) return std::nullopt;
-        result = {drawn.direction, kInfinity, environment_->radiance(drawn.direction) * (1 / drawn.pdf),
-                  drawn.pdf, std::nullopt};
+        // Half of the directions lead into the surface: the image, far too large for a cache, is not read for them.
+        if (!(drawn.pdf > 0) || dot(drawn.direction, at.normal) <= 0) return std::nullopt;
+        result = {drawn.direction, kInfinity, environment_->radiance(drawn) * (1 / drawn.pdf), drawn.pdf,
+                  std::nullopt};
         break;
     }
     case Kind::sun:
@@ -133,10 +134,10 @@ std::optional<LightSample> LightSet::draw(const Vec3f& position, uint32_t bias,
         result = draw_point(source, position, random.u);
         break;
     case Kind::emitters:
-        result = draw_emitter(position, bias, random.u_emitter, random.u);
+        result = draw_emitter(position, at.bias, random.u_emitter, random.u);
         break;
     }
-    if (!(result.pdf > 0)) return std::nullopt;
+    if (!(result.pdf > 0) || dot(result.direction, at.normal) <= 0) return std::nullopt;
     const float probability = estimate / total;
     result.pdf *= probability;
     result.weight *= 1 / probability;
@@ -221,8 +222,8 @@ Vec3f LightSet::gather(const Vec3f& origin, const Vec3f& direction, float distan
         Vec3f radiance{};
         float pdf = 0;
         if (source.kind == Kind::environment && distance == kInfinity) {
-            radiance = environment_->radiance(direction);
-            pdf = environment_->pdf(direction);
+            const auto seen = environment_->look_up(direction);
+            radiance = seen.radiance, pdf = seen.pdf;
         } else if (source.kind == Kind::sun && source.cone > 0 && distance == kInfinity) {
             // 1 - cos from the chord between the unit vectors, exact for small angles.
             const Vec3f chord = direction - source.basis.n;
@@ -239,9 +240,9 @@ Vec3f LightSet::gather(const Vec3f& origin, const Vec3f& direction, float distan
             radiance = shape_radiance(light, cone);
             pdf = scalar::cone_pdf(cone);
         }
-        if (pdf > 0)
-            sum += radiance *
-                   scalar::power_heuristic(bsdf_pdf, pdf * (estimate_irradiance(source, origin) / total));
+        if (radiance == Vec3f{}) continue;
+        const float share = total > 0 ? estimate_irradiance(source, origin) / total : 0.0f;
+        sum += radiance * scalar::power_heuristic(bsdf_pdf, pdf * share);
     }
     return sum;
 }

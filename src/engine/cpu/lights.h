@@ -29,14 +29,22 @@ class LightSet {
     /// The tracer must outlive the set.
     explicit LightSet(const Tracer& tracer);
 
-    /// Draws one light by its estimated irradiance at `position`, then a direction towards it: `u_light`
-    /// picks the light, `u_emitter` the emissive patch, `u` the point. Emitters are sampled on surface
-    /// M_bias. Nothing when all is dark.
+    /// What is lit: a point, and the normal of the side that matters.
+    struct Receiver {
+        Vec3f position, normal;
+        uint32_t bias; ///< emitters are sampled on surface M_bias
+    };
+
+    /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
+    /// `u_emitter` the emissive patch, `u` the point. Nothing when all is dark or the light is behind.
     struct RandomNumbers {
         float u_light, u_emitter;
         Vec2f u;
     };
-    std::optional<LightSample> draw(const Vec3f& position, uint32_t bias, const RandomNumbers& random) const;
+    std::optional<LightSample> draw(const Receiver& at, const RandomNumbers& random) const;
+
+    /// False: `u_emitter` is never looked at.
+    bool has_emitters() const { return emitter_cumulative_.size() > 1; }
 
     /// Radiance of the environment along a direction; black without one.
     Vec3f environment_radiance(const Vec3f& direction) const;

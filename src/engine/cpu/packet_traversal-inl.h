@@ -1,8 +1,9 @@
-// Sixteen coherent rays at once: every box is tested against all of them, every leaf block against those that enter it.
-// Boxes and triangles are the very tests of the single ray, so that a ray's hit does not depend on its company.
+// Sixteen coherent rays at once: every box is tested against all of them, every leaf block against those that
+// enter it. Boxes and triangles are the very tests of the single ray, so that a ray's hit does not depend on
+// its company.
 //
-// Rays from one point (pinhole camera, point light) could be answered by projecting micro-triangles instead; that path
-// belongs beside trace_packet and gives the same hits.
+// Rays from one point (pinhole camera, point light) could be answered by projecting micro-triangles instead;
+// that path belongs beside trace_packet and gives the same hits.
 #if defined(RELIEF_PACKET_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_PACKET_TRAVERSAL_INL_H
 #undef RELIEF_PACKET_TRAVERSAL_INL_H
@@ -20,15 +21,16 @@ inline constexpr int kLeastPacket = 3;
 
 struct Packet {
     const cpu::TraceRay* world;
-    RayState ray[16];            ///< in the space of the current object; hits and t_max live here
+    RayState ray[16]; ///< in the space of the current object; hits and t_max live here
     Lanes16 origin[3], reciprocal[3], t_min;
     alignas(64) float t_max[16];
-    LaneMask active;             ///< Query::any: lanes without a hit so far
+    LaneMask active; ///< Query::any: lanes without a hit so far
 
     void load_lanes() {
         alignas(64) float o[3][16], r[3][16], least[16];
         for (int lane = 0; lane < 16; ++lane) {
-            for (int k = 0; k < 3; ++k) o[k][lane] = ray[lane].origin[k], r[k][lane] = ray[lane].reciprocal[k];
+            for (int k = 0; k < 3; ++k)
+                o[k][lane] = ray[lane].origin[k], r[k][lane] = ray[lane].reciprocal[k];
             least[lane] = ray[lane].t_min, t_max[lane] = ray[lane].t_max;
         }
         for (int k = 0; k < 3; ++k) origin[k] = Lanes16::load(o[k]), reciprocal[k] = Lanes16::load(r[k]);
@@ -36,9 +38,10 @@ struct Packet {
     }
 };
 
-/// Lanes of `mask` that enter a box, and the nearest entry among them (other lanes included: a bound from below).
-HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], const Packet& packet, LaneMask mask,
-                             float& nearest) {
+/// Lanes of `mask` that enter a box, and the nearest entry among them (other lanes included: a bound from
+/// below).
+HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], const Packet& packet,
+                             LaneMask mask, float& nearest) {
     Lanes16 near[3], far[3];
     for (int k = 0; k < 3; ++k) {
         const Lanes16 a = (Lanes16(lower[k]) - packet.origin[k]) * packet.reciprocal[k];
@@ -60,7 +63,8 @@ struct PacketEntry {
 
 /// Child k of a node of boxes stored as lower x y z, upper x y z.
 template <class Node>
-HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask, float& nearest) {
+HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask,
+                               float& nearest) {
     const float lower[3] = {node.bounds[0][k], node.bounds[1][k], node.bounds[2][k]};
     const float upper[3] = {node.bounds[3][k], node.bounds[4][k], node.bounds[5][k]};
     return test_box(lower, upper, packet, mask, nearest);
@@ -84,8 +88,8 @@ HWY_INLINE void visit_children(const Node& node, uint32_t count, Packet& packet,
 }
 
 template <Query kQuery>
-HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, Packet& packet,
-                            LaneMask mask, LaneMask& hits) {
+HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                            Packet& packet, LaneMask mask, LaneMask& hits) {
     for (mask &= packet.active; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
         if (!intersect_block<kQuery>(visit, tree, block, packet.ray[lane])) continue;
@@ -96,7 +100,8 @@ HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree
 }
 
 template <Query kQuery>
-void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& packet, LaneMask mask, LaneMask& hits) {
+void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& packet, LaneMask mask,
+                LaneMask& hits) {
     const auto test_block = [&](uint32_t block, LaneMask entered) {
         trace_block<kQuery>(visit, tree, block, packet, entered, hits);
     };
@@ -113,13 +118,14 @@ void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& pa
     } else if (tree.level == 3) {
         visit_children(tree.group(0), 8, packet, mask, test_block);
     } else {
-        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block) test_block(block, mask);
+        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
+            test_block(block, mask);
     }
 }
 
 template <Query kQuery>
-void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t index,
-                     Packet& packet, LaneMask mask, LaneMask& hits) {
+void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step,
+                     uint32_t index, Packet& packet, LaneMask mask, LaneMask& hits) {
     using cpu::TileDirectory;
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step), x = index % side, y = index / side;
@@ -129,7 +135,8 @@ void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
         if (step + 1 == TileDirectory::step_count(depth))
             trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), packet, entered, hits);
         else
-            trace_directory<kQuery>(visit, directory, step + 1, cy * side * fanout + cx, packet, entered, hits);
+            trace_directory<kQuery>(visit, directory, step + 1, cy * side * fanout + cx, packet, entered,
+                                    hits);
     });
 }
 
@@ -138,7 +145,8 @@ template <Query kQuery>
 void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch, Packet& packet,
                  LaneMask mask) {
     const uint32_t lane = uint32_t(__builtin_ctz(mask));
-    const PatchVisit visit = enter_patch(scene, context, packet.ray[lane].instance, patch, packet.world[lane].bias);
+    const PatchVisit visit =
+        enter_patch(scene, context, packet.ray[lane].instance, patch, packet.world[lane].bias);
     LaneMask hits = 0;
     const Timer timer;
     const double built_before = context.counters.bottom_build_s;
@@ -149,11 +157,12 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
     context.counters.pairs_emitted += uint64_t(__builtin_popcount(mask)) - 1;
     context.counters.pairs_with_hit += uint64_t(__builtin_popcount(hits));
     if (context.is_timed)
-        context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
+        context.counters.sampled_bottom_s +=
+            timer.seconds() - (context.counters.bottom_build_s - built_before);
 }
 
-/// Walks a wide tree with the packet. visit_leaf(primitive, mask) takes the leaves, go_alone(child, lane) a subtree
-/// that few rays enter.
+/// Walks a wide tree with the packet. visit_leaf(primitive, mask) takes the leaves, go_alone(child, lane) a
+/// subtree that few rays enter.
 template <class VisitLeaf, class GoAlone>
 void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
     if (tree.nodes.empty()) return;
@@ -162,16 +171,19 @@ void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf v
     stack[size++] = {0, mask, 0};
     while (size > 0) {
         PacketEntry top = stack[--size];
-        top.mask &= packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kSlabSlack));
+        top.mask &=
+            packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kSlabSlack));
         if (!top.mask) continue;
         if (__builtin_popcount(top.mask) < kLeastPacket) {
-            for (LaneMask left = top.mask; left; left &= left - 1) go_alone(top.child, uint32_t(__builtin_ctz(left)));
+            for (LaneMask left = top.mask; left; left &= left - 1)
+                go_alone(top.child, uint32_t(__builtin_ctz(left)));
             continue;
         }
         if (WideNode::is_leaf(top.child)) {
             const uint32_t first = WideNode::leaf_first(top.child), count = WideNode::leaf_count(top.child);
             for (uint32_t k = 0; k < count; ++k)
-                if (const LaneMask left = top.mask & packet.active) visit_leaf(tree.primitive_at(first + k), left);
+                if (const LaneMask left = top.mask & packet.active)
+                    visit_leaf(tree.primitive_at(first + k), left);
             continue;
         }
         const WideNode& node = tree.nodes[top.child];
@@ -241,7 +253,9 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
     packet.active = 0xffff;
     walk_packet(
         *scene.instance_tree, packet, 0xffff,
-        [&](uint32_t instance, LaneMask mask) { trace_instance<kQuery>(scene, context, instance, packet, mask); },
+        [&](uint32_t instance, LaneMask mask) {
+            trace_instance<kQuery>(scene, context, instance, packet, mask);
+        },
         [&](uint32_t child, uint32_t lane) {
             RayState& ray = packet.ray[lane];
             const bool has_hit = trace_scene<kQuery>(scene, context, rays[lane], child, ray);

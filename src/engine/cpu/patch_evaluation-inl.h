@@ -1,4 +1,5 @@
-// Vertices of a tile, sixteen at a time: the same operations in the same order as evaluate_vertex, hence the same bits.
+// Vertices of a tile, sixteen at a time: the same operations in the same order as evaluate_vertex, hence the
+// same bits.
 #if defined(RELIEF_PATCH_EVALUATION_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_PATCH_EVALUATION_INL_H
 #undef RELIEF_PATCH_EVALUATION_INL_H
@@ -8,6 +9,7 @@
 
 #include "engine/cpu/bottom_tree.h"
 #include "math/lanes-inl.h"
+#include "surface/texels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -40,20 +42,12 @@ HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
     return values;
 }
 
-/// Row and column of a texel, wrapped into the map.
-HWY_INLINE int32_t wrap_index(int32_t index, int32_t size, WrapMode wrap) {
-    if (wrap == WrapMode::clamp) return index < 0 ? 0 : index >= size ? size - 1 : index;
-    const int32_t period = wrap == WrapMode::mirror ? 2 * size : size;
-    index %= period;
-    if (index < 0) index += period;
-    return index < size ? index : period - 1 - index;
-}
-
 HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
     if (!texture.floats.empty()) return Lanes4::load_unaligned(texture.floats.data() + 4 * index);
     const hn::FixedTag<float, 4> d;
     const hn::Rebind<hwy::float16_t, decltype(d)> d16;
-    const auto halves = hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + 4 * index));
+    const auto halves =
+        hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + 4 * index));
     Lanes4 result;
     result.part[0] = hn::PromoteTo(d, halves);
     return result;
@@ -77,16 +71,17 @@ HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes1
         const size_t right = size_t(wrap_index(column[lane] + 1, width, map.wrap));
         const size_t top = size_t(wrap_index(row[lane], height, map.wrap)) * size_t(width);
         const size_t bottom = size_t(wrap_index(row[lane] + 1, height, map.wrap)) * size_t(width);
-        const Lanes4 t = texel::filter_texels(load_texel(texture, top + left), load_texel(texture, top + right),
-                                              load_texel(texture, bottom + left),
-                                              load_texel(texture, bottom + right), Lanes4(fx[lane]), Lanes4(fy[lane]));
+        const Lanes4 t =
+            texel::filter_texels(load_texel(texture, top + left), load_texel(texture, top + right),
+                                 load_texel(texture, bottom + left), load_texel(texture, bottom + right),
+                                 Lanes4(fx[lane]), Lanes4(fy[lane]));
         t.store_unaligned(texels[lane]);
     }
     using D = Lanes16::D;
     for (size_t p = 0; p < Lanes16::kParts; ++p) {
         hn::Vec<D> alpha;
-        hn::LoadInterleaved4(D(), &texels[p * Lanes16::kLanes][0], raw[0].part[p], raw[1].part[p], raw[2].part[p],
-                             alpha);
+        hn::LoadInterleaved4(D(), &texels[p * Lanes16::kLanes][0], raw[0].part[p], raw[1].part[p],
+                             raw[2].part[p], alpha);
     }
 }
 
@@ -115,7 +110,7 @@ HWY_INLINE void displace(const Surface& surface, uint8_t tile, const Lanes16 (&v
 struct TileRange {
     uint32_t patch;
     PatchLevels levels;
-    uint32_t cell_x, cell_y, cell_count;  ///< first cell and cells a side
+    uint32_t cell_x, cell_y, cell_count; ///< first cell and cells a side
 
     uint32_t side() const { return 1u << levels.patch; }
 };
@@ -154,8 +149,8 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
     const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
     const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
     const bool is_row = edge % 2 == 0;
-    const bool is_far = edge == 1 || edge == 2;                       // at u = 1 or v = 1
-    const bool is_against = (edge >= 2) != line.is_reversed;           // grid index runs against first -> second
+    const bool is_far = edge == 1 || edge == 2;              // at u = 1 or v = 1
+    const bool is_against = (edge >= 2) != line.is_reversed; // grid index runs against first -> second
     const uint32_t begin = is_row ? range.cell_x : range.cell_y;
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
     for (uint32_t c = 0; c <= range.cell_count; c += 16) {
@@ -178,7 +173,8 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
             const uint32_t j = is_row ? (is_far ? range.cell_count : 0) : along;
             const uint32_t slot = j * VertexGrid::kPitch + i;
             if (is_corner[lane]) {
-                const Vec3f p = evaluate_vertex(surface, range.patch, range.levels, range.cell_x + i, range.cell_y + j);
+                const Vec3f p =
+                    evaluate_vertex(surface, range.patch, range.levels, range.cell_x + i, range.cell_y + j);
                 grid.axis[0][slot] = p.x, grid.axis[1][slot] = p.y, grid.axis[2][slot] = p.z;
             } else {
                 for (int axis = 0; axis < 3; ++axis) grid.axis[axis][slot] = point[axis][lane];

@@ -19,27 +19,29 @@ struct PatchVisit {
     const Surface* surface;
     uint32_t instance, surface_index, patch;
     PatchLevels levels;
-    float cell_size;  ///< of (u, v)
+    float cell_size; ///< of (u, v)
 };
 
 /// Levels of the surface that a ray sees: the field's lowered by its bias.
 HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
                                   uint32_t patch, uint32_t bias) {
     const Instance& placed = scene.instances[instance];
-    PatchVisit visit{&scene, &context, &scene.surfaces[placed.surface], instance, placed.surface, patch,
-                     placed.levels->at(patch).biased(bias), 0};
+    PatchVisit visit{&scene,         &context, &scene.surfaces[placed.surface],       instance,
+                     placed.surface, patch,    placed.levels->at(patch).biased(bias), 0};
     visit.cell_size = 1.0f / float(1u << visit.levels.patch);
     ++context.counters.pairs_emitted;
     return visit;
 }
 
-/// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone where it enters.
+/// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone where it
+/// enters.
 HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction_length) {
     const Instance& placed = visit.scene->instances[visit.instance];
     const Quad& quad = visit.surface->quads[visit.patch];
     float longest = 0;
     for (size_t k = 0; k < 4; ++k) {
-        const Vec3f edge = visit.surface->positions[quad.vertex[(k + 1) % 4]] - visit.surface->positions[quad.vertex[k]];
+        const Vec3f edge =
+            visit.surface->positions[quad.vertex[(k + 1) % 4]] - visit.surface->positions[quad.vertex[k]];
         longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
     }
     const float width = visit.scene->pixel_angle * std::fmax(entry * direction_length, 1e-20f);
@@ -52,11 +54,13 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction
 
 HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
     const cpu::TreeKey key{visit.surface_index, visit.patch, tile, cpu::pack_levels(visit.levels)};
-    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels, build_tree);
+    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels,
+                                                  build_tree);
 }
 
 HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile, cpu::pack_levels(visit.levels)};
+    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile,
+                           cpu::pack_levels(visit.levels)};
     return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
 }
 
@@ -89,10 +93,11 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
     return true;
 }
 
-/// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray that
-/// begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
+/// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray
+/// that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
 template <Query kQuery>
-HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, RayState& ray) {
+HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                RayState& ray) {
     const cpu::Block& leaf = tree.blocks()[block];
     alignas(32) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
@@ -112,13 +117,15 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
     bool has_hit = false;
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = uint32_t(__builtin_ctz(mask));
-        if (column + (cell & 3) >= cells || row + (cell >> 2) >= cells || distance[cell] > ray.t_max) continue;
+        if (column + (cell & 3) >= cells || row + (cell >> 2) >= cells || distance[cell] > ray.t_max)
+            continue;
         if constexpr (kQuery == Query::any) return true;
         cpu::TraceHit hit;
         hit.t = distance[cell];
         hit.instance = ray.instance;
         hit.patch = visit.patch;
-        hit.i = uint16_t(tree.cell_x + column + (cell & 3)), hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
+        hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
+        hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
         hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;
         offer_hit(ray, hit);
         has_hit = true;
@@ -127,14 +134,14 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
 }
 
 template <Query kQuery>
-HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block, RayState& ray) {
+HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                RayState& ray) {
     return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, ray)
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
 /// Nearest child first, all the way down. For Query::any, true at the first hit.
-template <Query kQuery>
-bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
+template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
     bool has_hit = false;
     const auto test_block = [&](uint32_t block) {
         has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
@@ -166,7 +173,8 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
     using cpu::TileDirectory;
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const cpu::Node16& node =
-        directory.nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
+        directory
+            .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
     Lanes16 entry;
     bool has_hit = false;
     visit_in_order(test_node(node, ray, entry), entry, ray, [&](uint32_t child) {
@@ -180,8 +188,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
 }
 
 /// Everything of a patch along one ray.
-template <Query kQuery>
-bool trace_patch(const PatchVisit& visit, RayState& ray) {
+template <Query kQuery> bool trace_patch(const PatchVisit& visit, RayState& ray) {
     const bool has_hit = visit.levels.patch <= cpu::kTileLevel
                              ? trace_tree<kQuery>(visit, find_tree(visit, 0), ray)
                              : trace_directory<kQuery>(visit, find_directory(visit), 0, 0, 0, ray);

@@ -45,6 +45,13 @@ struct Vertex {
     scalar::Bsdf bsdf;
 };
 
+/// Random numbers of one vertex.
+struct VertexRandom {
+    float u_light, u_lobe;
+    Vec2f light, bsdf;
+    float u_roulette = 0, u_emitter = 0; ///< drawn where they are needed only
+};
+
 struct ShadowRay {
     uint32_t path;
     Vec3f contribution;
@@ -66,14 +73,14 @@ class TileTracer {
     void add_background(Path& path) const;
     void record_first_hit(Path& path, const Vertex& vertex) const;
     void add_emission(Path& path, const Vertex& vertex) const;
-    void sample_light(uint32_t index, const Vertex& vertex);
-    bool continue_path(Path& path, const Vertex& vertex) const;
-    bool survives_roulette(Path& path) const;
-    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) const;
+    void sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random);
+    bool continue_path(Path& path, const Vertex& vertex, const VertexRandom& random);
+    static bool survives_roulette(Path& path, float u_roulette);
+    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
     void trace_shadow_rays();
     void finish_paths();
-    Vertex make_vertex(const Path& path) const;
-    Vec2f random_pair(const Path& path, BouncePair pair) const;
+    Vertex make_vertex(const Path& path);
+    VertexRandom draw_random(const Path& path) const;
 
     const Tracer& tracer_;
     const LightSet& lights_;
@@ -89,6 +96,7 @@ class TileTracer {
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
+    PatchSamplesCache patches_;
 };
 
 scalar::CameraFrame make_camera(const PreparedScene& scene) {
@@ -141,9 +149,12 @@ void TileTracer::start_paths() {
 
 void TileTracer::start_path(Path& path) const {
     const Vec2f jitter = scalar::sobol_pair(path.seed, sample_index_, kPixelPair);
-    const Vec2f lens = scalar::sobol_pair(path.seed, sample_index_, kLensPair);
     const Vec2f position{float(path.x) + jitter.x, float(path.y) + jitter.y};
-    const scalar::CameraRay ray = scalar::make_camera_ray(camera_, position, lens);
+    const scalar::CameraRay ray =
+        camera_.aperture_radius > 0
+            ? scalar::make_camera_ray(camera_, position,
+                                      scalar::sobol_pair(path.seed, sample_index_, kLensPair))
+            : scalar::make_pinhole_ray(camera_, position);
     path.depth = 0;
     path.ray = {ray.origin, 0, ray.direction, kInfinity, 0};
     path.throughput = {1, 1, 1};
@@ -163,22 +174,27 @@ void TileTracer::shade_paths() {
     const Timer timer;
     shadow_rays_.clear();
     shadows_.clear();
+    // The background in a short loop of its own: reads of the image, which wait for memory, overlap.
+    const auto is_finished_outside = [this](uint32_t i) {
+        add_background(paths_[i]);
+        return !paths_[i].hit.is_hit();
+    };
+    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished_outside), active_.end());
     const auto is_finished = [this](uint32_t i) { return !shade_path(i); };
     active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished), active_.end());
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
 
-/// Adds the light of one vertex; true when the path goes on, its next ray set.
+/// Adds the light that reaches one vertex; true when the path goes on, its next ray set.
 bool TileTracer::shade_path(uint32_t index) {
     Path& path = paths_[index];
-    add_background(path);
-    if (!path.hit.is_hit()) return false;
     const Vertex vertex = make_vertex(path);
     if (path.depth == 0) record_first_hit(path, vertex);
     add_emission(path, vertex);
-    sample_light(index, vertex);
-    return path.depth < settings_.bounces && continue_path(path, vertex);
+    const VertexRandom random = draw_random(path);
+    sample_light(index, vertex, random);
+    return path.depth < settings_.bounces && continue_path(path, vertex, random);
 }
 
 void TileTracer::add_background(Path& path) const {
@@ -189,10 +205,10 @@ void TileTracer::add_background(Path& path) const {
         path.result.radiance += lights_.environment_radiance(path.ray.direction);
 }
 
-Vertex TileTracer::make_vertex(const Path& path) const {
+Vertex TileTracer::make_vertex(const Path& path) {
     const PreparedScene& scene = tracer_.scene();
     Vertex v;
-    v.point = tracer_.make_surface_point(path.hit);
+    v.point = tracer_.make_surface_point(path.hit, patches_);
     v.material = scene.materials[scene.instances[path.hit.instance].material];
     if (v.material.base_color_texture)
         v.material.base_color =
@@ -237,13 +253,12 @@ void TileTracer::add_emission(Path& path, const Vertex& vertex) const {
 
 /// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
 /// there.
-void TileTracer::sample_light(uint32_t index, const Vertex& vertex) {
+void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random) {
     Path& path = paths_[index];
     const SurfacePoint& point = vertex.point;
-    const Vec2f pick = random_pair(path, kPickPair), u = random_pair(path, kLightPair);
-    const float u_emitter = random_pair(path, kRoulettePair).y; // its x decides on the roulette
-    const auto light = lights_.draw(point.position, path.hit.bias, {pick.x, u_emitter, u});
-    if (!light || dot(point.geometric_normal, light->direction) <= 0) return;
+    const auto light = lights_.draw({point.position, point.geometric_normal, path.hit.bias},
+                                    {random.u_light, random.u_emitter, random.light});
+    if (!light) return;
     const Vec3f wi = scalar::to_local(vertex.basis, light->direction);
     const scalar::BsdfValue bsdf = scalar::evaluate_bsdf(vertex.bsdf, vertex.wo_local, wi);
     const bool is_last = path.depth == settings_.bounces;
@@ -262,14 +277,13 @@ void TileTracer::sample_light(uint32_t index, const Vertex& vertex) {
     path.result.cost += 1;
 }
 
-bool TileTracer::continue_path(Path& path, const Vertex& vertex) const {
-    const float u_lobe = random_pair(path, kPickPair).y;
+bool TileTracer::continue_path(Path& path, const Vertex& vertex, const VertexRandom& random) {
     const scalar::BsdfSample drawn =
-        scalar::sample_bsdf(vertex.bsdf, vertex.wo_local, u_lobe, random_pair(path, kBsdfPair));
+        scalar::sample_bsdf(vertex.bsdf, vertex.wo_local, random.u_lobe, random.bsdf);
     const Vec3f direction = normalize(scalar::from_local(vertex.basis, drawn.direction));
     if (drawn.weight == Vec3f{} || dot(vertex.point.geometric_normal, direction) <= 0) return false;
     path.throughput = path.throughput * drawn.weight;
-    if (!is_finite(path.throughput) || !survives_roulette(path)) return false;
+    if (!is_finite(path.throughput) || !survives_roulette(path, random.u_roulette)) return false;
     path.previous = vertex.point.position;
     path.bsdf_pdf = drawn.pdf;
     start_bounce_ray(path, vertex, direction,
@@ -280,23 +294,24 @@ bool TileTracer::continue_path(Path& path, const Vertex& vertex) const {
 }
 
 /// Ends dim paths at random and makes up for them (Arvo and Kirk 1990).
-bool TileTracer::survives_roulette(Path& path) const {
+bool TileTracer::survives_roulette(Path& path, float u_roulette) {
     if (path.depth < kRouletteDepth) return true;
     const float brightest = std::max({path.throughput.x, path.throughput.y, path.throughput.z});
     const float probability = std::min(brightest, 1.0f);
-    if (random_pair(path, kRoulettePair).x >= probability) return false;
+    if (u_roulette >= probability) return false;
     path.throughput *= 1 / probability;
     return true;
 }
 
 /// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
 void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction,
-                                  bool is_wide) const {
+                                  bool is_wide) {
     const TraceHit& hit = path.hit;
     uint32_t bias = hit.bias;
     Vec3f origin = tracer_.offset_origin(vertex.point, direction);
     if (is_wide && settings_.level == kAutoLevel && bias < kLargestBias) {
-        const SurfacePoint coarse = tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1);
+        const SurfacePoint coarse = 
+            tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
         const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
         if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
     }
@@ -317,9 +332,18 @@ void TileTracer::finish_paths() {
     counters_.film_s += timer.seconds();
 }
 
-Vec2f TileTracer::random_pair(const Path& path, BouncePair pair) const {
-    return scalar::sobol_pair(path.seed, sample_index_,
-                              kFirstBouncePair + uint32_t(path.depth) * kPairsPerBounce + pair);
+VertexRandom TileTracer::draw_random(const Path& path) const {
+    const auto draw_pair = [&](BouncePair pair) {
+        const uint32_t dimensions = kFirstBouncePair + uint32_t(path.depth) * kPairsPerBounce + pair;
+        return scalar::sobol_pair(path.seed, sample_index_, dimensions);
+    };
+    const Vec2f pick = draw_pair(kPickPair);
+    VertexRandom random{pick.x, pick.y, draw_pair(kLightPair), draw_pair(kBsdfPair)};
+    if (path.depth >= kRouletteDepth || lights_.has_emitters()) {
+        const Vec2f pair = draw_pair(kRoulettePair);
+        random.u_roulette = pair.x, random.u_emitter = pair.y;
+    }
+    return random;
 }
 
 } // namespace

@@ -1,8 +1,9 @@
 // One ray in the space of one object, and its exact test against a block of sixteen triangles.
 //
-// Watertight after Woop, Benthin, Wald 2013 (Watertight Ray/Triangle Intersection): vertices are sheared into ray space
-// once each, and an edge function of a shared edge is the same two rounded products subtracted in either order, so its
-// sign is never wrong, only zero, and zero counts as inside. No fused operations here: they would break that.
+// Watertight after Woop, Benthin, Wald 2013 (Watertight Ray/Triangle Intersection): vertices are sheared into
+// ray space once each, and an edge function of a shared edge is the same two rounded products subtracted in
+// either order, so its sign is never wrong, only zero, and zero counts as inside. No fused operations here:
+// they would break that.
 #if defined(RELIEF_RAY_STATE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_RAY_STATE_INL_H
 #undef RELIEF_RAY_STATE_INL_H
@@ -26,8 +27,8 @@ inline constexpr float kSlabSlack = 1.0000005f;
 
 struct RayState {
     float origin[3], direction[3], reciprocal[3];
-    int axis[3];     ///< two minor axes and the major one
-    float shear[3];  ///< of the minor axes; 1 / direction along the major one
+    int axis[3];    ///< two minor axes and the major one
+    float shear[3]; ///< of the minor axes; 1 / direction along the major one
     float t_min, t_max;
     uint32_t instance = kNoIndex;
     cpu::TraceHit hit;
@@ -41,7 +42,8 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
     ray.direction[0] = d.x, ray.direction[1] = d.y, ray.direction[2] = d.z;
     for (int k = 0; k < 3; ++k) {
         const float component = ray.direction[k];
-        ray.reciprocal[k] = 1.0f / (std::fabs(component) < 1e-18f ? std::copysign(1e-18f, component) : component);
+        ray.reciprocal[k] =
+            1.0f / (std::fabs(component) < 1e-18f ? std::copysign(1e-18f, component) : component);
     }
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
     const int major = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
@@ -87,7 +89,8 @@ HWY_INLINE void decode_node(const WideNode& node, Lanes8 (&bound)[6]) {
     }
 }
 
-/// Calls visit(child) for the lanes of `mask`, nearest entry first, while they begin before ray.t_max; stops on true.
+/// Calls visit(child) for the lanes of `mask`, nearest entry first, while they begin before ray.t_max; stops
+/// on true.
 template <size_t W, class Visit>
 HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RayState& ray, Visit visit) {
     if ((mask & (mask - 1)) == 0) return mask != 0 && visit(uint32_t(__builtin_ctz(mask)));
@@ -107,13 +110,14 @@ HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RaySt
     return false;
 }
 
-/// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00, 11, 01)
-/// of cells 0..3 of the first row, then of the second.
+/// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00,
+/// 11, 01) of cells 0..3 of the first row, then of the second.
 HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, Lanes16& c) {
     if constexpr (Lanes16::kParts == 1) {
         alignas(64) static constexpr int32_t kA[16] = {0, 1, 2, 3, 5, 6, 7, 8, 0, 1, 2, 3, 5, 6, 7, 8};
         alignas(64) static constexpr int32_t kB[16] = {1, 2, 3, 4, 6, 7, 8, 9, 6, 7, 8, 9, 11, 12, 13, 14};
-        alignas(64) static constexpr int32_t kC[16] = {6, 7, 8, 9, 11, 12, 13, 14, 5, 6, 7, 8, 10, 11, 12, 13};
+        alignas(64) static constexpr int32_t kC[16] = {6, 7, 8, 9, 11, 12, 13, 14,
+                                                       5, 6, 7, 8, 10, 11, 12, 13};
         const Lanes16::D d;
         a.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kA));
         b.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kB));
@@ -140,8 +144,7 @@ HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, La
 }
 
 /// W triangles in ray space: edge functions opposite a, b, c and the distances of the hits among `mask`.
-template <size_t W>
-struct TriangleTest {
+template <size_t W> struct TriangleTest {
     Lanes<W> u, v, w, t;
     LaneMask mask;
 };
@@ -164,20 +167,23 @@ HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, Tria
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis.
 template <size_t W>
-HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray, Lanes<W>& x, Lanes<W>& y, Lanes<W>& z) {
+HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray, Lanes<W>& x, Lanes<W>& y,
+                               Lanes<W>& z) {
     z = vertex[ray.axis[2]] - Lanes<W>(ray.origin[ray.axis[2]]);
     x = (vertex[ray.axis[0]] - Lanes<W>(ray.origin[ray.axis[0]])) - Lanes<W>(ray.shear[0]) * z;
     y = (vertex[ray.axis[1]] - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
 }
 
-/// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then does not
-/// depend on the order in which triangles were met.
+/// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then
+/// does not depend on the order in which triangles were met.
 HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
-    const auto rank = [](const cpu::TraceHit& h) { return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper; };
+    const auto rank = [](const cpu::TraceHit& h) {
+        return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper;
+    };
     if (hit.t == ray.hit.t) {
         if (hit.instance != ray.hit.instance ? hit.instance > ray.hit.instance
-                                             : hit.patch != ray.hit.patch ? hit.patch > ray.hit.patch
-                                                                          : rank(hit) >= rank(ray.hit))
+            : hit.patch != ray.hit.patch     ? hit.patch > ray.hit.patch
+                                             : rank(hit) >= rank(ray.hit))
             return;
     } else if (!(hit.t < ray.hit.t)) {
         return;
@@ -186,8 +192,8 @@ HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
     ray.t_max = hit.t;
 }
 
-/// Offers every hit of a triangle test; locate(lane, hit) fills in cell, is_upper and, from the weights of the three
-/// corners, u and v.
+/// Offers every hit of a triangle test; locate(lane, hit) fills in cell, is_upper and, from the weights of
+/// the three corners, u and v.
 template <size_t W, class Locate>
 HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
     alignas(64) float u[W], v[W], w[W], t[W];

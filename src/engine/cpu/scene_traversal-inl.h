@@ -1,5 +1,5 @@
-// One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest first, for
-// any-hit too: unordered, the cache of bottom trees would thrash.
+// One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest
+// first, for any-hit too: unordered, the cache of bottom trees would thrash.
 #if defined(RELIEF_SCENE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_SCENE_TRAVERSAL_INL_H
 #undef RELIEF_SCENE_TRAVERSAL_INL_H
@@ -28,7 +28,8 @@ HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8&
     return test_boxes(bound, ray, entry) & ((1u << node.child_count) - 1);
 }
 
-/// Walks the subtree of `root` (a child word; 0 is the whole tree) and calls visit(primitive, entry) until it is true.
+/// Walks the subtree of `root` (a child word; 0 is the whole tree) and calls visit(primitive, entry) until it
+/// is true.
 template <class Visit>
 HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ray, Visit visit) {
     if (tree.nodes.empty()) return false;
@@ -62,8 +63,7 @@ HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ra
 }
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
-template <Query kQuery>
-bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
+template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
     const Quad& quad = surface.quads[patch];
     static constexpr uint8_t kCorner[3][2] = {{0, 0}, {1, 2}, {2, 3}};
     Lanes4 x[3], y[3], z[3];
@@ -73,7 +73,8 @@ bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
             const Vec3f& p = surface.positions[quad.vertex[kCorner[corner][lane & 1]]];
             coordinate[0][lane] = p.x, coordinate[1][lane] = p.y, coordinate[2][lane] = p.z;
         }
-        const Lanes4 vertex[3] = {Lanes4::load(coordinate[0]), Lanes4::load(coordinate[1]), Lanes4::load(coordinate[2])};
+        const Lanes4 vertex[3] = {Lanes4::load(coordinate[0]), Lanes4::load(coordinate[1]),
+                                  Lanes4::load(coordinate[2])};
         shear_vertices(vertex, ray, x[corner], y[corner], z[corner]);
     }
     TriangleTest<4> test;
@@ -93,8 +94,8 @@ bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
 
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
-HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
-                                uint32_t patch, float entry, RayState& ray) {
+HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                const cpu::TraceRay& world, uint32_t patch, float entry, RayState& ray) {
     const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
     if (!surface.has_displacement) return trace_polygon<kQuery>(surface, patch, ray);
     PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
@@ -109,8 +110,8 @@ HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& 
 
 /// The subtree of `root` of one instance's surface. `ray` is in the object's space.
 template <Query kQuery>
-bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world, uint32_t root,
-                    RayState& ray) {
+bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                    uint32_t root, RayState& ray) {
     const WideBvh& tree = scene.surface_trees[scene.instances[ray.instance].surface];
     return walk_tree(tree, root, ray, [&](uint32_t patch, float entry) {
         const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, entry, ray);
@@ -118,10 +119,11 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
     });
 }
 
-/// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and the hit.
+/// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
+/// the hit.
 template <Query kQuery>
-bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world, uint32_t root,
-                 RayState& best) {
+bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                 uint32_t root, RayState& best) {
     return walk_tree(*scene.instance_tree, root, best, [&](uint32_t instance, float) {
         RayState ray = best;
         ray.instance = instance;

@@ -28,7 +28,8 @@ void build_tile_directory(const Surface& surface, const PatchLevels& levels, Til
     const uint32_t depth = directory.depth, steps = TileDirectory::step_count(depth);
     Node16* nodes = directory.nodes();
     for (uint32_t step = steps; step-- > 0;) {
-        const uint32_t side = TileDirectory::step_side(depth, step), fanout = TileDirectory::fanout(depth, step);
+        const uint32_t side = TileDirectory::step_side(depth, step),
+                       fanout = TileDirectory::fanout(depth, step);
         const uint32_t begin = TileDirectory::step_begin(depth, step);
         const uint32_t next_begin = TileDirectory::step_begin(depth, step + 1), next_side = side * fanout;
         for (uint32_t index = 0; index < side * side; ++index) {

@@ -48,18 +48,22 @@ struct MicroTriangle {
     float uv_area;             ///< in the patch's (u, v)
 };
 
-MicroTriangle make_micro_triangle(const Surface& surface, uint32_t patch, const PatchLevels& levels, const TraceHit& hit) {
+/// `samples` is null on a surface without displacement.
+MicroTriangle make_micro_triangle(const Surface& surface, const PatchSamples* samples, const PatchLevels& levels,
+                                  const TraceHit& hit) {
     const float side = float(1u << levels.patch);
     const float x = std::clamp(hit.u * side - float(hit.i), 0.0f, 1.0f);
     const float y = std::clamp(hit.v * side - float(hit.j), 0.0f, 1.0f);
     MicroTriangle triangle;
-    if (surface.has_displacement) {
-        const auto vertex = [&](uint32_t i, uint32_t j) { return evaluate_vertex(surface, patch, levels, hit.i + i, hit.j + j); };
+    const Quad& quad = surface.quads[hit.patch];
+    if (samples) {
+        const auto vertex = [&](uint32_t i, uint32_t j) {
+            return evaluate_vertex(*samples, levels, hit.i + i, hit.j + j);
+        };
         triangle.corner[0] = vertex(0, 0);
         triangle.corner[1] = hit.is_upper ? vertex(1, 1) : vertex(1, 0);
         triangle.corner[2] = hit.is_upper ? vertex(0, 1) : vertex(1, 1);
     } else {
-        const Quad& quad = surface.quads[patch];
         triangle.corner[0] = surface.positions[quad.vertex[0]];
         triangle.corner[1] = surface.positions[quad.vertex[hit.is_upper ? 2 : 1]];
         triangle.corner[2] = surface.positions[quad.vertex[hit.is_upper ? 3 : 2]];
@@ -67,7 +71,7 @@ MicroTriangle make_micro_triangle(const Surface& surface, uint32_t patch, const 
     // Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01.
     triangle.weight_b = hit.is_upper ? x : std::max(x - y, 0.0f);
     triangle.weight_c = hit.is_upper ? std::max(y - x, 0.0f) : y;
-    triangle.uv_area = surface.quads[patch].is_triangle() ? 1.0f : 0.5f / (side * side);
+    triangle.uv_area = quad.is_triangle() ? 1.0f : 0.5f / (side * side);
     return triangle;
 }
 
@@ -89,6 +93,59 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
         return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
     }
     return (uv(0) * (1 - u) + uv(1) * u) * (1 - v) + (uv(3) * (1 - u) + uv(2) * u) * v;
+}
+
+TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv, uint32_t bias) {
+    const Instance& placed = scene.instances[instance];
+    TraceHit hit;
+    hit.instance = instance, hit.patch = patch;
+    hit.u = uv.x, hit.v = uv.y;
+    hit.bias = uint8_t(bias);
+    const bool is_triangle = scene.surfaces[placed.surface].quads[patch].is_triangle();
+    locate_cell(is_triangle, 1u << placed.levels->at(patch).biased(bias).patch, hit);
+    return hit;
+}
+
+/// Null on a surface without displacement.
+const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit, PatchSamplesCache& patches) {
+    const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
+    return surface.has_displacement ? &patches.get(surface, hit.patch) : nullptr;
+}
+
+/// Position, facet and area; `samples` is null on a surface without displacement.
+SurfacePoint make_facet_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
+    const Instance& instance = scene.instances[hit.instance];
+    const Surface& surface = scene.surfaces[instance.surface];
+    const PatchLevels levels = instance.levels->at(hit.patch).biased(hit.bias);
+    const MicroTriangle triangle = make_micro_triangle(surface, samples, levels, hit);
+    const Vec3f &a = triangle.corner[0], &b = triangle.corner[1], &c = triangle.corner[2];
+
+    SurfacePoint point;
+    point.instance = hit.instance, point.patch = hit.patch;
+    const Vec3f local = a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
+    point.position = transform_point(instance.world_from_object, local);
+    const Vec3f edge_b = transform_vector(instance.world_from_object, b - a);
+    const Vec3f edge_c = transform_vector(instance.world_from_object, c - a);
+    const Vec3f area = cross(edge_b, edge_c) * (instance.is_mirrored ? -1.0f : 1.0f);
+    point.geometric_normal = normalize(area);
+    point.area_per_uv = 0.5f * length(area) / triangle.uv_area;
+    return point;
+}
+
+/// The same with shading normal and uv.
+SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
+    const Instance& instance = scene.instances[hit.instance];
+    const Surface& surface = scene.surfaces[instance.surface];
+    const int level = instance.levels->at(hit.patch).biased(hit.bias).patch;
+    SurfacePoint point = make_facet_point(scene, hit, samples);
+    const Vec3f smooth =
+        samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
+                : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
+    point.shading_normal = normalize(transform_normal(instance.object_from_world, smooth));
+    if (dot(point.shading_normal, point.shading_normal) == 0) point.shading_normal = point.geometric_normal;
+    if (dot(point.shading_normal, point.geometric_normal) < 0) point.shading_normal = -point.shading_normal;
+    point.uv = interpolate_uv(surface, hit.patch, hit.u, hit.v);
+    return point;
 }
 
 } // namespace
@@ -149,38 +206,23 @@ void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occlude
 }
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
-    const Instance& instance = scene_->instances[hit.instance];
-    const Surface& surface = scene_->surfaces[instance.surface];
-    const PatchLevels levels = instance.levels->at(hit.patch).biased(hit.bias);
-    const MicroTriangle triangle = make_micro_triangle(surface, hit.patch, levels, hit);
-    const Vec3f &a = triangle.corner[0], &b = triangle.corner[1], &c = triangle.corner[2];
+    PatchSamplesCache patches(1);
+    return make_surface_point(hit, patches);
+}
 
-    SurfacePoint point;
-    point.instance = hit.instance, point.patch = hit.patch;
-    const Vec3f local = a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
-    point.position = transform_point(instance.world_from_object, local);
-    const Vec3f edge_b = transform_vector(instance.world_from_object, b - a);
-    const Vec3f edge_c = transform_vector(instance.world_from_object, c - a);
-    const Vec3f area = cross(edge_b, edge_c) * (instance.is_mirrored ? -1.0f : 1.0f);
-    point.geometric_normal = normalize(area);
-    point.area_per_uv = 0.5f * length(area) / triangle.uv_area;
-    const Vec3f smooth = compute_shading_normal(surface, hit.patch, levels.patch, hit.u, hit.v);
-    point.shading_normal = normalize(transform_normal(instance.object_from_world, smooth));
-    if (dot(point.shading_normal, point.shading_normal) == 0) point.shading_normal = point.geometric_normal;
-    if (dot(point.shading_normal, point.geometric_normal) < 0) point.shading_normal = -point.shading_normal;
-    point.uv = interpolate_uv(surface, hit.patch, hit.u, hit.v);
-    return point;
+SurfacePoint Tracer::make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const {
+    return make_point(*scene_, hit, find_samples(*scene_, hit, patches));
 }
 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
-    const Instance& placed = scene_->instances[instance];
-    TraceHit hit;
-    hit.instance = instance, hit.patch = patch;
-    hit.u = uv.x, hit.v = uv.y;
-    hit.bias = uint8_t(bias);
-    const bool is_triangle = scene_->surfaces[placed.surface].quads[patch].is_triangle();
-    locate_cell(is_triangle, 1u << placed.levels->at(patch).biased(bias).patch, hit);
-    return make_surface_point(hit);
+    PatchSamplesCache patches(1);
+    return evaluate_point(instance, patch, uv, bias, patches);
+}
+
+SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
+                                    PatchSamplesCache& patches) const {
+    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
+    return make_facet_point(*scene_, hit, find_samples(*scene_, hit, patches));
 }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {

@@ -8,6 +8,7 @@
 
 #include "engine/prepared_scene.h"
 #include "relief/render.h"
+#include "surface/patch_samples.h"
 
 namespace relief::cpu {
 
@@ -58,10 +59,14 @@ class Tracer {
 
     /// All that shading needs to know of a hit.
     SurfacePoint make_surface_point(const TraceHit& hit) const;
+    /// The same by way of the caller's cache of patches.
+    SurfacePoint make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const;
 
     /// Point (u, v) of a patch on surface M_bias: used to sample lights, and to start a bounce ray of a coarser bias on
-    /// the surface that it sees.
+    /// the surface that it sees. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
+    SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
+                                PatchSamplesCache& patches) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by the rounding error of the
     /// position, along the geometric normal, to the side that the direction is on.

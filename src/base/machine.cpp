@@ -1,4 +1,4 @@
-#include "base/memory.h"
+#include "base/machine.h"
 
 #include <sys/resource.h>
 
@@ -32,6 +32,15 @@ uint64_t read_meminfo_available() {
 
 } // namespace
 
+std::string processor_name() {
+    std::ifstream stream("/proc/cpuinfo");
+    for (std::string line; std::getline(stream, line);)
+        if (line.rfind("model name", 0) == 0)
+            if (const size_t colon = line.find(": "); colon != std::string::npos)
+                return line.substr(colon + 2);
+    return "cpu";
+}
+
 uint64_t peak_resident_bytes() {
     rusage usage{};
     return getrusage(RUSAGE_SELF, &usage) == 0 ? uint64_t(usage.ru_maxrss) * 1024 : 0;
@@ -41,7 +50,8 @@ uint64_t available_memory_bytes() {
     uint64_t available = read_meminfo_available();
     const uint64_t limit = read_number("/sys/fs/cgroup/memory.max");
     const uint64_t used = read_number("/sys/fs/cgroup/memory.current");
-    if (limit != kUnknown && used != kUnknown) available = std::min(available, limit > used ? limit - used : 0);
+    if (limit != kUnknown && used != kUnknown)
+        available = std::min(available, limit > used ? limit - used : 0);
     return available;
 }
 

@@ -1,0 +1,32 @@
+// Turns a formula over the unit square of uv into a displacement map and a colour texture.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "relief/scene.h"
+
+namespace relief::samples {
+
+/// What a map holds at one uv.
+struct MapSample {
+    Vec3f displacement; ///< in the map's channels
+    Vec3f color;        ///< linear base colour, each in [0, 1]
+};
+
+struct Maps {
+    std::shared_ptr<const Texture> displacement; ///< size x size
+    std::shared_ptr<const Texture> color;        ///< half as wide and high, halves
+};
+
+enum class Texels { halves, floats };
+
+/// Evaluates `sample` (thread safe) at the centre of every texel of a map of size x size, row 0 at v = 1; a
+/// texel of the colour is the mean of four. `size` is even.
+Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
+               const std::function<MapSample(Vec2f uv)>& sample);
+
+/// IEEE 754 binary16 nearest to a finite value, ties to even; beyond the range the largest finite half.
+uint16_t float_to_half(float value);
+
+} // namespace relief::samples

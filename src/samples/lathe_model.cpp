@@ -1,0 +1,39 @@
+#include "samples/lathe_model.h"
+
+#include "math/vec.h"
+#include "samples/bake.h"
+
+namespace relief::samples {
+
+Model make_plain_model(const std::string& name, DisplacementSpace space, WrapMode wrap,
+                       std::shared_ptr<const Texture> map, std::shared_ptr<const Texture> color) {
+    Model model;
+    model.displacement.name = name;
+    model.displacement.space = space;
+    model.displacement.wrap = wrap;
+    model.displacement.tiles = {{1001, std::move(map)}};
+    model.material.name = name;
+    model.material.base_color = {1, 1, 1};
+    model.material.base_color_texture = std::move(color);
+    return model;
+}
+
+Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
+                       const std::function<Sculpture(const BodyPoint&)>& sculpt) {
+    const Maps maps = bake_maps(name, kMapSize, Texels::halves, [&](Vec2f uv) {
+        const BodyPoint point = body.point_at_uv(uv);
+        const Sculpture result = sculpt(point);
+        MapSample sample{result.offset, result.color};
+        if (space == DisplacementSpace::tangent) {
+            const Vec3f t = body.tangent_at_uv(uv, point), b = cross(point.normal, t);
+            sample.displacement = {dot(result.offset, t), dot(result.offset, b),
+                                   dot(result.offset, point.normal)};
+        }
+        return sample;
+    });
+    Model model = make_plain_model(name, space, WrapMode::repeat, maps.displacement, maps.color);
+    model.make_mesh = [body, name](const Deformation& deform) { return body.make_mesh(name, deform); };
+    return model;
+}
+
+} // namespace relief::samples

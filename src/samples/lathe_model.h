@@ -1,0 +1,28 @@
+// Bakes a displacement that is given in object space over a lathe body into its atlas.
+#pragma once
+
+#include <string>
+
+#include "samples/lathe.h"
+#include "samples/models.h"
+
+namespace relief::samples {
+
+/// What a model does to a place of its body.
+struct Sculpture {
+    Vec3f offset; ///< object space
+    Vec3f color;  ///< linear base colour
+};
+
+/// A model with a map of 2048 x 2048 halves and a colour texture; `sculpt` must be thread safe.
+Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
+                       const std::function<Sculpture(const BodyPoint&)>& sculpt);
+
+/// A displacement with one map and a material with one colour texture, both called `name`.
+Model make_plain_model(const std::string& name, DisplacementSpace space, WrapMode wrap,
+                       std::shared_ptr<const Texture> map, std::shared_ptr<const Texture> color);
+
+/// Edge length of all maps here, texels.
+inline constexpr uint32_t kMapSize = 2048;
+
+} // namespace relief::samples

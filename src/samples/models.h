@@ -1,0 +1,43 @@
+// The displaced models of the sample scenes: one map each, and base meshes that may be bent from object to
+// object.
+#pragma once
+
+#include <functional>
+
+#include "samples/lathe.h"
+#include "samples/shapes.h"
+
+namespace relief::samples {
+
+struct Model {
+    Displacement displacement;
+    Material material;
+    std::function<Mesh(const Deformation&)> make_mesh;
+};
+
+/// A squash of 800 patches: ribs pressed together over their creases, warts, cork veins, a bent stem. Radius
+/// 1, centre at the origin, lowest point at y = -0.8. Object space.
+Model make_pumpkin();
+
+/// A trunk of radius 1 about the y axis, from y = 0 up, its plates of bark curling over the cracks between
+/// them. One tile of the map goes around, and is repeated upwards. Tangent space.
+struct TrunkShape {
+    int cap_cells = 10; ///< 4 times as many columns, even
+    int rows = 73;
+    float height = 11.5f;
+};
+Model make_trunk(const TrunkShape& shape);
+
+/// A ring of overlapping scales: a torus about the y axis, radii 1 and 0.36. Tangent space.
+Model make_scale_ring();
+
+/// A fly agaric of 696 patches, 1.35 high, standing on y = 0: warts, gills, a skirt. Tangent space.
+Model make_mushroom();
+
+/// A ball of 512 patches and radius 1 that is covered with leaning polyps. Object space.
+Model make_coral();
+
+/// An ear sculpted out of a single quad, [-1, 1]^2 in the xy plane. Tangent space.
+Model make_ear();
+
+} // namespace relief::samples

@@ -1,0 +1,28 @@
+// Closed and open curves of the plane and the signed distance from them.
+#pragma once
+
+#include <vector>
+
+#include "math/vec.h"
+
+namespace relief::samples {
+
+struct OutlineHit {
+    float distance = 0; ///< closed: positive inside; open: positive to the left of the way the curve runs
+    Vec2f inward;       ///< unit, the way the distance grows
+    float along = 0;    ///< of the nearest point on the curve, [0, 1]
+};
+
+/// Smooth curve through control points as short straight pieces.
+class Outline {
+  public:
+    enum class Kind { closed, open };
+    Outline(const std::vector<Vec2f>& points, Kind kind);
+    OutlineHit find(const Vec2f& p) const;
+
+  private:
+    Kind kind_;
+    std::vector<Vec2f> pieces_;
+};
+
+} // namespace relief::samples
