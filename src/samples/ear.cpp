@@ -14,7 +14,7 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kEarSize = 1.30f;                  ///< of the drawing below on the quad
+constexpr float kEarSize = 1.22f;                  ///< of the drawing below on the quad
 constexpr float kRimFrom = -0.13f, kRimTo = 0.21f; ///< band about the outline that the rim's profile covers
 
 float bump(const Vec2f& p, const Vec2f& centre, float radius) {
