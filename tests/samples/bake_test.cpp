@@ -55,9 +55,9 @@ TEST(Outline, distance_is_positive_inside) {
 }
 
 TEST(PlateField, repeats_after_the_tile) {
-    const PlateField field{6, 4, 0.8f, 0.01f, 3};
+    const PlateField field({6, 4, 0.8f, 0.01f, 3});
     for (const Vec2f& p : {Vec2f{0.1f, 0.2f}, Vec2f{0.93f, 0.51f}, Vec2f{0.5f, 0.99f}}) {
-        const PlateHit a = find_plate(field, p), b = find_plate(field, {p.x + 1, p.y - 1});
+        const PlateHit a = field.find(p), b = field.find({p.x + 1, p.y - 1});
         EXPECT_EQ(a.seed, b.seed);
         EXPECT_NEAR(a.distance, b.distance, 1e-4f);
     }
