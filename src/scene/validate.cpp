@@ -1,9 +1,11 @@
 // validate_scene: every index, range and number of a scene, before anything is built from it.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "math/affine.h"
+#include "math/box.h"
 #include "relief/error.h"
 #include "relief/scene.h"
 
@@ -31,6 +33,10 @@ void check_range(const std::string& where, const char* what, const Vec3f& value,
 }
 
 constexpr float kHuge = 3e38f;
+/// Squares of distances between points up to here are still floats.
+constexpr float kFarthest = 1e18f;
+
+float largest_component(const Vec3f& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 void check_indices(const std::string& where, const char* what, const std::vector<uint32_t>& indices,
                    size_t corners, size_t count) {
@@ -58,8 +64,12 @@ void check_mesh(const Mesh& mesh, size_t index) {
     if (!mesh.uv_indices.empty()) check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
     if (!mesh.normal_indices.empty())
         check_indices(where, "normal", mesh.normal_indices, corners, mesh.normals.size());
-    for (size_t i = 0; i < mesh.positions.size(); ++i)
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
         if (!is_finite(mesh.positions[i])) fail(where, fmt::format("position {} is not finite", i));
+        if (largest_component(mesh.positions[i]) > kFarthest)
+            fail(where, fmt::format("position {} is farther out than {:g}", i, kFarthest),
+                 "use another unit of length");
+    }
     for (size_t i = 0; i < mesh.uvs.size(); ++i)
         if (!std::isfinite(mesh.uvs[i].x) || !std::isfinite(mesh.uvs[i].y))
             fail(where, fmt::format("uv {} is not finite", i));
@@ -111,7 +121,24 @@ void check_material(const Material& material, size_t index) {
     if (material.roughness_texture) check_texture(where + ", roughness_texture", *material.roughness_texture);
 }
 
-void check_object(const Scene& scene, const Object& object, size_t index) {
+/// Largest coordinate of a transformed box, in double precision: it may be beyond all floats.
+double find_farthest(const Affine& m, const Box& box) {
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3f p{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                      corner & 4 ? box.upper.z : box.lower.z};
+        const double offsets[] = {m.translation.x, m.translation.y, m.translation.z};
+        for (size_t r = 0; r < 3; ++r) {
+            const Vec3f& row = m.rows[r];
+            const double sum = double(row.x) * p.x + double(row.y) * p.y + double(row.z) * p.z + offsets[r];
+            farthest = std::max(farthest, std::fabs(sum));
+        }
+    }
+    return farthest;
+}
+
+void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const Object& object,
+                  size_t index) {
     const std::string where = describe("object", object.name, index);
     if (object.mesh >= scene.meshes.size()) fail(where, fmt::format("mesh {} does not exist", object.mesh));
     if (object.displacement != kNoIndex && object.displacement >= scene.displacements.size())
@@ -120,6 +147,9 @@ void check_object(const Scene& scene, const Object& object, size_t index) {
         fail(where, fmt::format("material {} does not exist", object.material));
     if (!invert(object.world_from_object))
         fail(where, "the transform is singular or not finite", "no scale factor may be 0");
+    if (find_farthest(object.world_from_object, mesh_boxes[object.mesh]) > kFarthest)
+        fail(where, fmt::format("the transform carries it farther out than {:g}", kFarthest),
+             "use a smaller scale or translation");
     const Mesh& mesh = scene.meshes[object.mesh];
     if (object.displacement != kNoIndex && mesh.uv_indices.empty())
         fail(where,
@@ -174,7 +204,10 @@ void validate_scene(const Scene& scene) {
     for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh(scene.meshes[i], i);
     for (size_t i = 0; i < scene.displacements.size(); ++i) check_displacement(scene.displacements[i], i);
     for (size_t i = 0; i < scene.materials.size(); ++i) check_material(scene.materials[i], i);
-    for (size_t i = 0; i < scene.objects.size(); ++i) check_object(scene, scene.objects[i], i);
+    std::vector<Box> mesh_boxes(scene.meshes.size());
+    for (size_t i = 0; i < scene.meshes.size(); ++i)
+        for (const Vec3f& position : scene.meshes[i].positions) mesh_boxes[i].extend(position);
+    for (size_t i = 0; i < scene.objects.size(); ++i) check_object(scene, mesh_boxes, scene.objects[i], i);
     for (size_t i = 0; i < scene.lights.size(); ++i) check_light(scene.lights[i], i);
     if (scene.environment) {
         const Environment& environment = *scene.environment;

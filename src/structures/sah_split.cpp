@@ -33,8 +33,11 @@ class BinMap {
         scale_ = extent > 0 ? bin_count / extent : 0;
     }
     bool is_flat() const { return scale_ == 0; }
+    /// Always in [0, bin count): a centroid that is no number goes to bin 0.
     int compute_bin(float centroid) const {
-        return std::min(last_, int((double(centroid) - lower_) * scale_));
+        const double bin = (double(centroid) - lower_) * scale_;
+        if (!(bin > 0)) return 0;
+        return bin < last_ ? int(bin) : last_;
     }
 
   private:

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "math/affine.h"
 #include "relief/error.h"
 #include "relief/scene.h"
 
@@ -67,6 +68,18 @@ TEST(ValidateScene, names_the_object_with_a_bad_index_or_transform) {
     EXPECT_HAS(complaint([](Scene& s) { s.objects[0].world_from_object.translation.x = kNan; }),
                "singular or not finite");
     EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].uv_indices.clear(); }), "mesh 'quad' has no uvs");
+}
+
+TEST(ValidateScene, refuses_what_lies_too_far_out_to_measure_distances) {
+    const auto scale_by = [](Scene& s, float factor) {
+        s.objects[0].world_from_object = make_scale({factor, factor, factor});
+    };
+    EXPECT_HAS(complaint([&](Scene& s) { scale_by(s, 1e38f); }), "object 'thing': the transform carries it");
+    EXPECT_HAS(complaint([](Scene& s) { s.objects[0].world_from_object.translation.y = -2e18f; }),
+               "object 'thing': the transform carries it");
+    EXPECT_EQ(complaint([&](Scene& s) { scale_by(s, 1e17f); }), "accepted");
+    EXPECT_HAS(complaint([](Scene& s) { s.meshes[0].positions[2].x = 2e18f; }),
+               "mesh 'quad': position 2 is farther");
 }
 
 TEST(ValidateScene, names_the_mesh_with_bad_arrays) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "base/parallel.h"
 #include "box_sets.h"
@@ -155,6 +157,27 @@ TEST(SahBvh, separates_two_distant_groups_at_the_root) {
         EXPECT_LT(left.upper.x, 50);
         EXPECT_GT(bvh.nodes[bvh.nodes[0].first + 1].lower.x, 50);
     }
+}
+
+TEST(SahSplit, binning_stays_inside_the_bins_whatever_the_centroids_are) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    std::vector<Box> boxes;
+    for (const float x : {-kInfinity, -3e38f, -1.0f, 0.0f, 1.0f, 3e38f, kInfinity})
+        boxes.push_back({{x, 0, 0}, {x, 1, 1}});
+    boxes.push_back({{-kInfinity, 0, 0}, {kInfinity, 1, 1}}); // its centroid is no number
+    std::vector<uint32_t> ids{0, 1, 2, 3, 4, 5, 6, 7};
+    const SplitInput input{boxes, ids, {{-1, 0, 0}, {1, 1, 1}}};
+    constexpr int kBins = 16;
+    SahSplit split;
+    split.axis = 0;
+    for (const uint32_t cut : {1u, 8u, 15u}) {
+        split.cut = cut;
+        const uint32_t left = apply_binned_split(input, split, kBins);
+        const std::vector<uint32_t> front(ids.begin(), ids.begin() + left);
+        for (const uint32_t low : {0u, 1u, 2u, 7u}) EXPECT_EQ(std::count(front.begin(), front.end(), low), 1);
+        for (const uint32_t high : {4u, 5u, 6u}) EXPECT_EQ(std::count(front.begin(), front.end(), high), 0);
+    }
+    find_binned_split(input, kBins);
 }
 
 } // namespace
