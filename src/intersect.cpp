@@ -1,11 +1,25 @@
 #include "relief/intersect.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "base/parallel.h"
 #include "engine/engine.h"
+#include "relief/error.h"
+#include "validate_settings.h"
 
 namespace relief {
+
+namespace {
+
+void require_equal(size_t rays, size_t hits) {
+    if (rays != hits)
+        throw Error(ErrorKind::usage, {fmt::format("{} rays but room for {} hits", rays, hits), "",
+                                       "give spans of equal length"});
+}
+
+} // namespace
 
 struct Intersector::Implementation {
     std::unique_ptr<Engine> engine;
@@ -14,6 +28,7 @@ struct Intersector::Implementation {
 
 Intersector::Intersector(Scene scene, const RenderSettings& settings)
     : implementation_(std::make_unique<Implementation>()) {
+    validate_settings(settings);
     implementation_->threads = settings.threads;
     with_threads(settings.threads, [&] {
         implementation_->engine = make_cpu_engine(prepare_scene(std::move(scene), settings), settings);
@@ -25,10 +40,12 @@ Intersector::Intersector(Intersector&&) noexcept = default;
 Intersector& Intersector::operator=(Intersector&&) noexcept = default;
 
 void Intersector::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const {
+    require_equal(rays.size(), hits.size());
     with_threads(implementation_->threads, [&] { implementation_->engine->closest_hits(rays, hits); });
 }
 
 void Intersector::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const {
+    require_equal(rays.size(), hits.size());
     with_threads(implementation_->threads, [&] { implementation_->engine->any_hits(rays, hits); });
 }
 

@@ -25,9 +25,11 @@ struct RayHit {
     Vec3f normal{}; ///< geometric, world space, unit length, on the side of the winding
 };
 
-/// A scene made ready for rays. Levels come from `settings` (level, pixel_error, the scene's camera).
+/// A scene made ready for rays. Levels come from `settings` (level, pixel_error, the scene's camera and
+/// height).
 class Intersector {
   public:
+    /// Throws Error: usage for settings out of range, bad_input, device_missing, out_of_memory.
     Intersector(Scene scene, const RenderSettings& settings);
     ~Intersector();
     Intersector(Intersector&&) noexcept;
@@ -37,7 +39,7 @@ class Intersector {
     /// `settings.threads`.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const;
 
-    /// hits[i] = 1 where anything lies in (t_min, t_max), else 0. Thread safe.
+    /// hits[i] = 1 where anything lies in (t_min, t_max], else 0. The rest as above.
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const;
 
   private:

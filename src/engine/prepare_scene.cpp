@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/machine.h"
 #include "base/parallel.h"
 #include "engine/prepared_scene.h"
 #include "engine/tessellate.h"
@@ -84,6 +85,7 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSett
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
     prepared->camera = scene.camera;
+    prepared->mesh_count = uint32_t(scene.meshes.size());
     prepared->width = settings.width, prepared->height = settings.height;
     prepared->warnings = std::move(scene.warnings);
 
@@ -106,7 +108,7 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSett
                 prepared->surfaces[instance.surface], instance.world_from_object, config));
         }
     });
-    if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared);
+    if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());
     return prepared;
 }
 

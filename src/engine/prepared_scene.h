@@ -31,6 +31,7 @@ struct PreparedScene {
     std::vector<Light> lights;
     std::optional<Environment> environment;
     Camera camera;
+    uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture
     std::vector<std::string> warnings;
 };

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
-#include "base/machine.h"
 #include "base/parallel.h"
 #include "relief/error.h"
 
@@ -16,17 +16,37 @@ namespace {
 constexpr uint64_t kBytesPerVertex = sizeof(Vec3f) + sizeof(PackedFrame) + sizeof(Vec2f);
 constexpr uint64_t kBytesPerQuad = sizeof(Quad) + sizeof(Box) + 2 * 32 + sizeof(uint32_t) + 24;
 
-uint64_t count_cells(const Surface& surface, const LevelField& levels) {
-    uint64_t cells = 0;
-    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
-        cells += uint64_t(1) << (2 * levels.at(patch).patch);
-    return cells;
+uint64_t count_bytes(const Surface& surface, const LevelField& levels) {
+    uint64_t bytes = 0;
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+        const uint64_t side = uint64_t(1) << levels.at(patch).patch;
+        bytes += side * side * kBytesPerQuad + (side + 1) * (side + 1) * kBytesPerVertex;
+    }
+    return bytes;
 }
 
 bool have_equal_levels(const Surface& surface, const LevelField& a, const LevelField& b) {
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         if (!(a.at(patch) == b.at(patch))) return false;
     return true;
+}
+
+/// For each instance, the first one that has the same displaced surface at the same levels: itself or an
+/// earlier one.
+std::vector<uint32_t> find_equals(const PreparedScene& scene) {
+    std::vector<uint32_t> equals, firsts;
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) {
+        const Instance& instance = scene.instances[k];
+        const auto is_equal = [&](uint32_t other) {
+            return scene.instances[other].surface == instance.surface &&
+                   have_equal_levels(scene.surfaces[instance.surface], *scene.instances[other].levels,
+                                     *instance.levels);
+        };
+        const auto found = std::find_if(firsts.begin(), firsts.end(), is_equal);
+        equals.push_back(found == firsts.end() ? k : *found);
+        if (found == firsts.end()) firsts.push_back(k);
+    }
+    return equals;
 }
 
 /// First cell and vertex of every patch, one entry more than patches.
@@ -92,45 +112,37 @@ Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
 } // namespace
 
 uint64_t estimate_tessellation_bytes(const PreparedScene& scene) {
+    const std::vector<uint32_t> equals = find_equals(scene);
     uint64_t bytes = 0;
-    for (const Instance& instance : scene.instances) {
-        const Surface& surface = scene.surfaces[instance.surface];
-        if (!surface.has_displacement) continue;
-        bytes += count_cells(surface, *instance.levels) * (kBytesPerVertex + kBytesPerQuad);
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) {
+        const Surface& surface = scene.surfaces[scene.instances[k].surface];
+        if (surface.has_displacement && equals[k] == k)
+            bytes += count_bytes(surface, *scene.instances[k].levels);
     }
     return bytes;
 }
 
-void tessellate_scene(PreparedScene& scene) {
-    const uint64_t needed = estimate_tessellation_bytes(scene), available = available_memory_bytes();
-    if (needed > available)
+void tessellate_scene(PreparedScene& scene, uint64_t available_bytes) {
+    const uint64_t needed = estimate_tessellation_bytes(scene);
+    if (needed > available_bytes)
         throw Error(
             ErrorKind::out_of_memory,
             {fmt::format("the tessellated scene needs {} bytes ({:.1f} GiB), {:.1f} GiB are available",
-                         needed, double(needed) / (1 << 30), double(available) / (1 << 30)),
+                         needed, double(needed) / (1 << 30), double(available_bytes) / (1 << 30)),
              "", "render it directly (--surface direct) or lower --level"});
-    struct Done {
-        uint32_t source, surface;
-        std::shared_ptr<const LevelField> levels;
-    };
-    std::vector<Done> done;
-    const uint32_t source_count = uint32_t(scene.surfaces.size());
-    for (Instance& instance : scene.instances) {
-        if (!scene.surfaces[instance.surface].has_displacement) continue;
-        const Done* shared = nullptr;
-        for (const Done& other : done)
-            if (other.source == instance.surface &&
-                have_equal_levels(scene.surfaces[other.source], *other.levels, *instance.levels))
-                shared = &other;
-        if (!shared) {
-            scene.surfaces.push_back(tessellate_surface(scene.surfaces[instance.surface], *instance.levels));
-            done.push_back({instance.surface, uint32_t(scene.surfaces.size()) - 1, instance.levels});
-            shared = &done.back();
-        }
-        instance.surface = shared->surface;
+    const std::vector<uint32_t> equals = find_equals(scene);
+    const std::vector<Instance> instances = scene.instances;
+    const size_t source_count = scene.surfaces.size();
+    for (uint32_t k = 0; k < instances.size(); ++k) {
+        if (!scene.surfaces[instances[k].surface].has_displacement) continue;
+        if (equals[k] == k)
+            scene.surfaces.push_back(
+                tessellate_surface(scene.surfaces[instances[k].surface], *instances[k].levels));
+        scene.instances[k].surface =
+            equals[k] == k ? uint32_t(scene.surfaces.size()) - 1 : scene.instances[equals[k]].surface;
     }
     // The displaced originals are no longer seen by any instance.
-    for (uint32_t k = 0; k < source_count; ++k)
+    for (size_t k = 0; k < source_count; ++k)
         if (scene.surfaces[k].has_displacement) scene.surfaces[k] = Surface{};
     LevelFieldConfig flat;
     flat.fixed_level = 0;

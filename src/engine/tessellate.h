@@ -13,6 +13,6 @@ uint64_t estimate_tessellation_bytes(const PreparedScene& scene);
 /// Replaces every displaced surface by its micro-quads at the levels of each instance (instances with equal
 /// levels share them). Throws Error{out_of_memory} beforehand, with the byte count, when the machine cannot
 /// hold it.
-void tessellate_scene(PreparedScene& scene);
+void tessellate_scene(PreparedScene& scene, uint64_t available_bytes);
 
 } // namespace relief

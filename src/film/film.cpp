@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
+#include "base/memory.h"
 #include "math/vec.h"
 #include "relief/error.h"
 
@@ -114,6 +117,17 @@ void write_means(const double* sums, size_t count, uint32_t n, Source source, fl
     for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
 }
 
+/// The system grants more than it has and ends the process later, so what a picture needs is asked
+/// beforehand.
+void require_memory(double pixels, size_t bytes_per_pixel) {
+    const double needed = pixels * double(bytes_per_pixel), available = double(available_memory_bytes());
+    if (needed <= available) return;
+    throw Error(ErrorKind::out_of_memory,
+                {fmt::format("the picture needs {:.0f} bytes ({:.1f} GiB), {:.1f} GiB are available", needed,
+                             needed / (1 << 30), available / (1 << 30)),
+                 "", "render it in parts with --crop or --tile and merge them, or ask for fewer layers"});
+}
+
 } // namespace
 
 Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers)
@@ -121,14 +135,18 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
     for (const std::string& name : layers) find_kind(name);
     if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
     bool needs_hit_counts = false, needs_nearest = false;
+    size_t channels = kRadianceSums;
     for (const LayerKind& kind : kLayerKinds) {
         if (std::find(layers.begin(), layers.end(), kind.name) == layers.end()) continue;
         layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_});
         stride_ += kind.sum_count;
+        channels += channel_count(kind);
         needs_hit_counts |= kind.source == Source::position || kind.source == Source::uv;
         needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
     }
     const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
+    // Counts, hit counts, depths and ids are 4 bytes each, as are the channels of the resolved image.
+    require_memory(double(pixels), stride_ * sizeof(double) + (4 + channels) * 4);
     sums_.resize(pixels * stride_);
     counts_.resize(pixels);
     if (needs_hit_counts) hit_counts_.resize(pixels);

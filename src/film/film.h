@@ -25,7 +25,8 @@ struct FilmSample {
 /// order. Different pixels may be fed at the same time.
 class Film {
   public:
-    /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one.
+    /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one,
+    /// Error{out_of_memory} when the sums and the resolved image do not fit into the memory that is free.
     Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers);
 
     const Window& window() const { return window_; }

@@ -68,14 +68,14 @@ void add_image_light(Scene& scene, std::shared_ptr<const Texture> sky, const Vec
 
 void add_default_light(Scene& scene, const Vec3f& view) {
     Environment sky;
-    sky.color = {0.36f, 0.40f, 0.46f};
+    sky.color = {0.25f, 0.28f, 0.33f};
     scene.environment = sky;
     const Vec3f left = normalize(cross(view, Vec3f{0, 1, 0}));
     Light sun;
     sun.direction = normalize(left * 0.8f + Vec3f{0, 0.9f, 0} + view * 0.55f) * -1.0f;
     sun.angle_degrees = 3;
     sun.color = {1.0f, 0.95f, 0.88f};
-    sun.strength = 2.4f;
+    sun.strength = 2.2f;
     scene.lights.push_back(sun);
 }
 

@@ -16,14 +16,14 @@ namespace relief::samples {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kCrackWidth = 0.023f, kPlateHeight = 0.026f;
-constexpr float kFlakeWidth = 0.009f, kFlakeHeight = 0.0045f;
+constexpr float kCrackWidth = 0.0185f, kPlateHeight = 0.025f;
+constexpr float kFlakeWidth = 0.0055f, kFlakeHeight = 0.0036f;
 
 class BarkSculptor {
   public:
     MapSample sculpt(const Vec2f& uv) const {
         const Vec2f warped = warp(uv);
-        const PlateHit plate = find_plate(plates_, warped);
+        const PlateHit plate = plates_.find(warped);
         const float q = std::fmin(plate.distance / kCrackWidth, 1.0f);
         const Vec2f shape = crack_.at(q);
         const float rise = 0.75f + 0.5f * to_unit(plate.seed * 0x9e3779b1u);
@@ -32,7 +32,7 @@ class BarkSculptor {
         sample.displacement = {plate.inward.x * (shape.x - q) * kCrackWidth,
                                plate.inward.y * (shape.x - q) * kCrackWidth,
                                (shape.y - 0.7f) * kPlateHeight * rise};
-        sample.color = lerp(Vec3f{0.045f, 0.022f, 0.013f}, Vec3f{0.17f, 0.105f, 0.068f},
+        sample.color = lerp(Vec3f{0.045f, 0.022f, 0.013f}, Vec3f{0.20f, 0.135f, 0.095f},
                             smooth_step(0.0f, 0.9f, shape.y));
         add_flakes(uv, warped, face, sample);
         add_grain(uv, face, sample);
@@ -50,22 +50,23 @@ class BarkSculptor {
 
     void add_flakes(const Vec2f& uv, const Vec2f& warped, float face, MapSample& sample) const {
         const float ragged = fractal_tile_noise({uv.x * 64, uv.y * 64}, 64, 64, 2, 171);
-        const PlateHit flake = find_plate(flakes_, {warped.x + 0.0025f * ragged, warped.y + 0.004f * ragged});
+        const PlateHit flake = flakes_.find({warped.x + 0.0025f * ragged, warped.y + 0.004f * ragged});
         const float q = std::fmin(flake.distance / kFlakeWidth, 1.0f);
         const Vec2f shape = crack_.at(q);
         const float lift = face * (0.35f + 1.1f * to_unit(flake.seed * 0x85ebca77u));
         sample.displacement.x += flake.inward.x * (shape.x - q) * kFlakeWidth * face;
         sample.displacement.y += flake.inward.y * (shape.x - q) * kFlakeWidth * face;
         sample.displacement.z += (shape.y - 0.5f) * kFlakeHeight * lift;
-        const Vec3f tint = lerp(Vec3f{0.78f, 0.66f, 0.60f}, Vec3f{1.45f, 1.4f, 1.35f}, to_unit(flake.seed));
+        const Vec3f tint = lerp(Vec3f{0.72f, 0.66f, 0.62f}, Vec3f{1.30f, 1.30f, 1.32f}, to_unit(flake.seed));
         sample.color = sample.color * lerp(Vec3f{1, 1, 1}, tint, face);
         sample.color *= lerp(1.0f, lerp(0.45f, 1.05f, smooth_step(0.0f, 0.8f, shape.y)), face);
     }
 
     static void add_grain(const Vec2f& uv, float face, MapSample& sample) {
-        const float fibres = ridged_tile_noise({uv.x * 90, uv.y * 18}, 90, 18, 4, 181);
+        const float sway = 0.004f * tile_noise({uv.x * 12, uv.y * 9}, 12, 9, 183);
+        const float fibres = ridged_tile_noise({(uv.x + sway) * 80, uv.y * 11}, 80, 11, 4, 181);
         const float lumps = fractal_tile_noise({uv.x * 22, uv.y * 12}, 22, 12, 5, 182);
-        sample.displacement.z += 0.0030f * (fibres - 0.5f) * (0.4f + 0.6f * face) + 0.0042f * lumps;
+        sample.displacement.z += 0.0052f * (fibres - 0.5f) * (0.4f + 0.6f * face) + 0.0042f * lumps;
         sample.displacement.y += 0.0012f * lumps;
         sample.color *= 0.70f + 0.55f * fibres;
     }
@@ -73,18 +74,19 @@ class BarkSculptor {
     static void add_moss(const Vec2f& uv, float height, MapSample& sample) {
         const float place = fractal_tile_noise({uv.x * 4, uv.y * 3}, 4, 3, 5, 191);
         const float tuft = fractal_tile_noise({uv.x * 150, uv.y * 150}, 150, 150, 3, 192);
-        const float moss = smooth_step(0.12f, 0.42f, place + 0.15f * tuft) * smooth_step(0.2f, 0.8f, height);
+        const float moss = smooth_step(0.10f, 0.50f, place + 0.15f * tuft) * smooth_step(0.2f, 0.8f, height);
         sample.displacement.z += moss * (0.0025f + 0.0022f * tuft);
         sample.displacement.x += moss * 0.0010f * tuft;
-        const Vec3f green = lerp(Vec3f{0.07f, 0.10f, 0.018f}, Vec3f{0.26f, 0.30f, 0.05f}, 0.5f + 0.6f * tuft);
+        const Vec3f green =
+            lerp(Vec3f{0.07f, 0.10f, 0.018f}, Vec3f{0.19f, 0.21f, 0.045f}, 0.5f + 0.6f * tuft);
         sample.color = lerp(sample.color, green, 0.9f * moss);
         const float lichen =
-            smooth_step(0.30f, 0.42f, fractal_tile_noise({uv.x * 11, uv.y * 11}, 11, 11, 4, 193)) *
+            smooth_step(0.22f, 0.40f, fractal_tile_noise({uv.x * 24, uv.y * 24}, 24, 24, 4, 193)) *
             smooth_step(0.7f, 1.0f, height) * (1 - moss);
-        sample.color = lerp(sample.color, Vec3f{0.42f, 0.45f, 0.36f}, 0.75f * lichen);
+        sample.color = lerp(sample.color, Vec3f{0.34f, 0.37f, 0.29f}, 0.7f * lichen);
     }
 
-    PlateField plates_{14, 6, 0.85f, 0.0035f, 201}, flakes_{44, 26, 0.9f, 0.0012f, 202};
+    PlateField plates_{{16, 5, 0.9f, 0.0030f, 201}}, flakes_{{52, 14, 0.95f, 0.0011f, 202}};
     // From the middle of a crack outwards: its floor, under the plate, up, over the curled edge, onto the
     // plate.
     ProfileCurve crack_{{{0, 0},
@@ -121,6 +123,8 @@ LatheShape make_trunk_profile(const TrunkShape& trunk) {
 
 } // namespace
 
+LatheBody make_trunk_body(const TrunkShape& shape) { return LatheBody(make_trunk_profile(shape)); }
+
 Model make_trunk(const TrunkShape& shape) {
     const BarkSculptor sculptor;
     const Maps maps =
@@ -129,7 +133,7 @@ Model make_trunk(const TrunkShape& shape) {
         make_plain_model("bark", DisplacementSpace::tangent, WrapMode::repeat, maps.displacement, maps.color);
     model.displacement.scale = Vec3f{1, 1, 1} * (2 * kPi);
     model.material.roughness = 0.85f;
-    const LatheBody body(make_trunk_profile(shape));
+    const LatheBody body = make_trunk_body(shape);
     model.make_mesh = [body](const Deformation& deform) { return body.make_mesh("trunk", deform); };
     return model;
 }

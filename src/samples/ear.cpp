@@ -14,7 +14,7 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kEarSize = 1.30f;                  ///< of the drawing below on the quad
+constexpr float kEarSize = 1.22f;                  ///< of the drawing below on the quad
 constexpr float kRimFrom = -0.13f, kRimTo = 0.21f; ///< band about the outline that the rim's profile covers
 
 float bump(const Vec2f& p, const Vec2f& centre, float radius) {
@@ -50,7 +50,7 @@ class EarSculptor {
 
     void add_inner_forms(const Vec2f& p, float inside, Vec3f& move) const {
         const float ridge = ridge_.find(p).distance, fork = fork_.find(p).distance;
-        const float crest = std::exp(-ridge * ridge / 0.0042f), branch = std::exp(-fork * fork / 0.0028f);
+        const float crest = std::exp(-ridge * ridge / 0.0040f), branch = std::exp(-fork * fork / 0.0034f);
         move.z += inside * (0.115f * crest + 0.075f * branch * (1 - crest));
         // The ridge leans over the bowl.
         move.x -= inside * 0.055f * crest * smooth_step(0.4f, -0.1f, p.y);
@@ -89,10 +89,10 @@ class EarSculptor {
                       {-0.29f, -0.10f},
                       {-0.29f, -0.30f},
                       {-0.27f, -0.48f},
-                      {-0.16f, -0.62f},
-                      {0.00f, -0.61f},
-                      {0.14f, -0.46f},
-                      {0.28f, -0.28f},
+                      {-0.16f, -0.63f},
+                      {0.02f, -0.63f},
+                      {0.16f, -0.50f},
+                      {0.30f, -0.29f},
                       {0.40f, -0.04f},
                       {0.47f, 0.24f},
                       {0.40f, 0.50f},
@@ -101,10 +101,10 @@ class EarSculptor {
                       {-0.25f, 0.50f},
                       {-0.32f, 0.30f}},
                      Outline::Kind::closed};
-    Outline ridge_{{{0.13f, 0.26f}, {0.21f, 0.12f}, {0.205f, -0.06f}, {0.12f, -0.20f}, {0.02f, -0.29f}},
-                   Outline::Kind::open};
-    Outline fork_{{{-0.12f, 0.34f}, {0.00f, 0.31f}, {0.13f, 0.24f}, {0.17f, 0.32f}, {0.13f, 0.45f}},
-                  Outline::Kind::open};
+    Outline ridge_{
+        {{0.10f, 0.46f}, {0.16f, 0.30f}, {0.21f, 0.12f}, {0.205f, -0.06f}, {0.12f, -0.20f}, {0.02f, -0.29f}},
+        Outline::Kind::open};
+    Outline fork_{{{-0.16f, 0.30f}, {-0.04f, 0.31f}, {0.08f, 0.25f}, {0.17f, 0.15f}}, Outline::Kind::open};
     Outline bowl_{{{-0.22f, -0.05f},
                    {-0.17f, -0.20f},
                    {-0.05f, -0.25f},

@@ -27,6 +27,7 @@ struct TrunkShape {
     float height = 11.5f;
 };
 Model make_trunk(const TrunkShape& shape);
+LatheBody make_trunk_body(const TrunkShape& shape);
 
 /// A ring of overlapping scales: a torus about the y axis, radii 1 and 0.36. Tangent space.
 Model make_scale_ring();

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "math/affine.h"
 #include "samples/noise.h"
@@ -20,6 +22,7 @@ struct Kind {
     float footprint; ///< radius on the ground at scale 1
     float lift;      ///< height of the origin at scale 1
     float variation;
+    std::vector<std::pair<std::string, Vec3f>> tints; ///< of the model's colours, taken in turn
 };
 
 struct Disc {
@@ -36,7 +39,7 @@ class Floor {
         for (float reach = 9;; reach *= 1.02f)
             for (int i = 0; i < 60; ++i) {
                 const float z = 4.2f - std::sqrt(random_.unit()) * 2 * reach;
-                const float half_width = 2.4f + 0.42f * (5.5f - z);
+                const float half_width = 3.1f + 0.5f * (4.5f - z);
                 const Disc disc{random_.range(-half_width, half_width), z, radius};
                 const bool is_free = std::none_of(discs_.begin(), discs_.end(), [&](const Disc& other) {
                     return std::hypot(other.x - disc.x, other.z - disc.z) < 0.93f * (other.radius + radius);
@@ -70,6 +73,8 @@ void add_displaced(Stage& stage, Floor& floor, const Kind& kind) {
         stage.add_displaced(kind.model, kind.name + ("_" + std::to_string(i + 1)),
                             place({disc.x, kind.lift * scale, disc.z}, scale, turn, tilt),
                             make_variation(hash(int(i), 1, 2, kind.model + 5), kind.variation));
+        const auto& [tint_name, tint] = kind.tints[hash(int(i), 3, 4, 307) % kind.tints.size()];
+        stage.tint_last(kind.model, tint_name, tint);
     }
 }
 
@@ -85,7 +90,7 @@ Material make_material(const std::string& name, const Vec3f& color, float roughn
 void scatter_plain(Stage& stage, Floor& floor, const Mesh& mesh, const Material& material, int count,
                    float lift) {
     for (int i = 0; i < count; ++i) {
-        const float scale = floor.random().range(0.12f, 0.3f);
+        const float scale = floor.random().range(0.2f, 0.42f);
         const Disc disc = floor.find_place(0.6f * scale);
         const Affine transform =
             place({disc.x, lift * scale, disc.z}, scale, floor.random().range(0, 360), 0);
@@ -118,16 +123,48 @@ Scene make_party_scene(Instancing instancing) {
     const uint32_t bark = stage.add_model(make_trunk(trunk));
     const uint32_t pumpkin = stage.add_model(make_pumpkin()), mushroom = stage.add_model(make_mushroom());
     const uint32_t coral = stage.add_model(make_coral()), ring = stage.add_model(make_scale_ring());
-    add_displaced(stage, floor, {"trunk", bark, 9, 0.55f, 0.95f, 1.15f, -0.2f, 0.04f});
-    add_displaced(stage, floor, {"ring", ring, 16, 0.45f, 0.8f, 1.45f, 0.40f, 0.05f});
-    add_displaced(stage, floor, {"pumpkin", pumpkin, 52, 0.35f, 1.0f, 1.1f, 0.80f, 0.10f});
-    add_displaced(stage, floor, {"coral", coral, 38, 0.25f, 0.7f, 1.2f, 0.95f, 0.08f});
-    add_displaced(stage, floor, {"mushroom", mushroom, 40, 0.5f, 1.3f, 0.72f, 0.0f, 0.07f});
+    add_displaced(stage, floor, {"trunk", bark, 9, 0.55f, 0.95f, 1.15f, -0.2f, 0.04f, {{"bark", {1, 1, 1}}}});
+    add_displaced(stage, floor,
+                  {"ring",
+                   ring,
+                   16,
+                   0.45f,
+                   0.9f,
+                   1.42f,
+                   0.40f,
+                   0.05f,
+                   {{"scales", {1, 1, 1}}, {"scales_bronze", {1, 0.5f, 0.3f}}}});
+    add_displaced(stage, floor,
+                  {"pumpkin",
+                   pumpkin,
+                   52,
+                   0.35f,
+                   1.0f,
+                   1.1f,
+                   0.80f,
+                   0.10f,
+                   {{"pumpkin", {1, 1, 1}},
+                    {"pumpkin_red", {0.85f, 0.48f, 0.45f}},
+                    {"pumpkin_green", {0.40f, 0.78f, 0.8f}},
+                    {"pumpkin", {1, 1, 1}}}});
+    add_displaced(
+        stage, floor,
+        {"coral",
+         coral,
+         38,
+         0.25f,
+         0.7f,
+         1.2f,
+         0.95f,
+         0.08f,
+         {{"coral", {1, 1, 1}}, {"coral_violet", {0.55f, 0.6f, 1}}, {"coral_sand", {1, 0.9f, 0.55f}}}});
+    add_displaced(stage, floor,
+                  {"mushroom", mushroom, 40, 0.5f, 1.3f, 0.72f, 0.0f, 0.07f, {{"mushroom", {1, 1, 1}}}});
     add_plain_objects(stage, floor);
     stage.add_ground(0, 90, {0.30f, 0.26f, 0.20f});
     stage.light({-122, 36, {1.0f, 0.84f, 0.64f}, 3.8f});
     Camera camera;
-    camera.from = {0.2f, 4.2f, 10.4f}, camera.to = {0, 0.9f, 0}, camera.fov_degrees = 36;
+    camera.from = {0.2f, 3.5f, 9.3f}, camera.to = {0, 0.75f, 0}, camera.fov_degrees = 36;
     return stage.finish(camera);
 }
 

@@ -71,8 +71,8 @@ class PumpkinSculptor {
 
     void add_skin(const BodyPoint& p, float rib, Sculpture& result) const {
         const Vec3f stretched{p.position.x, 0.45f * p.position.y, p.position.z};
-        float height =
-            0.03f * fractal_noise(p.position * 2.6f, 3, 51) + 0.004f * fractal_noise(stretched * 22.0f, 4, 52);
+        float height = 0.03f * fractal_noise(p.position * 2.6f, 3, 51) +
+                       0.004f * fractal_noise(stretched * 22.0f, 4, 52);
         const float pore = noise(p.position * 75.0f, 53);
         height -= 0.0045f * smooth_step(0.35f, 0.6f, pore);
         const float zone =

@@ -41,7 +41,7 @@ Scene make_pumpkin_scene(Instancing instancing) {
     stage.add_ground(0, 40, {0.42f, 0.37f, 0.31f});
     stage.light({-118, 34, {1.0f, 0.84f, 0.64f}, 3.6f});
     Camera camera;
-    camera.from = {1.35f, 2.25f, 3.9f}, camera.to = {0.03f, 0.86f, 0}, camera.fov_degrees = 30;
+    camera.from = {1.35f, 2.25f, 3.9f}, camera.to = {0.03f, 0.92f, 0}, camera.fov_degrees = 27;
     return stage.finish(camera);
 }
 
@@ -53,7 +53,7 @@ Scene make_bark_scene(Instancing instancing) {
     stage.add_ground(0, 40, {0.20f, 0.17f, 0.12f});
     stage.light({-128, 30, {1.0f, 0.82f, 0.60f}, 4.2f});
     Camera camera;
-    camera.from = {0.9f, 2.0f, 4.3f}, camera.to = {-0.05f, 1.45f, 0}, camera.fov_degrees = 36;
+    camera.from = {0.7f, 1.9f, 3.4f}, camera.to = {0.02f, 1.5f, 0}, camera.fov_degrees = 42;
     return stage.finish(camera);
 }
 

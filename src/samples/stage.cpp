@@ -1,5 +1,6 @@
 #include "samples/stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,6 +41,19 @@ void Stage::add_displaced(uint32_t model, const std::string& name, const Affine&
     object.material = entry.material;
     object.world_from_object = world_from_object;
     scene_.objects.push_back(std::move(object));
+}
+
+void Stage::tint_last(uint32_t model, const std::string& name, const Vec3f& tint) {
+    const auto known = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                    [&](const Material& material) { return material.name == name; });
+    if (known != scene_.materials.end()) {
+        scene_.objects.back().material = uint32_t(known - scene_.materials.begin());
+        return;
+    }
+    Material material = models_[model].model.material;
+    material.name = name;
+    material.base_color = tint;
+    scene_.objects.back().material = add_material(material);
 }
 
 void Stage::add_plain(Mesh mesh, const std::string& name, const Material& material,

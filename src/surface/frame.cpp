@@ -47,8 +47,7 @@ PackedFrame pack_frame(const Vec3f& normal, const Vec3f& tangent, float handedne
 }
 
 Vec3f unpack_normal(const PackedFrame& packed) {
-    return unfold(dequantize(packed.normal & 0xffffu, 16, kFine),
-                  dequantize(packed.normal >> 16, 16, kFine));
+    return unfold(dequantize(packed.normal & 0xffffu, 16, kFine), dequantize(packed.normal >> 16, 16, kFine));
 }
 
 Frame unpack_frame(const PackedFrame& packed) {

@@ -119,6 +119,20 @@ struct PatchLevels {
     }
 };
 
+/// 5 x 4 bits: patch level, then the edges.
+inline uint32_t pack_levels(const PatchLevels& levels) {
+    uint32_t packed = levels.patch;
+    for (int k = 0; k < 4; ++k) packed |= uint32_t(levels.edge[k]) << (4 + 4 * k);
+    return packed;
+}
+
+inline PatchLevels unpack_levels(uint32_t packed) {
+    PatchLevels levels;
+    levels.patch = uint8_t(packed & 15);
+    for (int k = 0; k < 4; ++k) levels.edge[k] = uint8_t(packed >> (4 + 4 * k) & 15);
+    return levels;
+}
+
 class PyramidCache;
 
 /// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
@@ -142,8 +156,8 @@ Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& 
 
 /// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
 /// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex
-/// normal, so that the normal is continuous across cells and across patches of a smooth mesh. The result
-/// points to the side of the winding.
+/// normal, so that the normal is continuous across cells and across patches of a smooth mesh that have the
+/// same level. The result points to the side of the winding.
 Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, float u, float v);
 
 /// Box of every vertex that the patch has at any level and bias, every ulp included.

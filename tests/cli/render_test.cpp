@@ -68,6 +68,14 @@ TEST_F(Render, tiles_and_sample_ranges_merge_into_the_whole) {
     expect_same("whole.exr", "samples.exr", "1e-4");
 }
 
+TEST_F(Render, exits_5_before_it_starts_when_the_picture_does_not_fit_into_memory) {
+    const CommandResult result = run({"render", "plane.obj", "-o", "a.exr", "--size", "65536x65536",
+                                      "--layers", "depth,N,Ng,P,albedo,uv,id,samples,variance,cost"});
+    EXPECT_EQ(result.exit_code, 5) << result.errors;
+    EXPECT_NE(result.errors.find("the picture needs"), std::string::npos) << result.errors;
+    EXPECT_FALSE(exists("a.exr"));
+}
+
 TEST_F(Render, gives_the_same_bits_for_any_number_of_threads) {
     render_ok("one.exr", {"--threads", "1"});
     render_ok("two.exr", {"--threads", "2"});

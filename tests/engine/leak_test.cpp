@@ -3,6 +3,7 @@
 // RELIEF_LEAK_RAYS sets how many rays in all.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -105,6 +106,20 @@ Scene make_scene(const Case& c) {
     return scene;
 }
 
+/// Auto levels are worth a test only where patches differ and edges are coarser than their patches.
+void expect_mixed_levels(const PreparedScene& scene, const Case& c) {
+    if (c.level != kAutoLevel) return;
+    int lowest = kMaxLevel, highest = 0, coarse_edges = 0;
+    for (const Instance& instance : scene.instances)
+        for (uint32_t patch = 0; patch < scene.surfaces[instance.surface].patch_count(); ++patch) {
+            const PatchLevels levels = instance.levels->at(patch);
+            lowest = std::min<int>(lowest, levels.patch), highest = std::max<int>(highest, levels.patch);
+            for (const uint8_t edge : levels.edge) coarse_edges += edge < levels.patch;
+        }
+    EXPECT_GE(highest - lowest, 2);
+    EXPECT_GT(coarse_edges, 20);
+}
+
 class LeakTest : public testing::TestWithParam<Case> {};
 
 TEST_P(LeakTest, every_ray_from_inside_hits) {
@@ -114,6 +129,7 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
     settings.height = 96;
     settings.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
+    expect_mixed_levels(*prepared, c);
     const cpu::Tracer tracer(prepared, settings);
     std::atomic<uint64_t> leaks{0};
     const uint64_t batches = (ray_count() + kBatch - 1) / kBatch;

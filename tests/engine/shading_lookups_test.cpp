@@ -67,13 +67,13 @@ TEST(Half, converts_every_kind_of_number) {
 
 /// A sky with a bright spot, black elsewhere below the horizon; sizes that do and do not fit the density's
 /// cells.
-Environment make_sky(uint32_t width, uint32_t height) {
+Environment make_sky(uint32_t width, uint32_t height, float spot = 300) {
     auto texture = std::make_shared<Texture>();
     texture->width = width, texture->height = height, texture->channel_count = 3;
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
             float value = y < height / 2 ? 0.5f : 0.0f;
-            if (x == width / 3 && y == height / 4) value = 300;
+            if (x == width / 3 && y == height / 4) value = spot;
             texture->floats.insert(texture->floats.end(), {value, value, value, 1.0f});
         }
     Environment environment;
@@ -94,6 +94,32 @@ TEST(ShadingEnvironment, has_a_density_that_integrates_to_one_and_covers_all_lig
             if (light.radiance(d).x > 0) ASSERT_GT(pdf, 0) << width;
         }
         EXPECT_NEAR(integral, 1, width < 1000 ? 0.02 : 0.4) << width; // a spot of few texels is seldom met
+    }
+}
+
+TEST(ShadingEnvironment, still_draws_what_is_dim_beside_a_lamp_in_the_same_row) {
+    const cpu::EnvironmentLight light(make_sky(1024, 512, 3e7f));
+    for (uint32_t column = 0; column < 1024; ++column) {
+        const Vec2f position{(float(column) + 0.5f) / 1024, (512 / 4 + 0.5f) / 512};
+        const Vec3f local = scalar::latlong_to_direction(position);
+        const float turn = 35 * std::numbers::pi_v<float> / 180;
+        const Vec3f direction{local.x * std::cos(turn) + local.z * std::sin(turn), local.y,
+                              local.z * std::cos(turn) - local.x * std::sin(turn)};
+        ASSERT_GT(light.look_up(direction).radiance.x, 0) << column;
+        ASSERT_GT(light.look_up(direction).pdf, 0) << column;
+    }
+}
+
+TEST(ShadingEnvironment, gives_a_drawn_direction_the_radiance_and_density_of_a_look_up) {
+    const cpu::EnvironmentLight light(make_sky(64, 32));
+    for (uint32_t k = 0; k < 1000; ++k) {
+        const auto drawn = light.draw_direction(scalar::sobol_pair(3, k, 0));
+        const Vec3f radiance = light.radiance(drawn.direction);
+        ASSERT_NEAR(light.radiance(drawn).x, radiance.x, 1e-3f * radiance.x + 1e-3f) << k;
+        // On the border of two cells rounding may name the neighbour.
+        const float x = drawn.position.x * 64, y = drawn.position.y * 32;
+        if (std::fabs(x - std::round(x)) < 1e-3f || std::fabs(y - std::round(y)) < 1e-3f) continue;
+        ASSERT_NEAR(light.pdf(drawn.direction), drawn.pdf, 1e-3f * drawn.pdf) << k;
     }
 }
 

@@ -7,6 +7,7 @@
 #include "engine/cpu/tracer.h"
 #include "math/vec.h"
 #include "relief/samples.h"
+#include "support/isas.h"
 
 namespace relief {
 
@@ -40,14 +41,6 @@ std::vector<cpu::TraceHit> trace(const std::shared_ptr<const PreparedScene>& sce
     return hits;
 }
 
-Isa to_isa(const std::string& name) {
-    return name == "avx512" ? Isa::avx512
-           : name == "avx2" ? Isa::avx2
-           : name == "sse4" ? Isa::sse4
-           : name == "neon" ? Isa::neon
-                            : Isa::scalar;
-}
-
 void expect_same_hits(const Scene& scene, int level) {
     RenderSettings settings;
     settings.width = kWidth, settings.height = kHeight;
@@ -57,8 +50,8 @@ void expect_same_hits(const Scene& scene, int level) {
     settings.surface = SurfaceMode::tessellated;
     const std::vector<cpu::TraceHit> reference = trace(prepare_scene(scene, settings), settings, rays);
     settings.surface = SurfaceMode::direct;
-    for (const std::string& name : available_isas()) {
-        settings.isa = to_isa(name);
+    for (const Isa isa : test::machine_isas()) {
+        settings.isa = isa;
         const std::vector<cpu::TraceHit> hits = trace(direct, settings, rays);
         size_t hit_count = 0, different = 0;
         for (size_t k = 0; k < rays.size(); ++k) {
@@ -66,8 +59,8 @@ void expect_same_hits(const Scene& scene, int level) {
             different += hits[k].instance != reference[k].instance ||
                          (hits[k].is_hit() && std::fabs(hits[k].t - reference[k].t) > 1e-5f * reference[k].t);
         }
-        EXPECT_EQ(different, 0u) << name << " level " << level;
-        EXPECT_GT(hit_count, rays.size() / 10) << name << " level " << level;
+        EXPECT_EQ(different, 0u) << int(isa) << " level " << level;
+        EXPECT_GT(hit_count, rays.size() / 10) << int(isa) << " level " << level;
     }
 }
 

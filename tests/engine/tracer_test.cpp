@@ -2,6 +2,7 @@
 // level.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <random>
@@ -9,21 +10,11 @@
 #include "engine/cpu/tracer.h"
 #include "math/affine.h"
 #include "support/bodies.h"
+#include "support/isas.h"
 
 namespace relief {
 
 namespace {
-
-std::vector<Isa> machine_isas() {
-    std::vector<Isa> isas;
-    for (const std::string& name : available_isas())
-        isas.push_back(name == "avx512" ? Isa::avx512
-                       : name == "avx2" ? Isa::avx2
-                       : name == "sse4" ? Isa::sse4
-                       : name == "neon" ? Isa::neon
-                                        : Isa::scalar);
-    return isas;
-}
 
 struct Triangle {
     Vec3f a, b, c;
@@ -127,7 +118,7 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     const std::vector<Triangle> triangles = list_triangles(*prepared, c.bias);
     const std::vector<cpu::TraceRay> rays = make_rays(c.level >= 5 ? 160 : 480, c.bias, 7);
-    for (const Isa isa : machine_isas()) {
+    for (const Isa isa : test::machine_isas()) {
         settings.isa = isa;
         const cpu::Tracer tracer(prepared, settings);
         std::vector<cpu::TraceHit> hits(rays.size());
@@ -240,6 +231,87 @@ TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
         EXPECT_EQ(a[k].t, b[k].t);
         EXPECT_EQ(a[k].instance, b[k].instance);
     }
+}
+
+TEST(Tracer, hits_do_not_depend_on_the_company_of_a_ray) {
+    RenderSettings settings;
+    settings.height = 150;
+    Scene scene = test::make_body_scene(
+        test::make_torus(6, 9),
+        test::make_displacement(test::make_random_map(128, 128, 0.12f, 5), DisplacementSpace::tangent));
+    scene.camera.from = {2, 1, 2};
+    const auto prepared = prepare_scene(scene, settings);
+    const cpu::Tracer tracer(prepared, settings);
+    std::vector<cpu::TraceRay> rays = make_rays(200000, 0, 17);
+    std::vector<cpu::TraceHit> hits(rays.size()), shuffled_hits(rays.size());
+    tracer.closest_hits(rays, hits);
+    std::vector<uint32_t> order(rays.size());
+    for (uint32_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::shuffle(order.begin(), order.end(), std::mt19937(3));
+    std::vector<cpu::TraceRay> shuffled;
+    for (const uint32_t k : order) shuffled.push_back(rays[k]);
+    tracer.closest_hits(shuffled, shuffled_hits);
+    for (size_t k = 0; k < order.size(); ++k) {
+        ASSERT_EQ(hits[order[k]].t, shuffled_hits[k].t) << order[k];
+        ASSERT_EQ(hits[order[k]].patch, shuffled_hits[k].patch) << order[k];
+        ASSERT_EQ(hits[order[k]].u, shuffled_hits[k].u) << order[k];
+    }
+}
+
+TEST(Tracer, a_level_a_ray_gives_points_on_the_ray) {
+    RenderSettings settings;
+    settings.height = 150;
+    settings.lod = LodRule::ray;
+    settings.pixel_error = 8;
+    Scene scene = test::make_body_scene(
+        test::make_cube_sphere(3),
+        test::make_displacement(test::make_random_map(256, 256, 0.12f, 5), DisplacementSpace::object));
+    scene.camera.from = {1.5f, 1, 1};
+    const auto prepared = prepare_scene(scene, settings);
+    const cpu::Tracer tracer(prepared, settings);
+    const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 19);
+    std::vector<cpu::TraceHit> hits(rays.size());
+    tracer.closest_hits(rays, hits);
+    size_t coarser = 0;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        if (!hits[k].is_hit()) continue;
+        const Vec3f p = rays[k].origin + rays[k].direction * hits[k].t;
+        EXPECT_LT(length(tracer.make_surface_point(hits[k]).position - p), 1e-4f) << k;
+        coarser +=
+            unpack_levels(hits[k].levels).patch < prepared->instances[0].levels->at(hits[k].patch).patch;
+    }
+    EXPECT_GT(coarser, 20u);
+}
+
+TEST(Tracer, rays_that_leave_a_surface_do_not_meet_it_where_they_start) {
+    // Modelled far from its own origin and moved back: rounding is that of the object's coordinates.
+    RenderSettings settings;
+    settings.level = 3;
+    Mesh mesh = test::make_cube_sphere(3);
+    for (Vec3f& p : mesh.positions) p = p + Vec3f{300, -200, 100};
+    Scene scene =
+        test::make_body_scene(std::move(mesh), test::make_displacement(test::make_random_map(64, 64, 0.0f, 5),
+                                                                       DisplacementSpace::object));
+    scene.objects[0].world_from_object = make_translation({-300, 200, -100});
+    const auto prepared = prepare_scene(scene, settings);
+    const cpu::Tracer tracer(prepared, settings);
+    const std::vector<cpu::TraceRay> rays = make_rays(1600, 0, 23);
+    std::vector<cpu::TraceHit> hits(rays.size());
+    tracer.closest_hits(rays, hits);
+    std::vector<cpu::TraceRay> spawned;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        if (!hits[k].is_hit()) continue;
+        // The body is convex up to its facets: a ray outward must leave it.
+        const cpu::SurfacePoint point = tracer.make_surface_point(hits[k]);
+        cpu::TraceRay ray;
+        ray.direction = normalize(point.position);
+        ray.origin = tracer.offset_origin(point, ray.direction);
+        spawned.push_back(ray);
+    }
+    std::vector<uint8_t> occluded(spawned.size());
+    tracer.any_hits(spawned, occluded);
+    EXPECT_EQ(std::count(occluded.begin(), occluded.end(), 1), 0);
+    EXPECT_GT(spawned.size(), 400u);
 }
 
 } // namespace

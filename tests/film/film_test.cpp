@@ -47,6 +47,18 @@ TEST(Film, refuses_an_unknown_layer_and_lists_the_known_ones) {
     }
 }
 
+TEST(Film, refuses_a_picture_that_memory_cannot_hold_and_says_what_it_needs) {
+    try {
+        const Film film(1 << 25, 1 << 25, {}, {});
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
+        EXPECT_NE(std::string(error.what()).find("72057594037927936 bytes"), std::string::npos)
+            << error.what();
+    }
+    EXPECT_NO_THROW(Film(1 << 25, 1 << 25, {0, 0, 8, 8}, {}));
+}
+
 TEST(Film, averages_colour_and_describes_the_nearest_hit) {
     Film film(8, 6, {2, 1, 6, 5}, kAllLayers);
     film.add_sample(3, 2, make_hit(1, 10, 7));

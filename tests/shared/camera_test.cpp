@@ -24,6 +24,18 @@ TEST(Camera, projects_a_point_of_a_ray_back_to_its_pixel) {
     }
 }
 
+TEST(Camera, sends_pinhole_rays_where_a_closed_lens_sends_them) {
+    const scalar::CameraFrame camera = make_test_camera();
+    Random random(3);
+    for (int k = 0; k < 100; ++k) {
+        const Vec2f pixel{random.next() * 640, random.next() * 360};
+        const scalar::CameraRay pinhole = scalar::make_pinhole_ray(camera, pixel);
+        const scalar::CameraRay lens = scalar::make_camera_ray(camera, pixel, random.next_pair());
+        EXPECT_EQ(pinhole.origin, lens.origin);
+        EXPECT_LT(length(pinhole.direction - lens.direction), 3e-7f);
+    }
+}
+
 TEST(Camera, looks_along_the_view_axis_with_up_up_and_right_right) {
     const scalar::CameraFrame camera =
         scalar::make_camera_frame({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 1, {100, 50});

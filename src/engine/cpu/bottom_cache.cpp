@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t kProbeCount = 8;       ///< slots looked at for one key
 constexpr size_t kMeanTreeBytes = 4096; ///< decides the size of the table
+constexpr size_t kLongestSearch = 8192; ///< slots that one eviction looks at
 
 uint64_t hash_key(const TreeKey& key) {
     // Two rounds of the finalizer of Steele, Lea and Flood 2014 (SplitMix64).
@@ -145,8 +146,9 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
     if (!has_room()) {
         free_retired(context);
-        if (!has_room()) evict(context, bytes);
-        free_retired(context);
+        // What is unlinked already becomes free when the other workers move on; more would only empty the
+        // table.
+        if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_) evict(context, bytes);
         if (!has_room()) return nullptr;
     }
     const size_t now = allocated_.fetch_add(bytes) + bytes;
@@ -156,7 +158,9 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     }
     for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
     }
-    return allocate_aligned(bytes);
+    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!memory) allocated_.fetch_sub(bytes);
+    return memory;
 }
 
 void BottomCache::offer(TraceContext& context, CachedTree* tree) {
@@ -166,21 +170,27 @@ void BottomCache::offer(TraceContext& context, CachedTree* tree) {
         if (slots_[(home + probe) & (slot_count_ - 1)].compare_exchange_strong(expected, tree)) return;
     }
     // Every slot of this key is taken: the first one makes way.
-    CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(tree);
-    if (previous) context.retired.push_back({previous, epoch_.fetch_add(1)});
+    if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(tree)) retire(context, previous);
+}
+
+void BottomCache::retire(TraceContext& context, CachedTree* tree) {
+    retired_.fetch_add(tree->byte_count);
+    context.retired.push_back({tree, epoch_.fetch_add(1)});
 }
 
 void BottomCache::evict(TraceContext& context, size_t bytes) {
-    // A little more than asked for, so that the next builds find room without a search.
+    // A little more than asked for, so that the next builds find room without a search; and no endless
+    // search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
+    const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
     size_t unlinked = 0;
-    for (size_t step = 0; step < 2 * slot_count_ && unlinked < target; ++step) {
+    for (size_t step = 0; step < step_count && unlinked < target; ++step) {
         std::atomic<CachedTree*>& slot = slots_[hand_.fetch_add(1) & (slot_count_ - 1)];
         CachedTree* tree = slot.load();
         if (!tree || tree->is_recent.exchange(0)) continue;
         const size_t tree_bytes = tree->byte_count;
         if (!slot.compare_exchange_strong(tree, nullptr)) continue;
-        context.retired.push_back({tree, epoch_.fetch_add(1)});
+        retire(context, tree);
         unlinked += tree_bytes;
     }
 }
@@ -189,9 +199,22 @@ void BottomCache::free_retired(TraceContext& context) {
     uint64_t oldest = epoch_.load();
     for (const TraceContext* other = contexts_.load(); other; other = other->next)
         if (const uint64_t epoch = other->epoch.load()) oldest = std::min(oldest, epoch);
-    const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < oldest; };
-    for (const TraceContext::Retired& retired : context.retired)
-        if (is_free(retired)) free_tree(retired.tree);
+    free_older(context, oldest);
+    // Idle workers cannot free what they retired last: whoever needs the room does it for them.
+    for (TraceContext* other = contexts_.load(); other; other = other->next) {
+        if (other->is_taken.load() || other->is_taken.exchange(true)) continue;
+        free_older(*other, oldest);
+        other->is_taken.store(false);
+    }
+}
+
+void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
+    const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
+    for (const TraceContext::Retired& retired : context.retired) {
+        if (!is_free(retired)) continue;
+        retired_.fetch_sub(retired.tree->byte_count);
+        free_tree(retired.tree);
+    }
     std::erase_if(context.retired, is_free);
 }
 

@@ -1,8 +1,8 @@
 // Bottom trees kept between rays, batches, samples and bounces, under a byte cap.
 //
-// No lock is taken inside a traversal: a look-up reads one slot of a fixed table; a miss builds privately and
-// offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and freed
-// when no worker can hold it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom,
+// No lock is taken inside a traversal: a look-up reads a few slots of a fixed table; a miss builds privately
+// and offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and
+// freed when no worker can hold it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom,
 // section 5.2.3). When the cap leaves no room, a tree lives in the worker's scratch memory for one visit. The
 // image never depends on any of this.
 #pragma once
@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "engine/cpu/bottom_tree.h"
@@ -82,7 +81,9 @@ class BottomCache {
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);
+    void retire(TraceContext& context, CachedTree* tree);
     void free_retired(TraceContext& context);
+    void free_older(TraceContext& context, uint64_t epoch);
     void free_tree(CachedTree* tree);
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
@@ -90,6 +91,7 @@ class BottomCache {
     size_t slot_count_ = 0; ///< power of two, or 0
     std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
     std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};
+    std::atomic<size_t> retired_{0}; ///< bytes unlinked and not freed yet; part of allocated_
     mutable std::atomic<uint64_t> epoch_{1};
     std::atomic<TraceContext*> contexts_{nullptr};
 };

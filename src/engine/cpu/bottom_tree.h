@@ -41,12 +41,6 @@ struct TreeKey {
     friend bool operator==(const TreeKey&, const TreeKey&) = default;
 };
 
-inline uint32_t pack_levels(const PatchLevels& levels) {
-    uint32_t packed = levels.patch;
-    for (int k = 0; k < 4; ++k) packed |= uint32_t(levels.edge[k]) << (4 + 4 * k);
-    return packed;
-}
-
 /// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock
 /// hand.
 struct alignas(64) CachedTree {

@@ -11,6 +11,8 @@
 #define RELIEF_PACKET_TRAVERSAL_INL_H
 #endif
 
+#include <optional>
+
 #include "engine/cpu/scene_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,18 +24,23 @@ inline constexpr int kLeastPacket = 3;
 struct Packet {
     const cpu::TraceRay* world;
     RayState ray[16]; ///< in the space of the current object; hits and t_max live here
-    Lanes16 origin[3], reciprocal[3], t_min;
+    Lanes16 lower_origin[3], upper_origin[3], reciprocal[3], t_min;
     alignas(64) float t_max[16];
     LaneMask active; ///< Query::any: lanes without a hit so far
 
     void load_lanes() {
-        alignas(64) float o[3][16], r[3][16], least[16];
+        alignas(64) float lower[3][16], upper[3][16], r[3][16], least[16];
         for (int lane = 0; lane < 16; ++lane) {
-            for (int k = 0; k < 3; ++k)
-                o[k][lane] = ray[lane].origin[k], r[k][lane] = ray[lane].reciprocal[k];
+            for (int k = 0; k < 3; ++k) {
+                lower[k][lane] = ray[lane].lower_origin[k], upper[k][lane] = ray[lane].upper_origin[k];
+                r[k][lane] = ray[lane].reciprocal[k];
+            }
             least[lane] = ray[lane].t_min, t_max[lane] = ray[lane].t_max;
         }
-        for (int k = 0; k < 3; ++k) origin[k] = Lanes16::load(o[k]), reciprocal[k] = Lanes16::load(r[k]);
+        for (int k = 0; k < 3; ++k) {
+            lower_origin[k] = Lanes16::load(lower[k]), upper_origin[k] = Lanes16::load(upper[k]);
+            reciprocal[k] = Lanes16::load(r[k]);
+        }
         t_min = Lanes16::load(least);
     }
 };
@@ -44,8 +51,8 @@ HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], c
                              LaneMask mask, float& nearest) {
     Lanes16 near[3], far[3];
     for (int k = 0; k < 3; ++k) {
-        const Lanes16 a = (Lanes16(lower[k]) - packet.origin[k]) * packet.reciprocal[k];
-        const Lanes16 b = (Lanes16(upper[k]) - packet.origin[k]) * packet.reciprocal[k];
+        const Lanes16 a = (Lanes16(lower[k]) - packet.lower_origin[k]) * packet.reciprocal[k];
+        const Lanes16 b = (Lanes16(upper[k]) - packet.upper_origin[k]) * packet.reciprocal[k];
         near[k] = min(a, b), far[k] = max(a, b);
     }
     const Lanes16 entry = max(max(near[0], near[1]), max(near[2], packet.t_min));
@@ -148,7 +155,7 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
     const PatchVisit visit =
         enter_patch(scene, context, packet.ray[lane].instance, patch, packet.world[lane].bias);
     LaneMask hits = 0;
-    const Timer timer;
+    const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
     const double built_before = context.counters.bottom_build_s;
     if (visit.levels.patch <= cpu::kTileLevel)
         trace_tree<kQuery>(visit, find_tree(visit, 0), packet, mask, hits);
@@ -158,7 +165,7 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
     context.counters.pairs_with_hit += uint64_t(__builtin_popcount(hits));
     if (context.is_timed)
         context.counters.sampled_bottom_s +=
-            timer.seconds() - (context.counters.bottom_build_s - built_before);
+            timer->seconds() - (context.counters.bottom_build_s - built_before);
 }
 
 /// Walks a wide tree with the packet. visit_leaf(primitive, mask) takes the leaves, go_alone(child, lane) a

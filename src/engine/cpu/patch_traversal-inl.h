@@ -53,14 +53,13 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction
 }
 
 HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, tile, cpu::pack_levels(visit.levels)};
+    const cpu::TreeKey key{visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
     return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels,
                                                   build_tree);
 }
 
 HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile,
-                           cpu::pack_levels(visit.levels)};
+    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile, pack_levels(visit.levels)};
     return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
 }
 
@@ -84,6 +83,7 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
         hit.patch = visit.patch;
+        hit.levels = pack_levels(visit.levels);
         hit.i = uint16_t(tree.cell_x + column + (lane & 3));
         hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
         hit.is_upper = uint8_t(lane >> 3);
@@ -124,6 +124,7 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
         hit.t = distance[cell];
         hit.instance = ray.instance;
         hit.patch = visit.patch;
+        hit.levels = pack_levels(visit.levels);
         hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
         hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
         hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;

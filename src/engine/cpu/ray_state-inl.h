@@ -25,10 +25,14 @@ enum class Query { closest, any };
 /// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), and the same slack for a triangle's own t.
 inline constexpr float kSlabSlack = 1.0000005f;
 
+/// Smaller components of a direction count as zero in box tests.
+inline constexpr float kLeastDirection = 0x1p-120f;
+
 struct RayState {
     float origin[3], direction[3], reciprocal[3];
-    int axis[3];    ///< two minor axes and the major one
-    float shear[3]; ///< of the minor axes; 1 / direction along the major one
+    float lower_origin[3], upper_origin[3]; ///< that lower and upper planes of boxes are measured from
+    int axis[3];                            ///< two minor axes and the major one
+    float shear[3];                         ///< of the minor axes; 1 / direction along the major one
     float t_min, t_max;
     uint32_t instance = kNoIndex;
     cpu::TraceHit hit;
@@ -41,9 +45,14 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
     ray.origin[0] = o.x, ray.origin[1] = o.y, ray.origin[2] = o.z;
     ray.direction[0] = d.x, ray.direction[1] = d.y, ray.direction[2] = d.z;
     for (int k = 0; k < 3; ++k) {
-        const float component = ray.direction[k];
-        ray.reciprocal[k] =
-            1.0f / (std::fabs(component) < 1e-18f ? std::copysign(1e-18f, component) : component);
+        // Along an axis that the ray does not move on, 1 / 0 would make 0 * infinity on a box's very face. A
+        // finite factor, and an origin moved outward by more than rounding, let such a ray touch the box and
+        // miss its neighbours.
+        const bool is_still = std::fabs(ray.direction[k]) < kLeastDirection;
+        const float margin = is_still ? 1e-6f * (std::fabs(ray.origin[k]) + 1e-24f) : 0.0f;
+        ray.reciprocal[k] = 1.0f / (is_still ? kLeastDirection : ray.direction[k]);
+        ray.lower_origin[k] = ray.origin[k] + margin;
+        ray.upper_origin[k] = ray.origin[k] - margin;
     }
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
     const int major = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
@@ -58,10 +67,12 @@ template <size_t W>
 HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayState& ray, Lanes<W>& entry) {
     Lanes<W> near[3], far[3];
     for (int k = 0; k < 3; ++k) {
-        const Lanes<W> origin(ray.origin[k]), reciprocal(ray.reciprocal[k]);
+        const Lanes<W> reciprocal(ray.reciprocal[k]);
+        const Lanes<W> lower = (bound[k] - Lanes<W>(ray.lower_origin[k])) * reciprocal;
+        const Lanes<W> upper = (bound[3 + k] - Lanes<W>(ray.upper_origin[k])) * reciprocal;
         const bool is_negative = ray.reciprocal[k] < 0;
-        near[k] = (bound[is_negative ? 3 + k : k] - origin) * reciprocal;
-        far[k] = (bound[is_negative ? k : 3 + k] - origin) * reciprocal;
+        near[k] = is_negative ? upper : lower;
+        far[k] = is_negative ? lower : upper;
     }
     entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
     const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -14,7 +15,8 @@ namespace relief::cpu {
 
 namespace {
 
-/// One batch in so many measures how much of its time goes into patches; the clock would cost too much in all of them.
+/// One batch in so many measures how much of its time goes into patches; the clock would cost too much in all
+/// of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
 std::vector<Box> compute_patch_boxes(const Surface& surface) {
@@ -41,16 +43,17 @@ WideBvh build_instance_tree(const PreparedScene& scene, const std::vector<WideBv
     return make_wide_bvh(SahBvhBuilder::build(boxes, config));
 }
 
-/// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the patch.
+/// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the
+/// patch.
 struct MicroTriangle {
     Vec3f corner[3];
-    float weight_b, weight_c;  ///< barycentric, of corners 1 and 2
-    float uv_area;             ///< in the patch's (u, v)
+    float weight_b, weight_c; ///< barycentric, of corners 1 and 2
+    float uv_area;            ///< in the patch's (u, v)
 };
 
 /// `samples` is null on a surface without displacement.
-MicroTriangle make_micro_triangle(const Surface& surface, const PatchSamples* samples, const PatchLevels& levels,
-                                  const TraceHit& hit) {
+MicroTriangle make_micro_triangle(const Surface& surface, const PatchSamples* samples,
+                                  const PatchLevels& levels, const TraceHit& hit) {
     const float side = float(1u << levels.patch);
     const float x = std::clamp(hit.u * side - float(hit.i), 0.0f, 1.0f);
     const float y = std::clamp(hit.v * side - float(hit.j), 0.0f, 1.0f);
@@ -75,10 +78,28 @@ MicroTriangle make_micro_triangle(const Surface& surface, const PatchSamples* sa
     return triangle;
 }
 
+float largest_coordinate(const Vec3f& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+/// A point is interpolated between corners and transformed, and the ray that leaves it is transformed back:
+/// each step errs by a few units in the last place of the largest number that it adds up.
+float bound_position_error(const Affine& world_from_object, const MicroTriangle& triangle,
+                           const Vec3f& position) {
+    constexpr float kUnits = 32 * 0x1p-24f;
+    float corner = 0, row = 0;
+    for (const Vec3f& p : triangle.corner) corner = std::max(corner, largest_coordinate(p));
+    for (const Vec3f& r : world_from_object.rows)
+        row = std::max(row, std::fabs(r.x) + std::fabs(r.y) + std::fabs(r.z));
+    return kUnits *
+           (row * corner + largest_coordinate(world_from_object.translation) + largest_coordinate(position));
+}
+
 /// (i, j, is_upper) of the cell that holds hit.u, hit.v; on a triangle (u, v) is folded into v <= u.
 void locate_cell(bool is_triangle, uint32_t side, TraceHit& hit) {
     if (is_triangle && hit.v > hit.u) std::swap(hit.u, hit.v);
-    const float x = std::clamp(hit.u, 0.0f, 1.0f) * float(side), y = std::clamp(hit.v, 0.0f, 1.0f) * float(side);
+    const float x = std::clamp(hit.u, 0.0f, 1.0f) * float(side),
+                y = std::clamp(hit.v, 0.0f, 1.0f) * float(side);
     hit.i = uint16_t(std::min(uint32_t(x), side - 1));
     hit.j = uint16_t(std::min(uint32_t(y), side - 1));
     hit.is_upper = !is_triangle && y - float(hit.j) > x - float(hit.i);
@@ -90,24 +111,35 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
     if (!surface.has_displacement) {
         // Two triangles: linear on each, as their positions are.
-        return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
+        return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v
+                      : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
     }
     return (uv(0) * (1 - u) + uv(1) * u) * (1 - v) + (uv(3) * (1 - u) + uv(2) * u) * v;
 }
 
-TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv, uint32_t bias) {
+TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv,
+                    uint32_t bias) {
     const Instance& placed = scene.instances[instance];
     TraceHit hit;
     hit.instance = instance, hit.patch = patch;
     hit.u = uv.x, hit.v = uv.y;
     hit.bias = uint8_t(bias);
-    const bool is_triangle = scene.surfaces[placed.surface].quads[patch].is_triangle();
-    locate_cell(is_triangle, 1u << placed.levels->at(patch).biased(bias).patch, hit);
+    const PatchLevels levels = placed.levels->at(patch).biased(bias);
+    hit.levels = pack_levels(levels);
+    locate_cell(scene.surfaces[placed.surface].quads[patch].is_triangle(), 1u << levels.patch, hit);
     return hit;
 }
 
-/// Null on a surface without displacement.
-const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit, PatchSamplesCache& patches) {
+/// Nothing on a surface without displacement.
+std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit) {
+    const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
+    return surface.has_displacement ? std::optional<PatchSamples>(std::in_place, surface, hit.patch)
+                                    : std::nullopt;
+}
+
+/// The same through a cache; null on a surface without displacement.
+const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit,
+                                 PatchSamplesCache& patches) {
     const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
     return surface.has_displacement ? &patches.get(surface, hit.patch) : nullptr;
 }
@@ -116,19 +148,21 @@ const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit
 SurfacePoint make_facet_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
-    const PatchLevels levels = instance.levels->at(hit.patch).biased(hit.bias);
+    const PatchLevels levels = unpack_levels(hit.levels);
     const MicroTriangle triangle = make_micro_triangle(surface, samples, levels, hit);
     const Vec3f &a = triangle.corner[0], &b = triangle.corner[1], &c = triangle.corner[2];
 
     SurfacePoint point;
     point.instance = hit.instance, point.patch = hit.patch;
-    const Vec3f local = a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
+    const Vec3f local =
+        a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
     point.position = transform_point(instance.world_from_object, local);
     const Vec3f edge_b = transform_vector(instance.world_from_object, b - a);
     const Vec3f edge_c = transform_vector(instance.world_from_object, c - a);
     const Vec3f area = cross(edge_b, edge_c) * (instance.is_mirrored ? -1.0f : 1.0f);
     point.geometric_normal = normalize(area);
     point.area_per_uv = 0.5f * length(area) / triangle.uv_area;
+    point.position_error = bound_position_error(instance.world_from_object, triangle, point.position);
     return point;
 }
 
@@ -136,11 +170,10 @@ SurfacePoint make_facet_point(const PreparedScene& scene, const TraceHit& hit, c
 SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
-    const int level = instance.levels->at(hit.patch).biased(hit.bias).patch;
+    const int level = unpack_levels(hit.levels).patch;
     SurfacePoint point = make_facet_point(scene, hit, samples);
-    const Vec3f smooth =
-        samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
-                : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
+    const Vec3f smooth = samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
+                                 : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
     point.shading_normal = normalize(transform_normal(instance.object_from_world, smooth));
     if (dot(point.shading_normal, point.shading_normal) == 0) point.shading_normal = point.geometric_normal;
     if (dot(point.shading_normal, point.geometric_normal) < 0) point.shading_normal = -point.shading_normal;
@@ -157,8 +190,7 @@ struct Tracer::Implementation {
     std::unique_ptr<BottomCache> cache;
     SceneView view;
 
-    template <class Trace>
-    void trace_batch(const Trace& trace) const {
+    template <class Trace> void trace_batch(const Trace& trace) const {
         TraceContext& context = cache->acquire();
         context.is_timed = context.batch_count++ % kTimedBatchInterval == 0;
         const Timer timer;
@@ -181,33 +213,42 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     Implementation& self = *implementation_;
     self.kernels = find_kernels(settings.isa);
     if (!self.kernels)
-        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for", "",
-                                                "`relief devices` lists those that work"});
+        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
+                                                "", "`relief devices` lists those that work"});
     for (const Surface& surface : scene_->surfaces) self.surface_trees.push_back(build_surface_tree(surface));
     self.instance_tree = build_instance_tree(*scene_, self.surface_trees);
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
-    const float pixel = float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
-    self.view = {scene_->instances.data(), scene_->surfaces.data(), self.surface_trees.data(), &self.instance_tree,
-                 self.cache.get(),         settings.leaf,           settings.lod,              settings.pixel_error * pixel};
+    const float pixel =
+        float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
+    self.view = {scene_->instances.data(),
+                 scene_->surfaces.data(),
+                 self.surface_trees.data(),
+                 &self.instance_tree,
+                 self.cache.get(),
+                 settings.leaf,
+                 settings.lod,
+                 settings.pixel_error * pixel};
 }
 
 Tracer::~Tracer() = default;
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
     implementation_->trace_batch([&](TraceContext& context) {
-        implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(), rays.size());
+        implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(),
+                                               rays.size());
     });
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded) const {
     implementation_->trace_batch([&](TraceContext& context) {
-        implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(), rays.size());
+        implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(),
+                                           rays.size());
     });
 }
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
-    PatchSamplesCache patches(1);
-    return make_surface_point(hit, patches);
+    const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
+    return make_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const {
@@ -215,8 +256,9 @@ SurfacePoint Tracer::make_surface_point(const TraceHit& hit, PatchSamplesCache& 
 }
 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
-    PatchSamplesCache patches(1);
-    return evaluate_point(instance, patch, uv, bias, patches);
+    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
+    const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
+    return make_facet_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
@@ -226,12 +268,8 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
 }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
-    // Interpolating and transforming a point errs by a dozen units in the last place of its largest coordinate.
-    constexpr float kRelativeOffset = 64 * 0x1p-24f;
-    const Vec3f& p = point.position;
-    const float largest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     const float side = dot(direction, point.geometric_normal) < 0 ? -1.0f : 1.0f;
-    return p + point.geometric_normal * (side * kRelativeOffset * largest);
+    return point.position + point.geometric_normal * (side * point.position_error);
 }
 
 void Tracer::add_statistics(Statistics& statistics) const {
@@ -243,7 +281,8 @@ void Tracer::add_statistics(Statistics& statistics) const {
     statistics.bottom_levels.resize(kTileLevel + 1);
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
-    const double share = counters.sampled_trace_s > 0 ? counters.sampled_bottom_s / counters.sampled_trace_s : 0;
+    const double share =
+        counters.sampled_trace_s > 0 ? counters.sampled_bottom_s / counters.sampled_trace_s : 0;
     statistics.bottom_build_s += counters.bottom_build_s;
     statistics.bottom_traversal_s += counters.trace_s * share;
     statistics.top_traversal_s += counters.trace_s * (1 - share);

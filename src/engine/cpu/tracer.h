@@ -17,29 +17,32 @@ struct TraceRay {
     float t_min = 0;
     Vec3f direction{};
     float t_max = std::numeric_limits<float>::infinity();
-    uint32_t bias = 0;  ///< surface M_bias is seen: every level lowered by it
+    uint32_t bias = 0; ///< surface M_bias is seen: every level lowered by it
 };
 
-/// Where a ray met the surface. `i`, `j` is the cell at the patch's biased level, `is_upper` its second triangle
-/// (corners 00, 11, 01; the first is 00, 10, 11).
+/// Where a ray met the surface. `i`, `j` is the cell at the patch's biased level, `is_upper` its second
+/// triangle (corners 00, 11, 01; the first is 00, 10, 11).
 struct TraceHit {
-    float t = std::numeric_limits<float>::infinity();  ///< infinity: nothing
+    float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing
     uint32_t instance = kNoIndex;
     uint32_t patch = kNoIndex;
-    float u = 0, v = 0;  ///< on the patch, [0, 1]^2; on a triangle primitive likewise, with v <= u
+    float u = 0, v = 0; ///< on the patch, [0, 1]^2; on a triangle primitive likewise, with v <= u
     uint16_t i = 0, j = 0;
     uint8_t is_upper = 0;
     uint8_t bias = 0;
+    uint32_t levels = 0; ///< of the patch as this ray saw it: pack_levels (surface/surface.h)
     bool is_hit() const { return instance != kNoIndex; }
 };
 
 /// A point of a surface, world space.
 struct SurfacePoint {
     Vec3f position{};
-    Vec3f geometric_normal{};  ///< of the micro-triangle, unit length, side of the winding (not of the ray)
-    Vec3f shading_normal{};    ///< unit length, same side as geometric_normal
-    Vec2f uv{};                ///< texture coordinates; (0, 0) without
-    float area_per_uv = 0;     ///< world area of the micro-triangle over its share of the patch's (u, v), which sum to 1
+    Vec3f geometric_normal{}; ///< of the micro-triangle, unit length, side of the winding (not of the ray)
+    Vec3f shading_normal{};   ///< unit length, same side as geometric_normal
+    Vec2f uv{};               ///< texture coordinates; (0, 0) without
+    float area_per_uv =
+        0; ///< world area of the micro-triangle over its share of the patch's (u, v), which sum to 1
+    float position_error = 0; ///< how far rounding may have moved the position, and a ray that starts there
     uint32_t instance = kNoIndex;
     uint32_t patch = kNoIndex;
 };
@@ -50,11 +53,11 @@ class Tracer {
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
     ~Tracer();
 
-    /// Nearest hit of each ray, in (t_min, t_max). Rays that start together and go the same way are traced in packets:
-    /// give neighbours in runs of 16.
+    /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in
+    /// packets: give neighbours in runs of 16.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits) const;
 
-    /// occluded[i] = 1 where anything lies in (t_min, t_max), else 0.
+    /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0.
     void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded) const;
 
     /// All that shading needs to know of a hit.
@@ -62,14 +65,14 @@ class Tracer {
     /// The same by way of the caller's cache of patches.
     SurfacePoint make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const;
 
-    /// Point (u, v) of a patch on surface M_bias: used to sample lights, and to start a bounce ray of a coarser bias on
-    /// the surface that it sees. Shading normal and uv are left out.
+    /// Point (u, v) of a patch on surface M_bias: used to sample lights, and to start a bounce ray of a
+    /// coarser bias on the surface that it sees. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
                                 PatchSamplesCache& patches) const;
 
-    /// Origin for a ray that leaves `point` into `direction`: moved off the surface by the rounding error of the
-    /// position, along the geometric normal, to the side that the direction is on.
+    /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
+    /// along the geometric normal, to the side that the direction is on.
     Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
 
     void add_statistics(Statistics& statistics) const;
