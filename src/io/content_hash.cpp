@@ -1,5 +1,6 @@
 #include "io/content_hash.h"
 
+#include <array>
 #include <set>
 
 namespace relief {
@@ -12,10 +13,14 @@ void add_scene_content(ContentHash& hash, const Scene& scene) {
     std::set<const Texture*> seen;
     const auto add_texture = [&](const std::shared_ptr<const Texture>& texture) {
         if (!texture || !seen.insert(texture.get()).second) return;
+        hash.add(std::array{texture->width, texture->height, texture->channel_count});
         hash.add(texture->floats), hash.add(texture->halves);
     };
     for (const Displacement& displacement : scene.displacements)
-        for (const MapTile& tile : displacement.tiles) add_texture(tile.texture);
+        for (const MapTile& tile : displacement.tiles) {
+            hash.add(std::array{uint32_t(tile.udim)});
+            add_texture(tile.texture);
+        }
     for (const Material& material : scene.materials)
         add_texture(material.base_color_texture), add_texture(material.roughness_texture);
     if (scene.environment) add_texture(scene.environment->texture);

@@ -1,6 +1,7 @@
 // A stable 64-bit fingerprint of content.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -29,6 +30,9 @@ class ContentHash {
     template <class T> void add(const std::vector<T>& values) {
         add_bytes(values.data(), values.size() * sizeof(T));
     }
+    template <size_t N> void add(const std::array<uint32_t, N>& values) {
+        add_bytes(values.data(), sizeof values);
+    }
     uint64_t value() const { return state_; }
 
   private:
@@ -39,7 +43,7 @@ class ContentHash {
     uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-/// Adds the meshes and every texture of a scene once.
+/// Adds the meshes, the numbers of map tiles, and the size and texels of every texture of a scene once.
 void add_scene_content(ContentHash& hash, const Scene& scene);
 
 } // namespace relief

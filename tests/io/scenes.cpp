@@ -177,6 +177,24 @@ TEST_F(SceneFiles, the_hash_follows_the_content_and_not_the_picture_size) {
     EXPECT_NE(hash, parse(with_render(R"({"width": 10})")).hash);
 }
 
+TEST_F(SceneFiles, the_hash_follows_the_shape_of_maps_and_the_numbers_of_tiles) {
+    const std::vector<float> texels(12, 0.5f);
+    const auto hash_map = [&](int width, int height) {
+        write_pixels<float>("shape.exr", width, height, 3, OIIO::TypeDesc::FLOAT, texels);
+        return parse(with_map(R"("file": "shape.exr")")).hash;
+    };
+    EXPECT_NE(hash_map(4, 1), hash_map(1, 4));
+    const auto hash_tile = [&](const std::string& number) {
+        const std::string name = "tile." + number + ".exr";
+        write_pixels<float>(name, 2, 2, 3, OIIO::TypeDesc::FLOAT, texels);
+        const uint64_t hash = parse(with_map(R"("file": "tile.<UDIM>.exr")")).hash;
+        std::filesystem::remove(folder_ / name);
+        return hash;
+    };
+    EXPECT_NE(hash_tile("1001"), hash_tile("1002"));
+    EXPECT_EQ(hash_tile("1001"), hash_tile("1001"));
+}
+
 TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
     write_pixels<float>("env.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3, 4, 5, 6});
     for (const char* name : {"h.1001.exr", "h.1002.exr"})
