@@ -128,6 +128,15 @@ void decide_midlevel(const DisplacementRequest& request, Displacement& map, Asse
 
 } // namespace
 
+std::span<const std::string_view> get_preset_names() {
+    static constexpr auto kNames = [] {
+        std::array<std::string_view, kPresets.size()> names;
+        for (size_t i = 0; i < names.size(); ++i) names[i] = kPresets[i].first;
+        return names;
+    }();
+    return kNames;
+}
+
 DisplacementType parse_displacement_type(std::string_view text) {
     return find_name(NameTable<DisplacementType>(kTypes), text, "type");
 }

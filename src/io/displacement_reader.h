@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ struct AxisText {
 /// "t,-n,b" or "x,-z,y": the axis that each channel moves along. Throws bad_input with a hint.
 AxisText parse_axes(std::string_view text);
 std::string format_axes(const AxisMap& axes, DisplacementSpace space);
+
+/// Presets that a scene or a command line may name.
+std::span<const std::string_view> get_preset_names();
 
 DisplacementType parse_displacement_type(std::string_view text);
 DisplacementSpace parse_displacement_space(std::string_view text);

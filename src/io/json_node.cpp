@@ -107,13 +107,13 @@ void JsonNode::rethrow_with_place(const Error& error) const {
     throw Error(error.kind(), {message, place(), error.hint()});
 }
 
-void JsonNode::check_keys(std::initializer_list<std::string_view> keys) const {
+void JsonNode::check_keys(std::span<const std::string_view> keys) const {
     if (!value_->is_object()) fail_type("an object");
     for (const auto& item : value_->items()) {
         if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
         const std::string inside = path_.empty() ? std::string() : " in " + path_;
         throw Error(ErrorKind::bad_input, {fmt::format("unknown key '{}'{}", item.key(), inside), *file_,
-                                           suggest_word(item.key(), {keys.begin(), keys.size()})});
+                                           suggest_word(item.key(), keys)});
     }
 }
 

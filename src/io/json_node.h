@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cfloat>
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,7 +35,7 @@ class JsonNode {
     [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const;
 
     /// Refuses anything but an object with some of these keys.
-    void check_keys(std::initializer_list<std::string_view> keys) const;
+    void check_keys(std::span<const std::string_view> keys) const;
     std::optional<JsonNode> find(std::string_view key) const;
     JsonNode get(std::string_view key) const;
     /// Members of an object in file order.

@@ -9,6 +9,7 @@
 #include "io/content_hash.h"
 #include "io/file_system.h"
 #include "io/json_node.h"
+#include "io/scene_keys.h"
 #include "io/scene_sections.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -45,7 +46,7 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
 }
 
 Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets) {
-    node.check_keys({"file"});
+    node.check_keys(scene_keys::kMesh);
     const JsonNode file = node.get("file");
     const std::filesystem::path path = assets.resolve(file.as_string());
     Mesh mesh = file.with_place([&] { return load_mesh(path); });
@@ -58,7 +59,7 @@ struct ObjectNames {
 };
 
 Object read_object(const JsonNode& node, const ObjectNames& names) {
-    node.check_keys({"name", "mesh", "displacement", "material", "transform"});
+    node.check_keys(scene_keys::kObject);
     Object object;
     if (const auto name = node.find("name")) object.name = name->as_string();
     object.mesh = find_named(node.get("mesh"), names.meshes, "mesh");
@@ -71,8 +72,7 @@ Object read_object(const JsonNode& node, const ObjectNames& names) {
 }
 
 void read_root(const JsonNode& root, Scene& scene, AssetCache& assets) {
-    root.check_keys({"version", "render", "camera", "environment", "materials", "displacements", "meshes",
-                     "objects", "lights"});
+    root.check_keys(scene_keys::kRoot);
     if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
         version->fail("only version 1 is known", "use a newer version of the program");
     if (const auto node = root.find("render")) scene.picture = read_picture(*node);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/displacement_reader.h"
+#include "io/scene_keys.h"
 #include "math/affine.h"
 #include "relief/suggest.h"
 
@@ -58,7 +59,7 @@ Affine read_matrix(const JsonNode& node) {
 } // namespace
 
 PictureDefaults read_picture(const JsonNode& node) {
-    node.check_keys({"width", "height", "spp", "bounces", "seed"});
+    node.check_keys(scene_keys::kPicture);
     PictureDefaults picture;
     picture.width = read_int(node, "width", 1, kMaxPictureSize);
     picture.height = read_int(node, "height", 1, kMaxPictureSize);
@@ -70,7 +71,7 @@ PictureDefaults read_picture(const JsonNode& node) {
 }
 
 Camera read_camera(const JsonNode& node) {
-    node.check_keys({"from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance"});
+    node.check_keys(scene_keys::kCamera);
     Camera camera;
     read_vec3(node, "from", camera.from);
     read_vec3(node, "to", camera.to);
@@ -84,7 +85,7 @@ Camera read_camera(const JsonNode& node) {
 }
 
 Affine read_transform(const JsonNode& node) {
-    node.check_keys({"translate", "rotate_degrees", "scale", "matrix"});
+    node.check_keys(scene_keys::kTransform);
     Affine transform;
     if (const auto matrix = node.find("matrix")) {
         if (node.members().size() > 1)
@@ -111,13 +112,13 @@ Light read_light(const JsonNode& node) {
     const JsonNode type = node.get("type");
     const std::string name = type.as_string();
     if (name == "sun") {
-        node.check_keys({"type", "direction", "angle_degrees", "color", "strength"});
+        node.check_keys(scene_keys::kSun);
         read_vec3(node, "direction", light.direction);
         read_float(node, "angle_degrees", light.angle_degrees, 0, 90);
         if (length(light.direction) == 0) node.fail("the direction has no length");
     } else if (name == "point") {
         light.type = LightType::point;
-        node.check_keys({"type", "position", "radius", "color", "strength"});
+        node.check_keys(scene_keys::kPoint);
         read_vec3(node, "position", light.position);
         read_float(node, "radius", light.radius, 0);
     } else {
@@ -130,7 +131,7 @@ Light read_light(const JsonNode& node) {
 }
 
 Environment read_environment(const JsonNode& node, AssetCache& assets) {
-    node.check_keys({"file", "color", "strength", "rotate_degrees"});
+    node.check_keys(scene_keys::kEnvironment);
     Environment environment;
     environment.texture = read_texture_key(node, "file", TextureUse::radiance, assets);
     read_vec3(node, "color", environment.color, 0);
@@ -140,8 +141,7 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
 }
 
 Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets) {
-    node.check_keys({"base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "ior",
-                     "emission"});
+    node.check_keys(scene_keys::kMaterial);
     Material material;
     material.name = name;
     read_vec3(node, "base_color", material.base_color, 0, 1);
@@ -155,7 +155,7 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
 }
 
 Displacement read_displacement(const JsonNode& node, const std::string& name, AssetCache& assets) {
-    node.check_keys({"type", "file", "preset", "space", "axes", "midlevel", "scale", "flip_v", "wrap"});
+    node.check_keys(scene_keys::kDisplacement);
     DisplacementRequest request;
     request.name = name;
     const auto as_text = [](const JsonNode& n) { return n.as_string(); };

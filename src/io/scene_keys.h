@@ -1,0 +1,30 @@
+// The keys that each section of a scene file may hold. docs/scene.schema.json lists the same ones, and a test
+// compares the two.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace relief::scene_keys {
+
+template <class... Text> constexpr auto make_keys(Text... text) {
+    return std::array<std::string_view, sizeof...(text)>{text...};
+}
+
+inline constexpr auto kRoot = make_keys("version", "render", "camera", "environment", "materials",
+                                        "displacements", "meshes", "objects", "lights");
+inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed");
+inline constexpr auto kCamera =
+    make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance");
+inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees");
+inline constexpr auto kMaterial = make_keys("base_color", "base_color_texture", "roughness",
+                                            "roughness_texture", "metallic", "ior", "emission");
+inline constexpr auto kDisplacement =
+    make_keys("type", "file", "preset", "space", "axes", "midlevel", "scale", "flip_v", "wrap");
+inline constexpr auto kMesh = make_keys("file");
+inline constexpr auto kObject = make_keys("name", "mesh", "displacement", "material", "transform");
+inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");
+inline constexpr auto kSun = make_keys("type", "direction", "angle_degrees", "color", "strength");
+inline constexpr auto kPoint = make_keys("type", "position", "radius", "color", "strength");
+
+} // namespace relief::scene_keys

@@ -1,0 +1,94 @@
+// docs/scene.schema.json and the reader agree: the same keys in every section, the same names and limits.
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "io/displacement_reader.h"
+#include "io/scene_keys.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+namespace {
+
+using nlohmann::json;
+using Names = std::set<std::string>;
+
+json load_schema() {
+    std::ifstream stream(RELIEF_SCHEMA);
+    return json::parse(stream);
+}
+
+const json& at(const json& root, const char* pointer) { return root.at(json::json_pointer(pointer)); }
+
+/// Keys of one object of the schema, which must allow no others.
+Names get_keys(const json& object) {
+    EXPECT_EQ(object.at("additionalProperties"), false);
+    Names names;
+    for (const auto& [name, value] : object.at("properties").items()) names.insert(name);
+    return names;
+}
+
+Names make_names(std::span<const std::string_view> keys) { return {keys.begin(), keys.end()}; }
+
+size_t count_closed_objects(const json& node) {
+    size_t count = 0;
+    if (node.is_object() && node.contains("properties") && node["properties"].is_object()) ++count;
+    if (node.is_structured())
+        for (const json& child : node) count += count_closed_objects(child);
+    return count;
+}
+
+} // namespace
+
+TEST(Schema, knows_the_keys_that_the_reader_knows) {
+    const json schema = load_schema();
+    const auto expect_keys = [&](const char* pointer, std::span<const std::string_view> keys) {
+        EXPECT_EQ(get_keys(at(schema, pointer)), make_names(keys)) << pointer;
+    };
+    expect_keys("", scene_keys::kRoot);
+    expect_keys("/properties/render", scene_keys::kPicture);
+    expect_keys("/properties/camera", scene_keys::kCamera);
+    expect_keys("/properties/environment", scene_keys::kEnvironment);
+    expect_keys("/properties/materials/additionalProperties", scene_keys::kMaterial);
+    expect_keys("/properties/displacements/additionalProperties", scene_keys::kDisplacement);
+    expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
+    expect_keys("/properties/objects/items", scene_keys::kObject);
+    expect_keys("/properties/lights/items/oneOf/0", scene_keys::kSun);
+    expect_keys("/properties/lights/items/oneOf/1", scene_keys::kPoint);
+    // A transform is either parts or a matrix.
+    Names transform;
+    for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
+        transform.merge(get_keys(choice));
+    EXPECT_EQ(transform, make_names(scene_keys::kTransform));
+    EXPECT_EQ(count_closed_objects(schema), 12u) << "an object of the schema is compared with nothing";
+}
+
+TEST(Schema, names_only_what_the_reader_takes) {
+    const json schema = load_schema();
+    const json& map = at(schema, "/properties/displacements/additionalProperties/properties");
+    for (const std::string name : map.at("type").at("enum")) EXPECT_NO_THROW(parse_displacement_type(name));
+    for (const std::string name : map.at("space").at("enum")) EXPECT_NO_THROW(parse_displacement_space(name));
+    for (const std::string name : map.at("wrap").at("enum")) EXPECT_NO_THROW(parse_wrap_mode(name));
+    const std::vector<std::string> presets = map.at("preset").at("enum");
+    const std::span<const std::string_view> known = get_preset_names();
+    EXPECT_EQ(Names(presets.begin(), presets.end()), make_names(known));
+}
+
+TEST(Schema, has_the_limits_of_the_library) {
+    const json schema = load_schema();
+    const json& render = at(schema, "/properties/render/properties");
+    EXPECT_EQ(render.at("width").at("maximum"), kMaxPictureSize);
+    EXPECT_EQ(render.at("height").at("maximum"), kMaxPictureSize);
+    EXPECT_EQ(render.at("spp").at("maximum"), kMaxSamples);
+    EXPECT_EQ(render.at("bounces").at("maximum"), kMaxBounces);
+    EXPECT_EQ(render.at("seed").at("maximum"), 4294967295u);
+}
+
+} // namespace relief
