@@ -1,7 +1,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,10 +34,7 @@ Scene load_input(const RenderOptions& options) {
 
 void write_statistics(const std::filesystem::path& file, const Statistics& statistics,
                       const RenderSettings& settings) {
-    std::ofstream stream(file);
-    stream << make_statistics_json(statistics, settings).dump(2) << '\n';
-    stream.close();
-    if (!stream) throw Error(ErrorKind::failed, {"the statistics could not be written", file.string(), ""});
+    write_text_file(file, make_statistics_json(statistics, settings).dump(2) + "\n");
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

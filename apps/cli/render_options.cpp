@@ -188,11 +188,6 @@ void add_report_options(CLI::App& verb, RenderOptions& o) {
     verb.add_flag("--strict", o.is_strict, "exit 6 when there were warnings");
 }
 
-bool is_existing_folder(const std::filesystem::path& folder) {
-    std::error_code ignored;
-    return std::filesystem::is_directory(folder.empty() ? "." : folder, ignored);
-}
-
 } // namespace
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {
@@ -228,8 +223,7 @@ void complete_render_options(RenderOptions& o) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
     check_writable(o.output);
-    if (!o.statistics_file.empty() && !is_existing_folder(o.statistics_file.parent_path()))
-        throw Error(ErrorKind::failed, {"its folder does not exist", o.statistics_file.string(), ""});
+    if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }
 
 Window make_tile_window(const Window& window, const Tile& tile) {

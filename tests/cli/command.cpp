@@ -57,7 +57,7 @@ void CommandTest::TearDown() {
 
 CommandResult CommandTest::run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
 
-pid_t CommandTest::start(const std::vector<std::string>& arguments) {
+pid_t CommandTest::start(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
     std::vector<char*> words;
     std::string program = RELIEF_BINARY;
     words.push_back(program.data());
@@ -69,6 +69,7 @@ pid_t CommandTest::start(const std::vector<std::string>& arguments) {
     redirect(folder_ / "stdout.txt", STDOUT_FILENO);
     redirect(folder_ / "stderr.txt", STDERR_FILENO);
     if (chdir(folder_.c_str()) != 0) _exit(127);
+    if (prepare) prepare();
     execv(program.c_str(), words.data());
     _exit(127);
 }

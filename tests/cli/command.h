@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ class CommandTest : public testing::Test {
     /// Runs `relief` with these arguments inside the folder.
     CommandResult run(const std::vector<std::string>& arguments);
 
-    /// Starts it without waiting; `finish` waits and collects.
-    pid_t start(const std::vector<std::string>& arguments);
+    /// Starts it without waiting; `finish` waits and collects. `prepare` runs in the new process before it
+    /// becomes the command, and may call only what is safe after fork().
+    pid_t start(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
     CommandResult finish(pid_t process);
 
     /// Renders the bumpy plane, 24x16 pixels and 4 samples unless the arguments say otherwise.

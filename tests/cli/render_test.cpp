@@ -1,12 +1,18 @@
 // Whole renders: the picture, its parts, its statistics and its interruption.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "command.h"
 #include "relief/io.h"
+#include "small_disk.h"
 
 namespace relief::cli {
 namespace {
@@ -150,6 +156,61 @@ TEST_F(Render, statistics_hold_every_stable_key) {
     EXPECT_GT(s["time_s"]["total"], 0.0);
 }
 
+TEST_F(Render, statistics_add_up) {
+    render_ok("a.exr", {"--stats", "s.json", "--level", "4"});
+    const json s = json::parse(read("s.json"));
+    const json& rays = s["rays"];
+    for (const char* kind : {"camera", "shadow", "bounce"}) EXPECT_GT(rays[kind], 0) << kind;
+    EXPECT_EQ(rays["total"], rays["camera"].get<uint64_t>() + rays["shadow"].get<uint64_t>() +
+                                 rays["bounce"].get<uint64_t>());
+    EXPECT_GT(rays["per_second"], 0.0);
+    const json& memory = s["memory_bytes"];
+    uint64_t parts = 0;
+    for (const char* kind : {"geometry", "structures", "displacement", "bottom_cache", "ray_buffers"}) {
+        EXPECT_GT(memory[kind], 0) << kind;
+        parts += memory[kind].get<uint64_t>();
+    }
+    EXPECT_EQ(memory["total"], parts);
+    EXPECT_GE(memory["peak_resident"], memory["total"]);
+    EXPECT_GE(s["pairs"]["emitted"], s["pairs"]["with_hit"]);
+    EXPECT_GT(s["pairs"]["with_hit"], 0);
+    EXPECT_GT(s["bottom"]["built"], 0);
+    uint64_t built = 0;
+    for (const json& count : s["bottom"]["levels"]) built += count.get<uint64_t>();
+    EXPECT_EQ(s["bottom"]["built"], built);
+    const json& time = s["time_s"];
+    for (const char* part : {"load", "prepare", "first_image", "render", "write"}) {
+        EXPECT_GT(time[part], 0.0) << part;
+        EXPECT_LE(time[part], time["total"]) << part;
+    }
+    EXPECT_LE(time["load"].get<double>() + time["prepare"].get<double>() + time["render"].get<double>() +
+                  time["write"].get<double>(),
+              time["total"].get<double>());
+    for (const auto& [stage, seconds] : s["stage_s"].items()) EXPECT_GE(seconds, 0.0) << stage;
+}
+
+TEST_F(Render, the_structure_and_traversal_that_exist_can_be_chosen) {
+    render_ok("a.exr", {"--structure", "bvh", "--traversal", "wide"});
+}
+
+TEST_F(Render, a_picture_that_fills_the_disk_goes_elsewhere) {
+    for (const char* folder : {"full", "spare"}) std::filesystem::create_directory(folder_ / folder);
+    const std::string temporary = (folder_ / "spare").string();
+    const pid_t process = start(
+        {"render", "plane.obj", "--size", "96x96", "--spp", "1", "--bounces", "0", "-o", "full/a.exr"}, [&] {
+            if (!mount_small_disk("full", "size=16k")) _exit(kNoSmallDisk);
+            setenv("TMPDIR", temporary.c_str(), 1);
+        });
+    const CommandResult result = finish(process);
+    if (result.exit_code == kNoSmallDisk) GTEST_SKIP() << "no small disk can be made here";
+    EXPECT_EQ(result.exit_code, 1) << result.errors;
+    EXPECT_NE(result.errors.find("full/a.exr"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("No space left"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("it was written to " + temporary + "/a.exr"), std::string::npos)
+        << result.errors;
+    EXPECT_EQ(read_image(folder_ / "spare" / "a.exr").width, 96);
+}
+
 TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture) {
     const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576", "--bounces",
                                  "0", "--progress", "json", "-o", "part.exr"});
@@ -160,7 +221,13 @@ TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture) {
     EXPECT_EQ(result.exit_code, 130) << result.errors;
     const Image image = read_image(folder_ / "part.exr");
     EXPECT_EQ(image.width, 64);
-    EXPECT_TRUE(image.find_channel("samples.Y").has_value());
+    const std::optional<size_t> samples = image.find_channel("samples.Y");
+    ASSERT_TRUE(samples.has_value());
+    float most = 0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) most = std::max(most, image.at(x, y, *samples));
+    EXPECT_GT(most, 0);
+    EXPECT_LT(most, 1048576);
 }
 
 TEST_F(Render, one_pixel_is_explained_without_a_picture) {

@@ -60,6 +60,12 @@ TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
 
 TEST_F(Usage, only_what_exists_can_be_chosen) {
     expect_refused({"render", "plane.obj", "--engine", "vulkan"}, "one of: cpu");
+    expect_refused({"render", "plane.obj", "--structure", "lbvh"}, "one of: bvh");
+    expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: wide");
+    for (const char* option : {"--device", "--method", "--bottom", "--frames"}) {
+        expect_refused({"render", "plane.obj", option, "0"}, option);
+        EXPECT_FALSE(contains(run({"render", "--help"}).output, std::string(option) + " ")) << option;
+    }
     expect_refused({"render", "plane.obj", "--surface", "tesselated"}, "'tessellated'");
     expect_refused({"render", "plane.obj", "--layers", "depth,Normal"}, "unknown layer 'Normal'");
     expect_refused({"render", "plane.obj", "-o", "a.png", "--layers", "depth"}, ".exr");
@@ -85,7 +91,8 @@ TEST_F(Usage, an_output_that_cannot_be_written_is_refused_before_the_render) {
             << result.exit_code;
         EXPECT_TRUE(contains(result.errors, "relief: error: ")) << result.errors;
     }
-    EXPECT_NE(run({"render", "plane.obj", "--spp", "1048576", "--stats", "no/folder/s.json"}).exit_code, 0);
+    for (const std::string statistics : {"no/folder/s.json", "."})
+        EXPECT_EQ(run({"render", "plane.obj", "--spp", "1048576", "--stats", statistics}).exit_code, 1);
 }
 
 TEST_F(Usage, every_help_fits_on_a_screen_and_goes_to_stdout) {
