@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/check.h"
-#include "base/memory.h"
+#include "base/machine.h"
 #include "math/vec.h"
 #include "relief/error.h"
 

@@ -116,7 +116,7 @@ void check_area(const Polygons& polygons, uint32_t face) {
         const double x = double(b.x) - a.x, y = double(b.y) - a.y, z = double(b.z) - a.z;
         longest = std::max(longest, x * x + y * y + z * z);
     }
-    const Vec3<double> n = compute_newell_normal(polygons, face);
+    const Vec3<double> n = size < 3 ? Vec3<double>{} : compute_newell_normal(polygons, face);
     if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > kSmallestAreaRatio * longest))
         throw_bad_face(polygons.where, polygons.source_faces[face], "face has zero area",
                        "remove degenerate faces from the mesh");
