@@ -38,6 +38,7 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, int samples_end, Image& image) {
+    image.metadata["Software"] = "Relief " RELIEF_VERSION;
     image.metadata["relief:version"] = RELIEF_VERSION;
     image.metadata["relief:seed"] = std::to_string(settings.seed);
     image.metadata["relief:samples"] = fmt::format("{}:{}", settings.first_sample, samples_end);

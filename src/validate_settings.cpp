@@ -1,28 +1,34 @@
 #include "validate_settings.h"
 
+#include <string>
+
+#include <fmt/format.h>
+
 #include "relief/error.h"
 
 namespace relief {
 
 namespace {
 
-void require(bool condition, const char* message, const char* hint) {
+void require(bool condition, const char* message, const std::string& hint) {
     if (!condition) throw Error(ErrorKind::usage, {message, "", hint});
 }
 
 } // namespace
 
 void validate_settings(const RenderSettings& s) {
-    require(s.width >= 1 && s.width <= 65536 && s.height >= 1 && s.height <= 65536,
-            "the picture size is out of range", "1 to 65536 pixels a side");
-    require(s.spp >= 1 && s.spp <= 1 << 20, "the number of samples is out of range", "1 to 1048576 a pixel");
+    require(s.width >= 1 && s.width <= kMaxPictureSize && s.height >= 1 && s.height <= kMaxPictureSize,
+            "the picture size is out of range", fmt::format("1 to {} pixels a side", kMaxPictureSize));
+    require(s.spp >= 1 && s.spp <= kMaxSamples, "the number of samples is out of range",
+            fmt::format("1 to {} a pixel", kMaxSamples));
     require(s.first_sample >= 0 && s.first_sample <= (1 << 30), "the first sample is out of range",
             "0 to 1073741824");
-    require(s.bounces >= 0 && s.bounces <= 1000, "the number of bounces is out of range", "0 to 1000");
+    require(s.bounces >= 0 && s.bounces <= kMaxBounces, "the number of bounces is out of range",
+            fmt::format("0 to {}", kMaxBounces));
     require(s.threads >= 0 && s.threads <= 4096, "the number of threads is out of range",
             "0 (all cores) to 4096");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
-            "auto, or 0 to 12");
+            fmt::format("auto, or 0 to {}", kMaxLevel));
     require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",
             "above 0, at most 1e6 pixels");
     require(s.crop == Window{} || (s.crop.x0 >= 0 && s.crop.y0 >= 0 && s.crop.x0 < s.crop.x1 &&

@@ -11,9 +11,6 @@ namespace relief::cli {
 
 namespace {
 
-constexpr int kMaxSize = 65536;
-constexpr int kMaxSamples = 1 << 20;
-constexpr int kMaxBounces = 1024;
 constexpr int kMaxThreads = 4096;
 constexpr int kMaxCacheMegabytes = 1 << 20;
 constexpr double kLargestFactor = 1e9;
@@ -33,7 +30,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "-o", "FILE", "picture: .exr (layers), .hdr or .png; default: the input's name as .exr",
         [&o](const std::string& text) { o.output = text; });
     add(verb, "--size", "WxH", "pixels; default 1280x720", [&o](const std::string& text) {
-        const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxSize});
+        const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
         o.given.width = int(size[0]), o.given.height = int(size[1]);
     });
     add(verb, "--spp", "N", "samples a pixel; default 64",
@@ -58,12 +55,12 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
 
 void add_part_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--crop", "x0,y0,x1,y1", "part of the picture, half open", [&o](const std::string& text) {
-        const std::vector<int64_t> c = parse_integers("--crop", text, ',', 4, {0, kMaxSize});
+        const std::vector<int64_t> c = parse_integers("--crop", text, ',', 4, {0, kMaxPictureSize});
         if (c[0] >= c[2] || c[1] >= c[3]) refuse_value("--crop", text, "a window with x0 < x1 and y0 < y1");
         o.settings.crop = {int(c[0]), int(c[1]), int(c[2]), int(c[3])};
     });
     add(verb, "--tile", "i/n", "band i of n bands of rows, i from 0 to n - 1", [&o](const std::string& text) {
-        const std::vector<int64_t> tile = parse_integers("--tile", text, '/', 2, {0, kMaxSize});
+        const std::vector<int64_t> tile = parse_integers("--tile", text, '/', 2, {0, kMaxPictureSize});
         if (tile[0] >= tile[1]) refuse_value("--tile", text, "i/n with i from 0 to n - 1");
         o.tile = Tile{int(tile[0]), int(tile[1])};
     });
@@ -74,7 +71,8 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
     });
     add(verb, "--pixel", "x,y", "trace one pixel and explain it; no picture is written",
         [&o](const std::string& text) {
-            const std::vector<int64_t> pixel = parse_integers("--pixel", text, ',', 2, {0, kMaxSize - 1});
+            const std::vector<int64_t> pixel =
+                parse_integers("--pixel", text, ',', 2, {0, kMaxPictureSize - 1});
             o.pixel = {int(pixel[0]), int(pixel[1])};
         });
 }

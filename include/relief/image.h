@@ -60,9 +60,12 @@ struct ImageDifference {
 /// channels differ.
 ImageDifference compare_images(const Image& a, const Image& b, const std::string& layer, double threshold);
 
-/// Joins tiles and sample ranges of one picture: each pixel is the mean of the parts weighted by their
-/// "samples.Y". Layers that cannot be averaged (id, depth, P, N, Ng, uv) come from the part with the lowest
-/// sample range; variance is that of the joint mean. Pixels that no part covers are 0, their depth infinity.
+/// Joins tiles and sample ranges of one picture into what one render of all samples gives, up to rounding.
+/// Colour, alpha, albedo and cost are means weighted by the parts' "samples.Y"; P and uv are weighted by the
+/// samples that hit, which are A times samples; depth is the least, id that of the least depth (without a
+/// depth layer: of the lowest sample range that hit); variance is that of the joint mean. N and Ng are the
+/// exception: parts hold unit vectors, so their mean by hits, normalised again, only comes close to that of
+/// all samples where a pixel's normals spread. Pixels that no part covers are 0, their depth infinity.
 /// Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer
 /// "samples". Throws bad_input for parts of different pictures (scene hash, seed, size, channels) or
 /// overlapping sample ranges of a pixel.

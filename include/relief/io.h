@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "relief/image.h"
 #include "relief/scene.h"
@@ -51,5 +52,11 @@ void write_image(const Image& image, const std::filesystem::path& file);
 
 /// Throws now if write_image to this file would fail for its name, folder or rights.
 void check_writable(const std::filesystem::path& file);
+
+/// Writes any text; the file appears whole or not at all. Throws Error{failed}.
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// Throws now if write_text_file to this file would fail for its folder or rights.
+void check_text_writable(const std::filesystem::path& file);
 
 } // namespace relief

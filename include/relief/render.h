@@ -1,7 +1,6 @@
 // From a scene to a finished picture. One call; progress and cancellation through an observer.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -26,9 +25,9 @@ struct Window {
 };
 
 struct RenderSettings {
-    int width = 1280, height = 720; ///< pixels, [1, 65536] each
-    int spp = 64;                   ///< samples a pixel, [1, 2^20]
-    int bounces = 4;                ///< path length; 0: primary ray and direct light only
+    int width = 1280, height = 720; ///< pixels, [1, kMaxPictureSize] each
+    int spp = 64;                   ///< samples a pixel, [1, kMaxSamples]
+    int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
     int threads = 0; ///< 0: all cores
     Isa isa = Isa::best;

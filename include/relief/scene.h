@@ -3,6 +3,7 @@
 // Rec.709.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,12 @@
 #include "relief/types.h"
 
 namespace relief {
+
+// Limits that every reader, the command and render() share; docs/scene.schema.json holds the same numbers.
+inline constexpr int kMaxPictureSize = 65536; ///< pixels a side
+inline constexpr int kMaxSamples = 1 << 20;   ///< a pixel
+inline constexpr int kMaxBounces = 1000;
+inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 
 /// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
 struct Mesh {

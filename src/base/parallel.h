@@ -7,7 +7,7 @@
 namespace relief {
 
 /// Runs `body(begin, end)` over disjoint ranges that cover [0, count), each at most `grain` long, on the
-/// threads of the enclosing ThreadScope (or all cores). The first exception thrown by a body is rethrown
+/// threads of the enclosing with_threads (or all cores). The first exception thrown by a body is rethrown
 /// here.
 void parallel_for(const char* name, size_t count, size_t grain,
                   const std::function<void(size_t, size_t)>& body);

@@ -19,7 +19,7 @@ struct Part {
     const Image* image = nullptr;
     size_t index = 0; ///< in the order given, for messages
     int first = 0, last = 0;
-    std::optional<size_t> samples_channel;
+    std::optional<size_t> samples_channel, alpha_channel;
 };
 
 /// One pixel of one part.
@@ -27,10 +27,11 @@ struct PartPixel {
     const float* values = nullptr;
     int first = 0; ///< lowest sample
     uint32_t count = 0;
+    double hits = 0; ///< samples that hit a surface
     size_t part = 0;
 };
 
-enum class Rule { mean, variance, samples, lowest_range };
+enum class Rule { mean, mean_of_hits, direction, variance, samples, depth, id };
 
 [[noreturn]] void throw_bad(size_t part, const std::string& message, const std::string& hint) {
     throw Error(ErrorKind::bad_input, {message, fmt::format("part {}", part + 1), hint});
@@ -42,7 +43,7 @@ std::string metadata_or_empty(const Image& image, const std::string& key) {
 }
 
 Part make_part(const Image& image, size_t index) {
-    Part part{&image, index, 0, 0, image.find_channel("samples.Y")};
+    Part part{&image, index, 0, 0, image.find_channel("samples.Y"), image.find_channel("A")};
     const std::string range = metadata_or_empty(image, kSamplesKey);
     const char* const end = range.data() + range.size();
     const auto first = std::from_chars(range.data(), end, part.first);
@@ -78,8 +79,10 @@ Rule find_rule(const std::string& channel) {
     if (channel == "samples.Y") return Rule::samples;
     const std::string layer = channel.substr(0, channel.find('.'));
     if (layer == "variance") return Rule::variance;
-    for (const char* name : {"id", "depth", "P", "N", "Ng", "uv"})
-        if (layer == name) return Rule::lowest_range;
+    if (layer == "depth") return Rule::depth;
+    if (layer == "id") return Rule::id;
+    if (layer == "P" || layer == "uv") return Rule::mean_of_hits;
+    if (layer == "N" || layer == "Ng") return Rule::direction;
     return Rule::mean;
 }
 
@@ -117,7 +120,8 @@ void gather(const std::vector<Part>& parts, int x, int y, std::vector<PartPixel>
         const float* values = image.pixels.data() + pixel * image.channels.size();
         const uint32_t count = part.samples_channel ? uint32_t(std::lround(values[*part.samples_channel]))
                                                     : uint32_t(part.last - part.first);
-        if (count > 0) found.push_back({values, part.first, count, part.index});
+        const double alpha = part.alpha_channel ? double(values[*part.alpha_channel]) : 1.0;
+        if (count > 0) found.push_back({values, part.first, count, std::round(alpha * count), part.index});
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const PartPixel& a, const PartPixel& b) { return a.first < b.first; });
@@ -151,13 +155,77 @@ double compute_variance(const std::vector<PartPixel>& pixels, size_t variance_ch
     return deviations / (n * (n - 1));
 }
 
-double merge_channel(const std::vector<PartPixel>& pixels, Rule rule, size_t channel, size_t mean_channel) {
-    if (rule == Rule::mean) return compute_mean(pixels, channel);
-    if (rule == Rule::variance) return compute_variance(pixels, channel, mean_channel);
-    if (rule == Rule::lowest_range) return pixels[0].values[channel];
+double compute_mean_of_hits(const std::vector<PartPixel>& pixels, size_t channel) {
+    if (pixels.size() == 1) return pixels[0].values[channel];
+    double sum = 0, weight = 0;
+    for (const PartPixel& pixel : pixels) {
+        sum += double(pixel.values[channel]) * pixel.hits;
+        weight += pixel.hits;
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+/// The part whose first hit is nearest; among equal depths the lowest id wins, as in a film.
+const PartPixel& find_nearest(const std::vector<PartPixel>& pixels, size_t depth_channel, size_t id_channel) {
+    return *std::min_element(pixels.begin(), pixels.end(), [&](const PartPixel& a, const PartPixel& b) {
+        const float x = a.values[depth_channel], y = b.values[depth_channel];
+        return x < y || (x == y && a.values[id_channel] < b.values[id_channel]);
+    });
+}
+
+float find_id(const std::vector<PartPixel>& pixels, std::optional<size_t> depth_channel, size_t channel) {
+    if (depth_channel) return find_nearest(pixels, *depth_channel, channel).values[channel];
+    for (const PartPixel& pixel : pixels)
+        if (pixel.values[channel] != 0) return pixel.values[channel];
+    return 0;
+}
+
+/// How each channel of the result comes from the same channel of the parts.
+struct ChannelRules {
+    explicit ChannelRules(const Image& image) : depth_channel(image.find_channel("depth.Z")) {
+        for (size_t c = 0; c < image.channels.size(); ++c) {
+            rules.push_back(find_rule(image.channels[c]));
+            mean_channels.push_back(rules[c] == Rule::variance ? find_mean_channel(image, c) : c);
+            if (rules[c] == Rule::direction && image.channels[c].ends_with(".X") &&
+                c + 2 < image.channels.size())
+                direction_starts.push_back(c);
+        }
+    }
+    std::vector<Rule> rules;
+    std::vector<size_t> mean_channels;
+    std::vector<size_t> direction_starts; ///< first of three channels
+    std::optional<size_t> depth_channel;
+};
+
+double merge_channel(const std::vector<PartPixel>& pixels, const ChannelRules& rules, size_t channel) {
+    switch (rules.rules[channel]) {
+    case Rule::mean:
+        return compute_mean(pixels, channel);
+    case Rule::mean_of_hits:
+    case Rule::direction:
+        return compute_mean_of_hits(pixels, channel);
+    case Rule::variance:
+        return compute_variance(pixels, channel, rules.mean_channels[channel]);
+    case Rule::depth:
+        return find_nearest(pixels, channel, channel).values[channel];
+    case Rule::id:
+        return find_id(pixels, rules.depth_channel, channel);
+    case Rule::samples:
+        break;
+    }
     double count = 0;
     for (const PartPixel& pixel : pixels) count += pixel.count;
     return count;
+}
+
+void merge_pixel(const std::vector<PartPixel>& pixels, const ChannelRules& rules, float* target) {
+    for (size_t c = 0; c < rules.rules.size(); ++c) target[c] = float(merge_channel(pixels, rules, c));
+    if (pixels.size() == 1) return;
+    for (const size_t start : rules.direction_starts) {
+        float* const v = target + start;
+        const double length = std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]);
+        for (size_t k = 0; k < 3 && length > 0; ++k) v[k] = float(v[k] / length);
+    }
 }
 
 } // namespace
@@ -174,22 +242,16 @@ Image merge_images(std::span<const Image> images) {
     }
     Image result = make_empty_union(images);
     result.metadata[kSamplesKey] = fmt::format("{}:{}", first, last);
-    std::vector<Rule> rules;
-    std::vector<size_t> mean_channels;
-    for (size_t c = 0; c < result.channels.size(); ++c) {
-        rules.push_back(find_rule(result.channels[c]));
-        mean_channels.push_back(rules[c] == Rule::variance ? find_mean_channel(result, c) : c);
-    }
+    const ChannelRules rules(result);
     std::vector<PartPixel> pixels;
     float* target = result.pixels.data();
     for (int y = result.y0; y < result.y0 + result.height; ++y)
         for (int x = result.x0; x < result.x0 + result.width; ++x, target += result.channels.size()) {
             gather(parts, x, y, pixels);
-            for (size_t c = 0; c < result.channels.size(); ++c)
-                if (!pixels.empty())
-                    target[c] = float(merge_channel(pixels, rules[c], c, mean_channels[c]));
-                else if (result.channels[c] == "depth.Z")
-                    target[c] = std::numeric_limits<float>::infinity();
+            if (!pixels.empty())
+                merge_pixel(pixels, rules, target);
+            else if (rules.depth_channel)
+                target[*rules.depth_channel] = std::numeric_limits<float>::infinity();
         }
     return result;
 }

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kUdimToken = "<UDIM>";
-constexpr size_t kMaxTiles = 255;
 
 bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
 
@@ -103,9 +102,9 @@ std::vector<std::pair<int, fs::path>> find_udim_tiles(const fs::path& pattern) {
         throw Error(ErrorKind::bad_input,
                     {"no tile file found", pattern.string(),
                      "<UDIM> stands for the four digits 1001, 1002, ... in a file name"});
-    if (tiles.size() > kMaxTiles)
+    if (tiles.size() > size_t(kMaxMapTiles))
         throw Error(ErrorKind::bad_input,
-                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxTiles),
+                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxMapTiles),
                      pattern.string(), "split the mesh"});
     std::sort(tiles.begin(), tiles.end());
     return tiles;

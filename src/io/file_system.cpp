@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "relief/io.h"
 #include "relief/suggest.h"
 
 namespace relief {
@@ -105,6 +106,12 @@ void AtomicFile::commit() {
     fs::rename(temporary_, target_, code);
     if (code) fail("cannot be put in place: " + code.message());
     is_committed_ = true;
+}
+
+void check_text_writable(const fs::path& file) {
+    const AtomicFile atomic(file);
+    const std::ofstream probe(atomic.temporary(), std::ios::binary);
+    if (!probe) atomic.fail("cannot be written: no file can be made in its folder");
 }
 
 void write_text_file(const fs::path& file, std::string_view text) {

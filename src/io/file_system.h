@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 namespace relief {
 
@@ -35,8 +34,5 @@ class AtomicFile {
     std::filesystem::path target_, temporary_;
     bool is_committed_ = false;
 };
-
-/// Writes a text file atomically. Throws Error{failed}.
-void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 } // namespace relief

@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 
+#include "io/exr_header.h"
 #include "io/file_system.h"
 #include "relief/error.h"
+#include "relief/scene.h"
 #include "relief/suggest.h"
 
 namespace relief {
 
 namespace {
 
-constexpr int kMaxSide = 65536;
+constexpr int kMaxSide = kMaxPictureSize;
 constexpr int64_t kMaxTexels = int64_t(1) << 31;
 constexpr int kMaxChannels = 1024;
 constexpr std::array<std::string_view, 8> kExtensions = {".exr", ".tif", ".tiff", ".tx",
@@ -53,6 +57,11 @@ void check_extension(const std::string& name) {
                                            suggest_word(extension, kExtensions)});
 }
 
+void check_attributes(const ImageInput& image, std::istream& stream, uint64_t file_bytes) {
+    if (const std::optional<std::string> name = find_oversized_exr_attribute(stream, file_bytes))
+        image.fail(fmt::format("is damaged: attribute '{}' is longer than the file", *name), kDamagedHint);
+}
+
 void open(ImageInput& image, uint64_t file_bytes) {
     const OIIO::ImageSpec config = make_raw_config();
     image.input = OIIO::ImageInput::create(image.name, false, &config, image.proxy.get());
@@ -76,6 +85,8 @@ ImageInput open_image(const std::filesystem::path& file) {
     check_extension(file.string());
     ImageInput image;
     image.name = file.string();
+    std::ifstream stream(file, std::ios::binary);
+    check_attributes(image, stream, std::filesystem::file_size(file));
     open(image, std::filesystem::file_size(file));
     return image;
 }
@@ -84,6 +95,8 @@ ImageInput open_image_bytes(std::string_view bytes, const std::string& name) {
     check_extension(name);
     ImageInput image;
     image.name = name;
+    std::istringstream stream{std::string(bytes)};
+    check_attributes(image, stream, bytes.size());
     image.proxy = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
     open(image, bytes.size());
     return image;

@@ -1,7 +1,6 @@
 // write_image and check_writable.
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -99,9 +98,7 @@ void write_image(const Image& image, const std::filesystem::path& file) {
 
 void check_writable(const std::filesystem::path& file) {
     check_output_extension(file);
-    const AtomicFile atomic(file);
-    const std::ofstream probe(atomic.temporary(), std::ios::binary);
-    if (!probe) atomic.fail("cannot be written: no file can be made in its folder");
+    check_text_writable(file);
 }
 
 } // namespace relief

@@ -127,6 +127,7 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
 
     AssetCache assets("");
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
+    validate_scene(scene); // framing follows the indices of the mesh and the uvs into the map
     scene.camera = frame_object(scene.meshes.front(),
                                 scene.displacements.empty() ? nullptr : &scene.displacements.front());
     const Vec3f view = normalize(scene.camera.from - scene.camera.to);

@@ -12,8 +12,6 @@ namespace relief {
 
 namespace {
 
-constexpr int64_t kMaxSize = 65536, kMaxSamples = 1 << 20, kMaxBounces = 1024;
-
 template <class Value, class Read>
 void read_optional(const JsonNode& node, std::string_view key, Value& value, const Read& read) {
     if (const auto found = node.find(key)) value = read(*found);
@@ -62,8 +60,8 @@ Affine read_matrix(const JsonNode& node) {
 PictureDefaults read_picture(const JsonNode& node) {
     node.check_keys({"width", "height", "spp", "bounces", "seed"});
     PictureDefaults picture;
-    picture.width = read_int(node, "width", 1, kMaxSize);
-    picture.height = read_int(node, "height", 1, kMaxSize);
+    picture.width = read_int(node, "width", 1, kMaxPictureSize);
+    picture.height = read_int(node, "height", 1, kMaxPictureSize);
     picture.spp = read_int(node, "spp", 1, kMaxSamples);
     picture.bounces = read_int(node, "bounces", 0, kMaxBounces);
     if (const auto seed = node.find("seed"))

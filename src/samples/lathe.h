@@ -2,6 +2,8 @@
 // each, so that no quad and no uv degenerates at the poles.
 #pragma once
 
+#include <vector>
+
 #include "samples/shapes.h"
 
 namespace relief::samples {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "samples/lathe.h"
 #include "samples/noise.h"

@@ -78,7 +78,7 @@ void check_mesh(const Mesh& mesh, size_t index) {
 }
 
 void check_texture(const std::string& where, const Texture& texture) {
-    constexpr uint32_t kMaxSide = 65536;
+    constexpr uint32_t kMaxSide = kMaxPictureSize;
     const size_t samples = 4 * size_t(texture.width) * texture.height;
     if (samples == 0 || texture.width > kMaxSide || texture.height > kMaxSide)
         fail(where, fmt::format("texture of {} x {} texels", texture.width, texture.height),
@@ -90,9 +90,9 @@ void check_texture(const std::string& where, const Texture& texture) {
 
 void check_displacement(const Displacement& map, size_t index) {
     const std::string where = describe("displacement", map.name, index);
-    constexpr size_t kMaxTiles = 255;
-    if (map.tiles.empty() || map.tiles.size() > kMaxTiles || (!map.is_udim && map.tiles.size() > 1))
-        fail(where, fmt::format("has {} tiles", map.tiles.size()));
+    const size_t most_tiles = map.is_udim ? size_t(kMaxMapTiles) : 1;
+    if (map.tiles.empty() || map.tiles.size() > most_tiles)
+        fail(where, fmt::format("has {} tiles, not 1 to {}", map.tiles.size(), most_tiles));
     for (const MapTile& tile : map.tiles) {
         if (!tile.texture) fail(where, fmt::format("tile {} has no texture", tile.udim));
         if (tile.udim < 1001) fail(where, fmt::format("tile number {} is below 1001", tile.udim));
@@ -192,10 +192,10 @@ void check_picture(const PictureDefaults& picture) {
         if (value && (*value < low || *value > high))
             fail("render", fmt::format("{} is {}, not in [{}, {}]", what, *value, low, high));
     };
-    check("width", picture.width, 1, 65536);
-    check("height", picture.height, 1, 65536);
-    check("spp", picture.spp, 1, 1 << 20);
-    check("bounces", picture.bounces, 0, 1024);
+    check("width", picture.width, 1, kMaxPictureSize);
+    check("height", picture.height, 1, kMaxPictureSize);
+    check("spp", picture.spp, 1, kMaxSamples);
+    check("bounces", picture.bounces, 0, kMaxBounces);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// What a displaced surface is: the exact float operations of one vertex, in the one order that every engine keeps.
-// Shared edges are closed because both of their patches run these lines on the same numbers.
+// What a displaced surface is: the exact float operations of one vertex, in the one order that every engine
+// keeps. Shared edges are closed because both of their patches run these lines on the same numbers.
 
 /// Point at parameter s between a and b; exact at s = 0 and s = 1 for finite a, b.
 FN Float blend(Float a, Float b, Float s) {

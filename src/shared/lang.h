@@ -1,5 +1,5 @@
-// The common dialect of GLSL 4.60 and C++20 (see docs/decisions/one-source-formulas.md). For GLSL this file defines
-// the names; C++ instances define them before the include: FN EXACT Float Bool Uint Vec2 Vec3 select.
+// The common dialect of GLSL 4.60 and C++20 (see docs/decisions/one-source-formulas.md). For GLSL this file
+// defines the names; C++ instances define them before the include: FN EXACT Float Bool Uint Vec2 Vec3 select.
 #ifndef __cplusplus
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H

@@ -2,6 +2,8 @@
 // cover.
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "math/vec.h"
 #include "surface/polygons.h"

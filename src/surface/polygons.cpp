@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -109,6 +110,11 @@ std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
 
 void check_area(const Polygons& polygons, uint32_t face) {
     const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+    const auto refuse = [&] {
+        throw_bad_face(polygons.where, polygons.source_faces[face], "face has zero area",
+                       "remove degenerate faces from the mesh");
+    };
+    if (size < 3) refuse();
     double longest = 0;
     for (uint32_t k = 0; k < size; ++k) {
         const Vec3f& a = polygons.positions[polygons.points[start + k]];
@@ -116,10 +122,8 @@ void check_area(const Polygons& polygons, uint32_t face) {
         const double x = double(b.x) - a.x, y = double(b.y) - a.y, z = double(b.z) - a.z;
         longest = std::max(longest, x * x + y * y + z * z);
     }
-    const Vec3<double> n = size < 3 ? Vec3<double>{} : compute_newell_normal(polygons, face);
-    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > kSmallestAreaRatio * longest))
-        throw_bad_face(polygons.where, polygons.source_faces[face], "face has zero area",
-                       "remove degenerate faces from the mesh");
+    const Vec3<double> n = compute_newell_normal(polygons, face);
+    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > kSmallestAreaRatio * longest)) refuse();
 }
 
 } // namespace

@@ -21,6 +21,7 @@ TEST(SurfacePoints, are_the_same_by_way_of_a_cache_of_any_size) {
         cpu::TraceHit hit;
         hit.instance = 0, hit.patch = k * 7 % patch_count;
         hit.i = uint16_t(k % 16), hit.j = uint16_t(k / 16 % 16);
+        hit.levels = pack_levels(prepared->instances[0].levels->at(hit.patch));
         hit.u = (float(hit.i) + 0.6f) / 16, hit.v = (float(hit.j) + 0.3f) / 16;
         const cpu::SurfacePoint expected = tracer.make_surface_point(hit);
         for (PatchSamplesCache* cache : {&one, &few}) {

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -18,28 +19,38 @@ double radiance(int x, int y, int k, int channel) {
     return double(generator()) / 4294967296.0 * (1 + channel);
 }
 
+bool is_hit(int x, int y, int k) { return radiance(x, y, k, 5) > 3; }
+
 /// What a render of the window and the sample range [first, last) would give.
 Image make_part(std::array<int, 4> window, int first, int last) {
     Image image;
     image.x0 = window[0], image.y0 = window[1];
     image.width = window[2] - window[0], image.height = window[3] - window[1];
     image.full_width = kWidth, image.full_height = kHeight;
-    image.channels = {"R", "G", "B", "A", "depth.Z", "id.I", "samples.Y", "variance.R"};
+    image.channels = {"R",   "G",   "B",   "A",         "depth.Z",    "id.I",  "N.X",
+                      "N.Y", "N.Z", "P.X", "samples.Y", "variance.R", "cost.Y"};
     image.metadata = {{"relief:samples", std::to_string(first) + ":" + std::to_string(last)},
                       {"relief:seed", "1"},
                       {"relief:scene_hash", "abcd"}};
     for (int y = window[1]; y < window[3]; ++y)
         for (int x = window[0]; x < window[2]; ++x) {
             const double n = last - first;
-            double sums[3] = {}, squares = 0;
-            for (int k = first; k < last; ++k)
-                for (int c = 0; c < 3; ++c) {
-                    sums[c] += radiance(x, y, k, c);
-                    if (c == 0) squares += radiance(x, y, k, c) * radiance(x, y, k, c);
-                }
-            const double mean = sums[0] / n;
+            double sums[3] = {}, squares = 0, hits = 0, place = 0, cost = 0;
+            float depth = std::numeric_limits<float>::infinity();
+            int id = 0;
+            for (int k = first; k < last; ++k) {
+                for (int c = 0; c < 3; ++c) sums[c] += radiance(x, y, k, c);
+                squares += radiance(x, y, k, 0) * radiance(x, y, k, 0);
+                cost += 1 + k;
+                if (!is_hit(x, y, k)) continue;
+                hits += 1, place += radiance(x, y, k, 3);
+                const float t = float(radiance(x, y, k, 4));
+                if (t < depth) depth = t, id = 1 + k;
+            }
+            const double mean = sums[0] / n, side = hits > 0 ? 0.6 : 0;
             const double variance = n > 1 ? (squares / n - mean * mean) / (n - 1) : 0;
-            for (double value : {mean, sums[1] / n, sums[2] / n, 1.0, 10.0 + first, 3.0 + first, n, variance})
+            for (double value : {mean, sums[1] / n, sums[2] / n, hits / n, double(depth), double(id), side,
+                                 0.0, side / 0.75, hits > 0 ? place / hits : 0.0, n, variance, cost / n})
                 image.pixels.push_back(float(value));
         }
     return image;
@@ -55,9 +66,36 @@ TEST(MergeImages, joins_tiles_and_sample_ranges_to_the_whole_picture) {
     ASSERT_EQ(merged.pixels.size(), whole.pixels.size());
     EXPECT_EQ(merged.metadata.at("relief:samples"), "0:12");
     EXPECT_EQ(merged.metadata.at("relief:seed"), "1");
-    for (size_t i = 0; i < whole.pixels.size(); ++i)
-        ASSERT_NEAR(merged.pixels[i], whole.pixels[i], 3e-7 * std::fabs(whole.pixels[i]) + 1e-8)
-            << whole.channels[i % whole.channels.size()];
+    for (size_t i = 0; i < whole.pixels.size(); ++i) {
+        const std::string& channel = whole.channels[i % whole.channels.size()];
+        if (std::isinf(whole.pixels[i]))
+            ASSERT_EQ(merged.pixels[i], whole.pixels[i]) << channel;
+        else
+            ASSERT_NEAR(merged.pixels[i], whole.pixels[i], 4e-7 * std::fabs(whole.pixels[i]) + 1e-8)
+                << channel;
+    }
+}
+
+TEST(MergeImages, makes_mean_normals_unit_vectors_again) {
+    Image a = make_part({0, 0, kWidth, kHeight}, 0, 4), b = make_part({0, 0, kWidth, kHeight}, 4, 8);
+    const size_t alpha = 3, normal = a.find_channel("N.X").value();
+    a.at(2, 3, alpha) = 0.75f, b.at(2, 3, alpha) = 0.25f; // 3 hits and 1
+    a.at(2, 3, normal) = 1, a.at(2, 3, normal + 1) = 0, a.at(2, 3, normal + 2) = 0;
+    b.at(2, 3, normal) = 0, b.at(2, 3, normal + 1) = 1, b.at(2, 3, normal + 2) = 0;
+    const Image merged = merge_images(std::array{a, b});
+    EXPECT_FLOAT_EQ(merged.at(2, 3, normal), 3 / std::sqrt(10.0f));
+    EXPECT_FLOAT_EQ(merged.at(2, 3, normal + 1), 1 / std::sqrt(10.0f));
+}
+
+TEST(MergeImages, without_depths_takes_the_id_of_the_lowest_range_that_hit) {
+    Image a = make_part({0, 0, kWidth, kHeight}, 0, 4), b = make_part({0, 0, kWidth, kHeight}, 4, 8);
+    const size_t depth = a.find_channel("depth.Z").value(), id = depth + 1;
+    a.channels[depth] = b.channels[depth] = "cost.X";
+    a.at(2, 3, id) = 0, b.at(2, 3, id) = 7;
+    a.at(1, 3, id) = 5, b.at(1, 3, id) = 2;
+    const Image merged = merge_images(std::array{b, a});
+    EXPECT_EQ(merged.at(2, 3, id), 7);
+    EXPECT_EQ(merged.at(1, 3, id), 5);
 }
 
 TEST(MergeImages, weighs_each_pixel_by_its_own_samples) {

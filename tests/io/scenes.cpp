@@ -246,6 +246,19 @@ TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {
     EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "plane.obj", options); }), "is no order of axes");
 }
 
+TEST_F(SceneFiles, a_mesh_alone_is_checked_before_it_is_framed) {
+    std::string text = kQuadObj;
+    const size_t at = text.find("vt ");
+    ASSERT_NE(at, std::string::npos);
+    write("far.obj", text.replace(at, text.find('\n', at) - at, "vt 1e39 0"));
+    MeshSceneOptions options;
+    options.displacement_map = folder_ / "map.exr";
+    EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "far.obj", options); }), "far.obj");
+    std::string wide = kQuadObj;
+    write("wide.obj", wide.replace(0, wide.find('\n'), "v -1e19 -1 0"));
+    EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "wide.obj", {}); }), "is farther out than 1e+18");
+}
+
 TEST_F(SceneFiles, coding_errors_of_a_map_do_not_move_the_camera) {
     MeshSceneOptions options;
     options.displacement_map = folder_ / "map.exr";

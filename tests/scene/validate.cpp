@@ -98,6 +98,12 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].tiles[0].texture = nullptr; }), "no texture");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].tiles[0].texture = std::make_shared<Texture>(); }),
                "0 x 0");
+    const auto spread = [](Scene& s, size_t tiles) {
+        s.displacements[0].is_udim = true;
+        s.displacements[0].tiles.resize(tiles, s.displacements[0].tiles[0]);
+    };
+    EXPECT_EQ(complaint([&](Scene& s) { spread(s, 254); }), "accepted");
+    EXPECT_HAS(complaint([&](Scene& s) { spread(s, 255); }), "has 255 tiles");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.axis = {0, 0, 2}; }), "no permutation");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.sign[1] = 0; }), "sign");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");
@@ -114,6 +120,8 @@ TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.camera.fov_degrees = 180; }), "fov_degrees");
     EXPECT_HAS(complaint([](Scene& s) { s.picture.spp = -1; }), "spp is -1");
     EXPECT_HAS(complaint([](Scene& s) { s.picture.width = 70000; }), "width");
+    EXPECT_HAS(complaint([](Scene& s) { s.picture.bounces = 1001; }), "bounces is 1001, not in [0, 1000]");
+    EXPECT_EQ(complaint([](Scene& s) { s.picture.bounces = 1000; }), "accepted");
 }
 
 } // namespace relief

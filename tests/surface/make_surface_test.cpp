@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "surface/test_scenes.h"
 
 namespace relief {
@@ -191,8 +193,8 @@ TEST(MakeSurface, bad_meshes_are_refused_with_file_mesh_face_and_hint) {
     EXPECT_EQ(try_mesh(mesh),
               "plane.obj: mesh 'plane', face 0: face has zero area (remove degenerate faces from the mesh)");
     EXPECT_NE(catch_message([&] { make_surface(mesh, nullptr, {}); }).find("zero area"), std::string::npos);
-    mesh.positions.assign(4, {1, 2, 3});
-    EXPECT_NE(try_mesh(mesh).find("zero area"), std::string::npos);
+    std::fill(mesh.position_indices.begin(), mesh.position_indices.end(),
+              0u); // the last face, all corners in one point
     EXPECT_NE(catch_message([&] { make_surface(mesh, nullptr, {}); }).find("zero area"), std::string::npos);
     mesh = test::make_plane();
     mesh.position_indices.pop_back();
