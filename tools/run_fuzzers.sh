@@ -6,6 +6,7 @@ set -eu
 build=$1
 seconds=$2
 root=$(dirname "$0")/..
+export LSAN_OPTIONS="suppressions=$root/tools/lsan.supp:print_suppressions=0"
 for fuzzer in "$build"/bin/*_fuzzer; do
     name=$(basename "$fuzzer" _fuzzer)
     mkdir -p "$build/fuzz/corpus/$name"

@@ -3,7 +3,6 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/profiling.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -76,12 +75,7 @@ void parallel_for(const char* name, size_t count, size_t grain,
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-    LoopScope loop;
-    const auto run = [&](const std::function<void()>& body) {
-        BodyScope scope(loop.order);
-        body();
-    };
-    tbb::parallel_invoke([&] { run(first); }, [&] { run(second); });
+    parallel_for("invoke", 2, 1, [&](size_t begin, size_t) { (begin == 0 ? first : second)(); });
 }
 
 int current_thread_index() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
