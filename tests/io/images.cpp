@@ -106,6 +106,8 @@ TEST_F(ImageFiles, damaged_images_are_refused_with_their_names) {
     for (const auto& message : {message_of([&] { read_texture(write("h.exr", long_header)); }),
                                 message_of([&] { parse_texture(long_header, "h.exr"); })})
         EXPECT_HAS(message, "attribute 'channels' is longer than the file");
+    const std::string long_chunk = std::string("\x89PNG\r\n\x1a\n") + "\x7f\xff\xff\xf0tEXt";
+    EXPECT_HAS(message_of([&] { read_texture(write("c.png", long_chunk)); }), "ends within a chunk");
     EXPECT_HAS(message_of([&] { read_texture(write("a.txt", "x")); }), "unknown kind of image");
     EXPECT_EQ(parse_texture(bytes, "memory.exr").width, 64u);
 }
