@@ -9,6 +9,7 @@
 
 #include "io/exr_header.h"
 #include "io/file_system.h"
+#include "io/png_header.h"
 #include "relief/error.h"
 #include "relief/scene.h"
 #include "relief/suggest.h"
@@ -31,6 +32,15 @@ OIIO::ImageSpec make_raw_config() {
     return config;
 }
 
+} // namespace
+
+bool has_near_display(const OIIO::ImageSpec& spec) {
+    return spec.full_width > 0 && spec.full_height > 0 && spec.full_width <= 4 * spec.width &&
+           spec.full_height <= 4 * spec.height;
+}
+
+namespace {
+
 void check_size(const ImageInput& image, uint64_t file_bytes) {
     const OIIO::ImageSpec& spec = image.spec;
     if (spec.deep) image.fail("is a deep image", "flatten it first");
@@ -44,7 +54,12 @@ void check_size(const ImageInput& image, uint64_t file_bytes) {
     // No supported compression packs constant pixels tighter than this; a longer claim would only exhaust
     // memory.
     constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20;
-    if (uint64_t(spec.image_bytes()) > file_bytes * kBestCompression + kSlack)
+    // A display window that surrounds the pixels is filled up with zeros, which takes memory as well.
+    const uint64_t display_bytes =
+        uint64_t(std::max(0, spec.full_width)) * uint64_t(std::max(0, spec.full_height)) * spec.pixel_bytes();
+    const uint64_t largest =
+        std::max(uint64_t(spec.image_bytes()), has_near_display(spec) ? display_bytes : 0);
+    if (largest > file_bytes * kBestCompression + kSlack)
         image.fail(
             fmt::format("claims {} x {} pixels in a file of {} bytes", spec.width, spec.height, file_bytes),
             kDamagedHint);
@@ -60,6 +75,10 @@ void check_extension(const std::string& name) {
 void check_attributes(const ImageInput& image, std::istream& stream, uint64_t file_bytes) {
     if (const std::optional<std::string> name = find_oversized_exr_attribute(stream, file_bytes))
         image.fail(fmt::format("is damaged: attribute '{}' is longer than the file", *name), kDamagedHint);
+    stream.clear();
+    stream.seekg(0);
+    if (has_oversized_png_chunk(stream, file_bytes))
+        image.fail("is damaged: it ends within a chunk", kDamagedHint);
 }
 
 void open(ImageInput& image, uint64_t file_bytes) {

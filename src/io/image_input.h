@@ -33,6 +33,10 @@ ImageInput open_image_bytes(std::string_view bytes, const std::string& name);
 /// read_texture for the bytes of a file.
 Texture parse_texture(std::string_view bytes, const std::string& name);
 
+/// True where the display window is at most four times as wide and high as the pixels: textures are filled up
+/// to it.
+bool has_near_display(const OIIO::ImageSpec& spec);
+
 SampleType get_sample_type(const OIIO::TypeDesc& type);
 
 } // namespace relief

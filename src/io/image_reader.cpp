@@ -56,9 +56,7 @@ Texture read_pixels(ImageInput image) {
 
     const bool is_whole = spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
                           spec.height == spec.full_height;
-    const bool has_display = spec.full_width > 0 && spec.full_height > 0 &&
-                             spec.full_width <= 4 * spec.width && spec.full_height <= 4 * spec.height;
-    if (!is_whole && has_display) {
+    if (!is_whole && has_near_display(spec)) {
         place_in_display_window(spec, texture.floats);
         place_in_display_window(spec, texture.halves);
         texture.width = uint32_t(spec.full_width);

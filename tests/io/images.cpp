@@ -98,6 +98,16 @@ TEST_F(ImageFiles, damaged_images_are_refused_with_their_names) {
                    read_texture(write("l.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n"));
                }),
                "l.hdr");
+    // The first attribute, channels, claims 2 GiB: OpenEXR itself would allocate them.
+    std::string long_header = bytes;
+    const size_t size_at = long_header.find("chlist") + 7;
+    ASSERT_LT(size_at, long_header.size());
+    long_header.replace(size_at, 4, "\xff\xff\xff\x7f");
+    for (const auto& message : {message_of([&] { read_texture(write("h.exr", long_header)); }),
+                                message_of([&] { parse_texture(long_header, "h.exr"); })})
+        EXPECT_HAS(message, "attribute 'channels' is longer than the file");
+    const std::string long_chunk = std::string("\x89PNG\r\n\x1a\n") + "\x7f\xff\xff\xf0tEXt";
+    EXPECT_HAS(message_of([&] { read_texture(write("c.png", long_chunk)); }), "ends within a chunk");
     EXPECT_HAS(message_of([&] { read_texture(write("a.txt", "x")); }), "unknown kind of image");
     EXPECT_EQ(parse_texture(bytes, "memory.exr").width, 64u);
 }
