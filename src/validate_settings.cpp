@@ -25,7 +25,7 @@ void validate_settings(const RenderSettings& s) {
             "0 to 1073741824");
     require(s.bounces >= 0 && s.bounces <= kMaxBounces, "the number of bounces is out of range",
             fmt::format("0 to {}", kMaxBounces));
-    require(s.threads >= 0 && s.threads <= 4096, "the number of threads is out of range",
+    require(s.threads >= 0 && s.threads <= kMaxThreads, "the number of threads is out of range",
             "0 (all cores) to 4096");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
             fmt::format("auto, or 0 to {}", kMaxLevel));

@@ -11,7 +11,6 @@ namespace relief::cli {
 
 namespace {
 
-constexpr int kMaxThreads = 4096;
 constexpr int kMaxCacheMegabytes = 1 << 20;
 constexpr double kLargestFactor = 1e9;
 

@@ -19,6 +19,7 @@ inline constexpr int kMaxPictureSize = 65536; ///< pixels a side
 inline constexpr int kMaxSamples = 1 << 20;   ///< a pixel
 inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
+inline constexpr int kMaxThreads = 4096;
 
 /// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
 struct Mesh {

@@ -84,7 +84,7 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
         displacement.type == DisplacementType::height || displacement.space == DisplacementSpace::tangent;
     if (displacement.type == DisplacementType::height) map.midlevel = {displacement.midlevel.x, 0, 0};
     if (displacement.tiles.empty()) throw_bad_map(displacement, "has no map", "name an image file");
-    if (displacement.tiles.size() >= Surface::kNoTile)
+    if (displacement.tiles.size() > size_t(kMaxMapTiles))
         throw_bad_map(displacement, fmt::format("has {} tiles", displacement.tiles.size()),
                       "at most 254 are possible");
     for (const MapTile& tile : displacement.tiles) {

@@ -80,6 +80,7 @@ struct Surface {
     bool has_displacement = false;
 
     static constexpr uint8_t kNoTile = 255;
+    static_assert(kMaxMapTiles < kNoTile);
 
     uint32_t patch_count() const { return uint32_t(quads.size()); }
     uint32_t dominant(uint32_t vertex) const { return dominants.empty() ? vertex : dominants[vertex]; }
