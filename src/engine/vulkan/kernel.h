@@ -1,0 +1,59 @@
+// Compute pipelines over one common set of bindings (shared/bindings.h), so that buffers are bound once for
+// all.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/device.h"
+
+namespace relief::vulkan {
+
+struct KernelConfig {
+    std::string shader; ///< file in shaders/ without its suffix, e.g. "bottom_build"
+    /// Specialization constants 0, 1, 2, ...; constant 0 is the work-group size of every kernel.
+    std::vector<uint32_t> constants;
+};
+
+/// One compiled shader with its constants. The device must outlive it.
+class Kernel {
+  public:
+    Kernel() = default;
+    Kernel(const Device& device, const KernelConfig& config);
+    ~Kernel();
+    Kernel(Kernel&&) noexcept;
+    Kernel& operator=(Kernel&&) noexcept;
+
+    uint32_t group_size() const;
+
+    struct Implementation;
+    const Implementation& internals() const { return *implementation_; }
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// The buffers that kernels see, by binding number. A buffer bound as texels must have a format.
+class BindingTable {
+  public:
+    explicit BindingTable(const Device& device);
+    ~BindingTable();
+    BindingTable(BindingTable&&) noexcept;
+    BindingTable& operator=(BindingTable&&) noexcept;
+
+    /// Binds all of `buffer`; not while a submission that uses the table is on its way. Numbers from
+    /// kFirstTexelBinding on are uniform texel buffers, those below storage buffers. What is never bound holds
+    /// a small buffer of zeros.
+    void bind(uint32_t binding, const Buffer& buffer);
+
+    struct Implementation;
+    Implementation& internals() const { return *implementation_; }
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace relief::vulkan

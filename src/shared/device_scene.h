@@ -1,0 +1,86 @@
+// The scene as device kernels read it: tables whose entries point into the texel buffers of bindings.h.
+// Scalar block layout, members of 4 bytes, the same bytes in C++ and GLSL.
+#ifndef RELIEF_DEVICE_SCENE_H
+#ifndef __cplusplus
+#define RELIEF_DEVICE_SCENE_H
+#endif
+
+/// Affine map p -> (dot(x, p), dot(y, p), dot(z, p)) + t.
+struct AffineData {
+    Vec3 x, y, z, t;
+};
+
+struct InstanceData {
+    AffineData object_from_world, world_from_object;
+    uint surface;     ///< index into surfaces
+    uint material;    ///< index into materials
+    uint root;        ///< node of the surface's tree; kNone: the surface is empty
+    uint first_level; ///< index into levels; kNone: all patches have `levels`
+    uint levels;      ///< packed
+    uint is_mirrored; ///< winding turned
+    uint first_emitter; ///< index into the emitters' table; kNone: gives no light
+};
+
+/// First entries in the texel buffers; kNone where the surface has no such data.
+struct SurfaceData {
+    uint first_vertex; ///< of positions, in vertices
+    uint first_uv, first_frame, first_dominant;
+    uint first_vertex_tile;   ///< in bytes: four a word
+    uint first_quad;          ///< also the number of the surface's first patch among all trees
+    uint first_override, override_count;
+    uint first_override_word; ///< of override_bits
+    uint map;                 ///< index into maps; kNone: not displaced
+};
+
+const uint kWrapClamp = 0u;
+const uint kWrapRepeat = 1u;
+const uint kWrapMirror = 2u;
+const uint kWrapBlack = 3u;
+
+/// d = matrix (texel - midlevel).
+struct MapData {
+    Vec3 row0, row1, row2;
+    Vec3 midlevel;
+    uint wrap;
+    uint flip_v;
+    uint is_tangent;
+    uint first_tile; ///< index into textures
+    uint tile_count;
+};
+
+/// Four channels a texel, row 0 at the top.
+struct TextureData {
+    uint first_texel;
+    uint width, height;
+    uint channel_count; ///< of the file
+    uint is_half;       ///< in half_texels, not in float_texels
+};
+
+/// Indices into textures are kNone without one.
+struct MaterialData {
+    Vec3 base_color;
+    float roughness;
+    Vec3 emission;
+    float metallic;
+    float ior;
+    uint color_texture, roughness_texture;
+};
+
+/// A tile of a patch above level 5: tree number = count of all patches + its index among tile records.
+struct TileRecord {
+    uint instance; ///< of which `patch_index` has `levels`; others with equal levels share it
+    uint patch_index;
+    uint levels;         ///< packed, as rays of one bias see them
+    uint cell_x, cell_y; ///< first cell on the patch
+};
+
+// Nodes of every upper tree take two texels: (lower x y z, first), (upper x y z, kind_and_count), floats as
+// their bits.
+const uint kNodeInner = 0u;    ///< first: node of the left child, the right one follows
+const uint kNodeInstance = 1u; ///< first: instance
+const uint kNodePolygons = 2u; ///< first: entry of primitive_ids; count of them
+const uint kNodePatch = 3u;    ///< first: patch of the surface
+const uint kNodeTile = 4u;     ///< first: tree number
+const uint kNodeKindShift = 28u;
+
+#endif
