@@ -14,6 +14,10 @@ namespace relief {
 enum class SurfaceMode { direct, tessellated };
 enum class LeafKind { exact, box };
 enum class LodRule { field, ray };
+enum class EngineKind { cpu, vulkan };
+/// How the Vulkan engine builds and walks bottom trees: one kernel that keeps groups resident and takes jobs
+/// from a queue (Harada 2015), or a build kernel and then one invocation per pair of patch and ray.
+enum class BottomForm { automatic, fused, split };
 enum class Isa { best, avx512, avx2, sse4, neon, scalar };
 
 inline constexpr int kAutoLevel = -1;
@@ -29,7 +33,11 @@ struct RenderSettings {
     int spp = 64;                   ///< samples a pixel, [1, kMaxSamples]
     int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
-    int threads = 0; ///< 0: all cores
+    EngineKind engine = EngineKind::cpu;
+    int device = -1; ///< Vulkan: index of vulkan_devices() (relief/devices.h); -1: the best one
+    BottomForm bottom = BottomForm::automatic;
+    std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
+    int threads = 0;            ///< 0: all cores
     Isa isa = Isa::best;
     SurfaceMode surface = SurfaceMode::direct;
     int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
@@ -40,6 +48,15 @@ struct RenderSettings {
     Window crop;                                   ///< part of the picture to render
     int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel
     std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost
+};
+
+/// Rays of one kind at one depth of their paths, and what casting them took, in seconds of the whole machine
+/// (Vulkan) or summed over threads (CPU).
+struct CastStatistics {
+    int depth = 0;          ///< 0: camera rays and their shadow rays
+    bool is_shadow = false; ///< towards lights
+    uint64_t rays = 0, pairs = 0;
+    double top_traversal_s = 0, sort_s = 0, bottom_build_s = 0, bottom_traversal_s = 0;
 };
 
 /// Numbers of one render; names follow the keys of `--stats`.
@@ -56,6 +73,7 @@ struct Statistics {
     std::vector<uint64_t> bottom_levels; ///< trees built at level 0, 1, 2, ...
     uint64_t geometry_bytes = 0, structures_bytes = 0, displacement_bytes = 0, bottom_cache_bytes = 0;
     uint64_t ray_buffers_bytes = 0, peak_resident_bytes = 0;
+    std::vector<CastStatistics> casts; ///< by depth, camera and bounce rays before shadow rays
     std::vector<std::string> warnings;
 };
 

@@ -11,3 +11,6 @@
 #include "shared/ggx_albedo.h"
 #include "shared/bsdf.h"
 #include "shared/light.h"
+#include "shared/bindings.h"
+#include "shared/device_scene.h"
+#include "shared/device_rays.h"

@@ -40,21 +40,21 @@ const uint kStorageBindingCount = 30u;
 
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
-const uint kBindNodes = 32u;         ///< rgba32ui: two a node
-const uint kBindPositions = 33u;     ///< r32f: three a vertex
-const uint kBindUvs = 34u;           ///< rg32f
-const uint kBindFrames = 35u;        ///< rg32ui: PackedFrame
-const uint kBindQuads = 36u;         ///< rgba32ui
-const uint kBindDominants = 37u;     ///< r32ui
-const uint kBindVertexTiles = 38u;   ///< r32ui: four a word
-const uint kBindOverrides = 39u;     ///< rgba32ui: patch edge, first, second, 0
-const uint kBindOverrideBits = 40u;  ///< r32ui
-const uint kBindLevels = 41u;        ///< r32ui: pack_levels, one a patch of an instance
-const uint kBindPrimitiveIds = 42u;  ///< r32ui: polygons in the order of the leaves
-const uint kBindFloatTexels = 43u;   ///< rgba32f: maps and textures
-const uint kBindHalfTexels = 44u;    ///< rgba16f: maps and textures
-const uint kBindEnvironment = 45u;   ///< r32f: cumulative distributions
-const uint kBindEmitters = 46u;      ///< rg32ui: cumulative distribution of emissive patches
+const uint kBindNodes = 32u;        ///< rgba32ui: two a node
+const uint kBindPositions = 33u;    ///< r32f: three a vertex
+const uint kBindUvs = 34u;          ///< rg32f
+const uint kBindFrames = 35u;       ///< rg32ui: PackedFrame
+const uint kBindQuads = 36u;        ///< rgba32ui
+const uint kBindDominants = 37u;    ///< r32ui
+const uint kBindVertexTiles = 38u;  ///< r32ui: four a word
+const uint kBindOverrides = 39u;    ///< rgba32ui: patch edge, first, second, 0
+const uint kBindOverrideBits = 40u; ///< r32ui
+const uint kBindLevels = 41u;       ///< r32ui: pack_levels, one a patch of an instance
+const uint kBindPrimitiveIds = 42u; ///< r32ui: polygons in the order of the leaves
+const uint kBindFloatTexels = 43u;  ///< rgba32f: maps and textures
+const uint kBindHalfTexels = 44u;   ///< rgba16f: maps and textures
+const uint kBindEnvironment = 45u;  ///< r32f: cumulative distributions
+const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emissive patches
 const uint kTexelBindingCount = 15u;
 
 const uint kMaxPushBytes = 128u;

@@ -29,4 +29,37 @@ FN uint cell_column(uint cell) { return cell >> 1u & 0xfffu; }
 FN uint cell_row(uint cell) { return cell >> 13u & 0xfffu; }
 FN uint cell_is_upper(uint cell) { return cell & 1u; }
 
+/// How far a ray has come in the order of its patches: (entry, instance, tree). The next round offers what
+/// follows.
+struct CursorData {
+    float entry;
+    uint instance, tree;
+};
+
+/// A patch, or tile of one, that a ray may meet.
+struct CandidateData {
+    uint instance, tree;
+    uint patch_index;
+    uint levels; ///< packed, as this ray sees the patch
+};
+
+/// What kernels count; zeroed by the host where it says so.
+struct CounterData {
+    uint pair_count;            ///< of this round
+    uint job_count;             ///< trees of this round
+    uint next_active_count;     ///< rays of the next round
+    uint deferred_count;        ///< jobs that found no room in the pool and wait for the next wave
+    uint request_count;         ///< patches whose tiles are asked for
+    uint pool_head;             ///< next free place of the pool, in units; grows for ever, modulo 2^32
+    uint next_job;              ///< queue of the persistent kernel
+    uint build_count[4];        ///< jobs to be built, by bin
+    uint pairs_done, jobs_done; ///< over the whole render, modulo 2^32: proofs that nothing was lost
+    uint pairs_emitted, jobs_made;
+    uint pairs_with_hit;
+    uint reused;
+    uint built[6];   ///< trees, by level
+    uint path_count; ///< paths that go on
+    uint shadow_count;
+};
+
 #endif

@@ -12,12 +12,12 @@ struct AffineData {
 
 struct InstanceData {
     AffineData object_from_world, world_from_object;
-    uint surface;     ///< index into surfaces
-    uint material;    ///< index into materials
-    uint root;        ///< node of the surface's tree; kNone: the surface is empty
-    uint first_level; ///< index into levels; kNone: all patches have `levels`
-    uint levels;      ///< packed
-    uint is_mirrored; ///< winding turned
+    uint surface;       ///< index into surfaces
+    uint material;      ///< index into materials
+    uint root;          ///< node of the surface's tree; kNone: the surface is empty
+    uint first_level;   ///< index into levels; kNone: all patches have `levels`
+    uint levels;        ///< packed
+    uint is_mirrored;   ///< winding turned
     uint first_emitter; ///< index into the emitters' table; kNone: gives no light
 };
 
@@ -25,8 +25,8 @@ struct InstanceData {
 struct SurfaceData {
     uint first_vertex; ///< of positions, in vertices
     uint first_uv, first_frame, first_dominant;
-    uint first_vertex_tile;   ///< in bytes: four a word
-    uint first_quad;          ///< also the number of the surface's first patch among all trees
+    uint first_vertex_tile; ///< in bytes: four a word
+    uint first_quad;        ///< also the number of the surface's first patch among all trees
     uint first_override, override_count;
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced

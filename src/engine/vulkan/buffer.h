@@ -12,7 +12,16 @@
 
 namespace relief::vulkan {
 
-enum class TexelFormat { none, r32_float, rg32_float, rgba32_float, rgba16_float, r32_uint, rg32_uint, rgba32_uint };
+enum class TexelFormat {
+    none,
+    r32_float,
+    rg32_float,
+    rgba32_float,
+    rgba16_float,
+    r32_uint,
+    rg32_uint,
+    rgba32_uint
+};
 
 /// Bytes of one texel; 0 for none.
 uint32_t texel_bytes(TexelFormat format);

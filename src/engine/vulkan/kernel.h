@@ -45,8 +45,8 @@ class BindingTable {
     BindingTable& operator=(BindingTable&&) noexcept;
 
     /// Binds all of `buffer`; not while a submission that uses the table is on its way. Numbers from
-    /// kFirstTexelBinding on are uniform texel buffers, those below storage buffers. What is never bound holds
-    /// a small buffer of zeros.
+    /// kFirstTexelBinding on are uniform texel buffers, those below storage buffers. What is never bound
+    /// holds a small buffer of zeros.
     void bind(uint32_t binding, const Buffer& buffer);
 
     struct Implementation;
