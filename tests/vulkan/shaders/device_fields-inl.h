@@ -24,13 +24,16 @@ struct AllStructs {
 #define FIELDS_SURFACE(s)                                                                                    \
     FIELD(s.first_vertex)                                                                                    \
     FIELD(s.first_uv)                                                                                        \
-    FIELD(s.first_frame) FIELD(s.first_dominant) FIELD(s.first_vertex_tile) FIELD(s.first_quad)              \
-        FIELD(s.first_override) FIELD(s.override_count) FIELD(s.first_override_word) FIELD(s.map)
+    FIELD(s.first_frame)                                                                                     \
+    FIELD(s.first_dominant)                                                                                  \
+    FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count)           \
+        FIELD(s.first_override_word) FIELD(s.map)
 #define FIELDS_MAP(s)                                                                                        \
     FIELD3(s.row0)                                                                                           \
     FIELD3(s.row1)                                                                                           \
-    FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) FIELD(s.is_tangent) FIELD(s.first_tile)  \
-        FIELD(s.tile_count)
+    FIELD3(s.row2)                                                                                           \
+    FIELD3(s.midlevel)                                                                                       \
+    FIELD(s.wrap) FIELD(s.flip_v) FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count)
 #define FIELDS_TEXTURE(s)                                                                                    \
     FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
 #define FIELDS_MATERIAL(s)                                                                                   \
@@ -47,12 +50,13 @@ struct AllStructs {
 #define FIELDS_COUNTER(s)                                                                                    \
     FIELD(s.pair_count)                                                                                      \
     FIELD(s.job_count)                                                                                       \
-    FIELD(s.next_active_count) FIELD(s.deferred_count) FIELD(s.request_count) FIELD(s.pool_head)             \
-        FIELD(s.next_job) FIELD(s.build_count[0]) FIELD(s.build_count[1]) FIELD(s.build_count[2])            \
-            FIELD(s.build_count[3]) FIELD(s.pairs_done) FIELD(s.jobs_done) FIELD(s.pairs_emitted)            \
-                FIELD(s.jobs_made) FIELD(s.pairs_with_hit) FIELD(s.reused) FIELD(s.built[0])                 \
-                    FIELD(s.built[1]) FIELD(s.built[2]) FIELD(s.built[3]) FIELD(s.built[4])                  \
-                        FIELD(s.built[5]) FIELD(s.path_count) FIELD(s.shadow_count)
+    FIELD(s.next_active_count)                                                                               \
+    FIELD(s.deferred_count)                                                                                  \
+    FIELD(s.request_count) FIELD(s.pool_head) FIELD(s.next_job) FIELD(s.build_count[0])                      \
+        FIELD(s.build_count[1]) FIELD(s.build_count[2]) FIELD(s.build_count[3]) FIELD(s.pairs_done)          \
+            FIELD(s.jobs_done) FIELD(s.pairs_emitted) FIELD(s.jobs_made) FIELD(s.pairs_with_hit)             \
+                FIELD(s.reused) FIELD(s.built[0]) FIELD(s.built[1]) FIELD(s.built[2]) FIELD(s.built[3])      \
+                    FIELD(s.built[4]) FIELD(s.built[5]) FIELD(s.path_count) FIELD(s.shadow_count)
 #define ALL_FIELDS(s)                                                                                        \
     FIELDS_INSTANCE(s.instance)                                                                              \
     FIELDS_SURFACE(s.surface)                                                                                \
