@@ -35,6 +35,7 @@ using relief::dot;
 using relief::normalize;
 using std::acos;
 using std::atan;
+using std::ceil;
 using std::cos;
 using std::exp;
 using std::exp2;
