@@ -4,14 +4,14 @@
 #define RELIEF_SHADING_NORMAL_H
 #endif
 
-FN Vec3 blend_vectors(Vec3 a, Vec3 b, float s) { return a * (1.0f - s) + b * s; }
+FN Vec3 interpolate(Vec3 a, Vec3 b, float s) { return a * (1.0f - s) + b * s; }
 
 /// Corners in their order around the patch.
-FN Vec3 blend_quad_vectors(Vec3 c0, Vec3 c1, Vec3 c2, Vec3 c3, Vec2 at) {
-    return blend_vectors(blend_vectors(c0, c1, at.x), blend_vectors(c3, c2, at.x), at.y);
+FN Vec3 interpolate_quad(Vec3 c0, Vec3 c1, Vec3 c2, Vec3 c3, Vec2 at) {
+    return interpolate(interpolate(c0, c1, at.x), interpolate(c3, c2, at.x), at.y);
 }
 
-FN Vec3 blend_triangle_vectors(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
+FN Vec3 interpolate_triangle(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
     return c0 * (1.0f - at.x) + c1 * (at.x - at.y) + c2 * at.y;
 }
 
@@ -19,8 +19,8 @@ FN Vec3 blend_triangle_vectors(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
 /// of the triangle that the point is in.
 FN Vec3 make_plain_normal(Vec3 blended, Vec3 facet) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
-    Vec3 normal = normalize_or_zero(blended);
-    if (normal == zero) return normalize_or_zero(facet);
+    Vec3 normal = make_unit(blended);
+    if (normal == zero) return make_unit(facet);
     return select(dot(normal, facet) < 0.0f, -normal, normal);
 }
 
@@ -33,7 +33,7 @@ struct SurfaceDerivative {
 
 /// Derivative of a bilinear patch along one direction, at `s` across: from p to q on the near side, from r to
 /// t on the far side.
-FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, float s) { return blend_vectors(q - p, t - r, s); }
+FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, float s) { return interpolate(q - p, t - r, s); }
 
 /// Ends of the central difference one cell wide about `at`. The uvs run on into the neighbour, except at a
 /// seam, where they would run into another part of the map.
@@ -64,7 +64,7 @@ FN Vec3 displace_derivative_through(SurfaceDerivative along, Basis frame, Vec3 d
 /// From the displaced derivatives; `normal`, the interpolated one, where they vanish.
 FN Vec3 make_displaced_normal(Vec3 along_u, Vec3 along_v, Vec3 normal) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
-    Vec3 result = normalize_or_zero(cross(along_u, along_v));
+    Vec3 result = make_unit(cross(along_u, along_v));
     return select(result == zero, normal, result);
 }
 

@@ -58,7 +58,7 @@ FN Vec3 blend_facet(Vec3 a, Vec3 b, Vec3 c, FacetWeights weights) {
 /// else 1.
 FN Facet make_facet(Vec3 position, Vec3 edge_b, Vec3 edge_c, float turn, float uv_area) {
     Vec3 area = cross(edge_b, edge_c) * turn;
-    Facet facet = {position, normalize_or_zero(area), 0.5f * length(area) / uv_area};
+    Facet facet = {position, make_unit(area), 0.5f * length(area) / uv_area};
     return facet;
 }
 
@@ -89,7 +89,7 @@ FN Vec2 blend_polygon_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
 /// World-space shading normal from that of the surface, `interpolated`, made unit length and put on the side
 /// of the facet.
 FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 facet_normal) {
-    Vec3 normal = normalize_or_zero(interpolated);
+    Vec3 normal = make_unit(interpolated);
     if (dot(normal, normal) == 0.0f) normal = facet_normal;
     return select(dot(normal, facet_normal) < 0.0f, -normal, normal);
 }

@@ -4,10 +4,11 @@
 #define RELIEF_TEXTURE_H
 #endif
 
-/// uv, whose whole part is `whole`, in texels from the centre of texel (0, 0); row 0 is v = 1. The whole part
-/// goes first: far from zero a float would have no bits left for the position between texels.
-FN Vec2 locate_texture_uv(Vec2 uv, Vec2 whole, Vec2 size) {
-    Vec2 result = {(uv.x - whole.x) * size.x - 0.5f, (1.0f - (uv.y - whole.y)) * size.y - 0.5f};
+/// uv in texels from the centre of texel (0, 0); row 0 is v = 1. The whole part goes first: far from zero a
+/// float would have no bits left for the position between texels.
+FN Vec2 locate_texture_uv(Vec2 uv, Vec2 size) {
+    Vec2 result = {(uv.x - floor_texel(uv.x)) * size.x - 0.5f,
+                   (1.0f - (uv.y - floor_texel(uv.y))) * size.y - 0.5f};
     return result;
 }
 

@@ -16,14 +16,14 @@ std::array<Vec3f, 4> load_normals(const Surface& surface, const Quad& quad) {
 }
 
 Vec3f blend_normals(const std::array<Vec3f, 4>& n, const Vec2f& at) {
-    return scalar::blend_quad_vectors(n[0], n[1], n[2], n[3], at);
+    return scalar::interpolate_quad(n[0], n[1], n[2], n[3], at);
 }
 
 /// Normal of an undisplaced patch, turned to the side of the triangle that (u, v) is in.
 Vec3f compute_plain_normal(const Surface& surface, const Quad& quad, float u, float v) {
     const std::array<Vec3f, 4> normals = load_normals(surface, quad);
     const Vec3f blended = quad.is_triangle()
-                              ? scalar::blend_triangle_vectors(normals[0], normals[1], normals[2], {u, v})
+                              ? scalar::interpolate_triangle(normals[0], normals[1], normals[2], {u, v})
                               : blend_normals(normals, {u, v});
     const bool is_upper = v > u && !quad.is_triangle();
     const Vec3f& p = surface.positions[quad.vertex[0]];

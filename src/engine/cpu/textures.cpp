@@ -36,8 +36,7 @@ Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
 
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
-    const Vec2f whole{floor_texel(uv.x), floor_texel(uv.y)};
-    return fetch_bilinear(texture, scalar::locate_texture_uv(uv, whole, size_of(texture)), WrapMode::repeat);
+    return fetch_bilinear(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat);
 }
 
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
