@@ -40,6 +40,7 @@ using relief::min;
 using relief::normalize;
 using std::acos;
 using std::atan;
+using std::ceil;
 using std::cos;
 using std::exp;
 using std::exp2;

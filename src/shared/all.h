@@ -11,6 +11,7 @@
 #include "shared/object_ray.h"
 #include "shared/quantise.h"
 #include "shared/bottom_tree.h"
+#include "shared/lod.h"
 #include "shared/sobol.h"
 #include "shared/warp.h"
 #include "shared/camera.h"

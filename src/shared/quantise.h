@@ -10,6 +10,15 @@ FN float decode_bound(float origin, float scale, uint code) {
     return bound;
 }
 
+/// Bits that compare as unsigned numbers as the floats do; and back.
+FN uint order_float(float x) {
+    uint bits = floatBitsToUint(x);
+    return bits ^ ((bits & 0x80000000u) != 0u ? 0xffffffffu : 0x80000000u);
+}
+FN float unorder_float(uint bits) {
+    return uintBitsToFloat(bits ^ ((bits & 0x80000000u) != 0u ? 0x80000000u : 0xffffffffu));
+}
+
 /// Least power of two for which 65534 steps reach at least `extent` (>= 0, finite).
 FN float choose_scale(float extent) {
     uint exponent = (floatBitsToUint(extent * (1.0f / 65534.0f)) >> 23u) + 1u;
