@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/timer.h"
+#include "engine/camera_frame.h"
 #include "engine/cpu/textures.h"
 #include "math/scalar.h"
 
@@ -92,23 +92,13 @@ class TileTracer {
     PatchSamplesCache patches_;
 };
 
-scalar::CameraFrame make_camera(const PreparedScene& scene) {
-    const Camera& camera = scene.camera;
-    const float fov = camera.fov_degrees * std::numbers::pi_v<float> / 180;
-    scalar::CameraFrame frame = scalar::make_camera_frame(camera.from, camera.to, camera.up, fov,
-                                                          {float(scene.width), float(scene.height)});
-    frame.aperture_radius = camera.aperture_radius;
-    frame.focus_distance = camera.focus_distance;
-    return frame;
-}
-
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
     : tracer_(scene.tracer),
       lights_(scene.lights),
       settings_(scene.settings),
       film_(film),
       counters_(counters),
-      camera_(make_camera(scene.tracer.scene())) {
+      camera_(make_camera_frame(scene.tracer.scene())) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
             for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
