@@ -36,8 +36,8 @@ struct FilmSumsData {
     float hit_count;
     Vec3 shading_normal, geometric_normal, position, albedo;
     Vec2 uv;
-    float depth; ///< least; infinity: nothing was hit
-    uint id;     ///< of the least depth: 1 + instance; the lowest among equals
+    float depth; ///< least
+    uint id;     ///< of the least depth: 1 + instance; the lowest among equals; 0: nothing was hit
 };
 
 /// Emissive patch `index`: of 2^24 equal parts of [0, 1), the count of those that draw it or one before it.

@@ -37,6 +37,8 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
 
 } // namespace
 
+Kernel::Kernel() noexcept = default;
+
 Kernel::Kernel(const Device& device, const KernelConfig& config)
     : implementation_(std::make_unique<Implementation>()) {
     const std::span<const uint32_t> code = config.code.empty() ? find_shader(config.shader) : config.code;

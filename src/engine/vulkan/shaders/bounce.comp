@@ -35,7 +35,7 @@ void continue_path(uint path_index, HitData hit) {
     if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return;
     vec3 throughput = path.throughput * drawn.weight;
     float probability = survival_probability(push.depth, throughput);
-    if (!is_finite(throughput) || (push.depth >= kRouletteDepth && last.x >= probability)) return;
+    if (!is_finite(throughput) || last.x >= probability) return;
     paths[path_index].throughput = throughput * (1.0 / probability);
     paths[path_index].previous = point.position;
     paths[path_index].bsdf_pdf = drawn.pdf;

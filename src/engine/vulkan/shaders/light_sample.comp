@@ -10,11 +10,11 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// A light drawn for one vertex; on an emissive surface the shadow ray must stop short of `target`.
+/// A light drawn for one vertex.
 struct DrawnLight {
     LightDraw light;
     bool is_surface;
-    vec3 end; ///< of the shadow ray, on an emissive surface
+    vec3 end; ///< of the shadow ray, just short of an emissive surface
 };
 
 DrawnLight draw_from_environment(vec3 normal, vec2 u) {
@@ -29,7 +29,7 @@ DrawnLight draw_from_environment(vec3 normal, vec2 u) {
 
 DrawnLight draw_from_emitters(vec3 position, uint bias, float u_emitter, vec2 u) {
     uint emitter = find_emitter(push.emitter_count, u_emitter);
-    uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, emitter);
+    uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, 0u, emitter);
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
     bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
@@ -68,8 +68,8 @@ DrawnLight draw_light(SurfacePointData at, uint bias, vec2 pick_and_emitter, vec
 
 /// Density with which draw_light from the vertex before would have found this point.
 float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
-    uint first = instances[hit.instance].first_emitter;
-    if (first == kNone || push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
+    if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
+    uint first = find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x;
     float probability = estimate_irradiance(sources[push.source_count - 1u], path.previous) /
                         total_irradiance(push.source_count, path.previous);
     return probability * emitter_density(load_emitter_probability(first + hit.patch_index), point.area_per_uv,

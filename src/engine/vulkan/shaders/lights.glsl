@@ -9,7 +9,7 @@
 #include "shared/device_paths.h"
 
 layout(scalar, set = 0, binding = kBindSources) readonly buffer Sources { LightSourceData sources[]; };
-/// EmitterData, then (first emitter, instance) of each emissive instance.
+/// EmitterData, then a range (first emitter, instance) for each emissive instance.
 layout(set = 0, binding = kBindEmitters) uniform usamplerBuffer emitter_table;
 
 float total_irradiance(uint source_count, vec3 position) {
@@ -35,13 +35,13 @@ uint find_emitter(uint emitter_count, float u) {
     return low;
 }
 
-/// (first emitter, instance) of the instance that an emissive patch belongs to.
-uvec2 find_emitter_range(uint emitter_count, uint range_count, uint emitter) {
+/// Last range whose component (0: first emitter, 1: instance) is not above `value`. Both rise over the ranges.
+uvec2 find_emitter_range(uint emitter_count, uint range_count, uint component, uint value) {
     uint low = 0u;
     uint high = range_count - 1u;
     while (low < high) {
         uint middle = (low + high + 1u) / 2u;
-        if (texelFetch(emitter_table, int(emitter_count + middle)).x > emitter)
+        if (texelFetch(emitter_table, int(emitter_count + middle))[component] > value)
             high = middle - 1u;
         else
             low = middle;

@@ -63,7 +63,7 @@ void record_first_hit(uint pixel, HitData hit, SurfacePointData point, Appearanc
     sums.albedo += point.base_color;
     sums.uv += appearance.uv;
     uint id = hit.instance + 1u;
-    if (hit.t < sums.depth || (hit.t == sums.depth && id < sums.id)) {
+    if (sums.id == 0u || hit.t < sums.depth || (hit.t == sums.depth && id < sums.id)) {
         sums.depth = hit.t;
         sums.id = id;
     }
