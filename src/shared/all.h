@@ -29,3 +29,4 @@
 #include "shared/device_scene.h"
 #include "shared/device_rays.h"
 #include "shared/device_paths.h"
+#include "shared/device_sort.h"
