@@ -57,7 +57,9 @@ struct DirectoryData {
     uint root; ///< node
 };
 
-FN uint hash_directory(uint patch_number, uint levels) { return hash_combine(hash_uint(patch_number), levels); }
+FN uint hash_directory(uint patch_number, uint levels) {
+    return hash_combine(hash_uint(patch_number), levels);
+}
 
 /// What the kernels of a cast are told.
 struct CastPush {
@@ -97,9 +99,8 @@ struct CounterData {
     uint request_count;         ///< patches whose tiles are asked for
     uint pool_head;             ///< next free place of the pool, in units; grows for ever, modulo 2^32
     uint next_job;              ///< queue of the persistent kernel
-    uint build_count[4];        ///< jobs to be built, by bin
-    uint pairs_done, jobs_done; ///< over the whole render, modulo 2^32: proofs that nothing was lost
-    uint pairs_emitted, jobs_made;
+    uint build_count[3];        ///< jobs to be built, by bin
+    uint pairs_done, jobs_done; ///< of this wave: proofs that nothing was lost
     uint pairs_with_hit;
     uint reused;
     uint built[6];   ///< trees, by level

@@ -175,7 +175,7 @@ void leave_instance() {
 }
 
 void walk() {
-    uint world_size = 0u; // of the stack when the ray entered its instance
+    uint world_size = 0u; // entries of the stack that wait outside the instance
     push_node(push.root, world.t_min);
     leave_instance();
     while (stack_size > 0u) {
@@ -191,7 +191,7 @@ void walk() {
             enter_inner(first);
         else if (kind == kNodeInstance) {
             if (instances[first].root == kNone) continue;
-            world_size = stack_size + 1u;
+            world_size = stack_size;
             enter_instance(first);
             push_node(instance.root, entry);
         } else if (kind == kNodePatch)
