@@ -58,5 +58,7 @@ void main() {
     HitData best = hits[ray_index];
     if (best.instance != kNone && (push.is_any != 0u || last.entry > best.t * kBoxSlack)) return;
     cursors[ray_index] = CursorData(last.entry, last.instance, last.tree);
-    next_active_rays[atomicAdd(counters.next_active_count, 1u)] = ray_index;
+    uint next;
+    RESERVE(counters.next_active_count, 1u, next)
+    next_active_rays[next] = ray_index;
 }

@@ -22,7 +22,9 @@ void main() {
     uint tree = pairs[place].x;
     if (place == 0u || pairs[place - 1u].x != tree) {
         trees[tree].begin = place;
-        jobs[atomicAdd(counters.job_count, 1u)] = tree;
+        uint job;
+        RESERVE(counters.job_count, 1u, job)
+        jobs[job] = tree;
     }
     if (place + 1u == count || pairs[place + 1u].x != tree) trees[tree].end = place + 1u;
     uint need = find_need(tree, candidates[pairs[place].y]);

@@ -169,14 +169,14 @@ void trace_pair(uvec2 pair, CastPush push) {
     uint place = pair.y / kSlots;
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];
-    atomicAdd(counters.pairs_done, 1u);
+    COUNT(counters.pairs_done)
     if (candidate.entry > t * kBoxSlack) return;
     RayData world = rays[active_rays[push.first + place]];
     PatchVisit visit = enter_tree(pair.x, candidate, world, push.patch_count, push.pool_capacity);
     visit.t = t;
     walk_tree(visit, push.is_any != 0u);
     if (!visit.has_hit) return;
-    atomicAdd(counters.pairs_with_hit, 1u);
+    COUNT(counters.pairs_with_hit)
     uint64_t found = push.is_any != 0u ? uint64_t(0)
                                        : make_nearest(visit.t, find_slot_rank(pair.y) << kCellBits | visit.cell);
     atomicMin(nearest[place], found);

@@ -3,6 +3,7 @@
 #define RELIEF_RAYS_GLSL
 
 #include "engine/vulkan/shaders/scene.glsl"
+#include "engine/vulkan/shaders/count.glsl"
 #include "shared/object_ray.h"
 #include "shared/device_rays.h"
 

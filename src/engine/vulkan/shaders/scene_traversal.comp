@@ -223,7 +223,8 @@ void main() {
         hits[ray_index] = result;
     }
     nearest[place] = make_nearest(best.t, 0xffffffffu);
-    uint first_pair = slot_count > 0u ? atomicAdd(counters.pair_count, slot_count) : 0u;
+    uint first_pair;
+    RESERVE(counters.pair_count, slot_count, first_pair)
     for (uint k = 0u; k < kSlots; ++k) {
         uint candidate = place * kSlots + k;
         if (k < slot_count) {
