@@ -19,6 +19,7 @@ using Vec3 = relief::Vec3<float>;
 
 inline float select(bool condition, float a, float b) { return condition ? a : b; }
 inline Vec3 select(bool condition, const Vec3& a, const Vec3& b) { return condition ? a : b; }
+inline Vec2 select(bool condition, const Vec2& a, const Vec2& b) { return condition ? a : b; }
 inline uint select(bool condition, uint a, uint b) { return condition ? a : b; }
 inline float abs(float a) { return std::fabs(a); }
 inline float min(float a, float b) { return b < a ? b : a; }
@@ -32,6 +33,10 @@ inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
 inline Vec3 make_unit(const Vec3& a) { return relief::normalize(a); }
 using relief::cross;
 using relief::dot;
+using relief::is_finite;
+using relief::length;
+using relief::max;
+using relief::min;
 using relief::normalize;
 using std::acos;
 using std::atan;

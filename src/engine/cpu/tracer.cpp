@@ -1,6 +1,7 @@
 #include "engine/cpu/tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
 #include "engine/scene_trees.h"
+#include "math/scalar.h"
 #include "relief/error.h"
 
 namespace relief::cpu {
@@ -19,78 +21,39 @@ namespace {
 /// of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
-/// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the
-/// patch.
-struct MicroTriangle {
-    Vec3f corner[3];
-    float weight_b, weight_c; ///< barycentric, of corners 1 and 2
-    float uv_area;            ///< in the patch's (u, v)
-};
+/// Corners of a micro-triangle, object space.
+using Corners = std::array<Vec3f, 3>;
 
-/// `samples` is null on a surface without displacement.
-MicroTriangle make_micro_triangle(const Surface& surface, const PatchSamples* samples,
-                                  const PatchLevels& levels, const TraceHit& hit) {
-    const float side = float(1u << levels.patch);
-    const float x = std::clamp(hit.u * side - float(hit.i), 0.0f, 1.0f);
-    const float y = std::clamp(hit.v * side - float(hit.j), 0.0f, 1.0f);
-    MicroTriangle triangle;
-    const Quad& quad = surface.quads[hit.patch];
-    if (samples) {
-        const auto vertex = [&](uint32_t i, uint32_t j) {
-            return evaluate_vertex(*samples, levels, hit.i + i, hit.j + j);
-        };
-        triangle.corner[0] = vertex(0, 0);
-        triangle.corner[1] = hit.is_upper ? vertex(1, 1) : vertex(1, 0);
-        triangle.corner[2] = hit.is_upper ? vertex(0, 1) : vertex(1, 1);
-    } else {
-        triangle.corner[0] = surface.positions[quad.vertex[0]];
-        triangle.corner[1] = surface.positions[quad.vertex[hit.is_upper ? 2 : 1]];
-        triangle.corner[2] = surface.positions[quad.vertex[hit.is_upper ? 3 : 2]];
+/// A triangle's own, or those of a cell of the patch; `samples` is null on a surface without displacement.
+Corners make_corners(const Surface& surface, const PatchSamples* samples, const PatchLevels& levels,
+                     const TraceHit& hit) {
+    if (!samples) {
+        const Quad& quad = surface.quads[hit.patch];
+        return {surface.positions[quad.vertex[0]], surface.positions[quad.vertex[hit.is_upper ? 2 : 1]],
+                surface.positions[quad.vertex[hit.is_upper ? 3 : 2]]};
     }
-    // Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01.
-    triangle.weight_b = hit.is_upper ? x : std::max(x - y, 0.0f);
-    triangle.weight_c = hit.is_upper ? std::max(y - x, 0.0f) : y;
-    triangle.uv_area = quad.is_triangle() ? 1.0f : 0.5f / (side * side);
-    return triangle;
+    const auto vertex = [&](uint32_t i, uint32_t j) {
+        return evaluate_vertex(*samples, levels, hit.i + i, hit.j + j);
+    };
+    return {vertex(0, 0), hit.is_upper ? vertex(1, 1) : vertex(1, 0),
+            hit.is_upper ? vertex(0, 1) : vertex(1, 1)};
 }
 
-float largest_coordinate(const Vec3f& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
-/// A point is interpolated between corners and transformed, and the ray that leaves it is transformed back:
-/// each step errs by a few units in the last place of the largest number that it adds up.
-float bound_position_error(const Affine& world_from_object, const MicroTriangle& triangle,
-                           const Vec3f& position) {
-    constexpr float kUnits = 32 * 0x1p-24f;
+float bound_position_error(const Affine& world_from_object, const Corners& corners, const Vec3f& position) {
     float corner = 0, row = 0;
-    for (const Vec3f& p : triangle.corner) corner = std::max(corner, largest_coordinate(p));
-    for (const Vec3f& r : world_from_object.rows)
-        row = std::max(row, std::fabs(r.x) + std::fabs(r.y) + std::fabs(r.z));
-    return kUnits *
-           (row * corner + largest_coordinate(world_from_object.translation) + largest_coordinate(position));
-}
-
-/// (i, j, is_upper) of the cell that holds hit.u, hit.v; on a triangle (u, v) is folded into v <= u.
-void locate_cell(bool is_triangle, uint32_t side, TraceHit& hit) {
-    if (is_triangle && hit.v > hit.u) std::swap(hit.u, hit.v);
-    const float x = std::clamp(hit.u, 0.0f, 1.0f) * float(side),
-                y = std::clamp(hit.v, 0.0f, 1.0f) * float(side);
-    hit.i = uint16_t(std::min(uint32_t(x), side - 1));
-    hit.j = uint16_t(std::min(uint32_t(y), side - 1));
-    hit.is_upper = !is_triangle && y - float(hit.j) > x - float(hit.i);
+    for (const Vec3f& p : corners) corner = std::max(corner, scalar::largest_coordinate(p));
+    for (const Vec3f& r : world_from_object.rows) row = std::max(row, scalar::sum_magnitudes(r));
+    return scalar::bound_position_error(corner, row,
+                                        scalar::largest_coordinate(world_from_object.translation),
+                                        scalar::largest_coordinate(position));
 }
 
 Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     if (surface.uvs.empty()) return {};
     const Quad& quad = surface.quads[patch];
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
-    if (!surface.has_displacement) {
-        // Two triangles: linear on each, as their positions are.
-        return v <= u ? uv(0) * (1 - u) + uv(1) * (u - v) + uv(2) * v
-                      : uv(0) * (1 - v) + uv(2) * u + uv(3) * (v - u);
-    }
-    return (uv(0) * (1 - u) + uv(1) * u) * (1 - v) + (uv(3) * (1 - u) + uv(2) * u) * v;
+    return surface.has_displacement ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
+                                    : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
 }
 
 TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv,
@@ -98,11 +61,13 @@ TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patc
     const Instance& placed = scene.instances[instance];
     TraceHit hit;
     hit.instance = instance, hit.patch = patch;
-    hit.u = uv.x, hit.v = uv.y;
     hit.bias = uint8_t(bias);
     const PatchLevels levels = placed.levels->at(patch).biased(bias);
     hit.levels = pack_levels(levels);
-    locate_cell(scene.surfaces[placed.surface].quads[patch].is_triangle(), 1u << levels.patch, hit);
+    const bool is_triangle = scene.surfaces[placed.surface].quads[patch].is_triangle();
+    const scalar::CellPlace place = scalar::locate_cell(is_triangle, 1u << levels.patch, uv.x, uv.y);
+    hit.u = place.u, hit.v = place.v;
+    hit.i = uint16_t(place.i), hit.j = uint16_t(place.j), hit.is_upper = place.is_upper;
     return hit;
 }
 
@@ -125,20 +90,24 @@ SurfacePoint make_facet_point(const PreparedScene& scene, const TraceHit& hit, c
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
     const PatchLevels levels = unpack_levels(hit.levels);
-    const MicroTriangle triangle = make_micro_triangle(surface, samples, levels, hit);
-    const Vec3f &a = triangle.corner[0], &b = triangle.corner[1], &c = triangle.corner[2];
+    const Corners corners = make_corners(surface, samples, levels, hit);
+    const auto& [a, b, c] = corners;
+    const float side = float(1u << levels.patch);
+    const scalar::FacetWeights weights =
+        scalar::weigh_facet_corners({hit.u, hit.v, hit.i, hit.j, hit.is_upper != 0}, side);
 
     SurfacePoint point;
     point.instance = hit.instance, point.patch = hit.patch;
-    const Vec3f local =
-        a * (1 - triangle.weight_b - triangle.weight_c) + b * triangle.weight_b + c * triangle.weight_c;
-    point.position = transform_point(instance.world_from_object, local);
-    const Vec3f edge_b = transform_vector(instance.world_from_object, b - a);
-    const Vec3f edge_c = transform_vector(instance.world_from_object, c - a);
-    const Vec3f area = cross(edge_b, edge_c) * (instance.is_mirrored ? -1.0f : 1.0f);
-    point.geometric_normal = normalize(area);
-    point.area_per_uv = 0.5f * length(area) / triangle.uv_area;
-    point.position_error = bound_position_error(instance.world_from_object, triangle, point.position);
+    const Affine& world_from_object = instance.world_from_object;
+    const scalar::Facet facet =
+        scalar::make_facet(transform_point(world_from_object, scalar::blend_facet(a, b, c, weights)),
+                           transform_vector(world_from_object, b - a),
+                           transform_vector(world_from_object, c - a), instance.is_mirrored ? -1.0f : 1.0f,
+                           scalar::facet_uv_area(surface.quads[hit.patch].is_triangle(), side));
+    point.position = facet.position;
+    point.geometric_normal = facet.normal;
+    point.area_per_uv = facet.area_per_uv;
+    point.position_error = bound_position_error(world_from_object, corners, point.position);
     return point;
 }
 
@@ -150,9 +119,8 @@ SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const P
     SurfacePoint point = make_facet_point(scene, hit, samples);
     const Vec3f smooth = samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
                                  : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
-    point.shading_normal = normalize(transform_normal(instance.object_from_world, smooth));
-    if (dot(point.shading_normal, point.shading_normal) == 0) point.shading_normal = point.geometric_normal;
-    if (dot(point.shading_normal, point.geometric_normal) < 0) point.shading_normal = -point.shading_normal;
+    point.shading_normal = scalar::orient_shading_normal(transform_normal(instance.object_from_world, smooth),
+                                                         point.geometric_normal);
     point.uv = interpolate_uv(surface, hit.patch, hit.u, hit.v);
     return point;
 }
@@ -248,8 +216,7 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
 }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
-    const float side = dot(direction, point.geometric_normal) < 0 ? -1.0f : 1.0f;
-    return point.position + point.geometric_normal * (side * point.position_error);
+    return scalar::offset_origin(point.position, point.geometric_normal, point.position_error, direction);
 }
 
 void Tracer::add_statistics(Statistics& statistics) const {
