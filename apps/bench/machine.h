@@ -1,0 +1,19 @@
+// What every figure must name: the build it came from and the machine it was measured on.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "relief/render.h"
+
+namespace relief::bench {
+
+/// {version, commit, compiler} of this build; commit as of its configuration, "unknown" outside git.
+nlohmann::ordered_json describe_build();
+
+/// {system, processor, threads} of this machine.
+nlohmann::ordered_json describe_machine();
+
+/// {engine, name, isa, threads} as a render reported them.
+nlohmann::ordered_json describe_device(const Statistics& statistics);
+
+} // namespace relief::bench
