@@ -1,12 +1,16 @@
-# relief_module(NAME [SOURCE_DIRECTORY DIR] MODULES ... LIBRARIES ...): static library relief_NAME from src/NAME.
+# relief_module(NAME [SOURCE_DIRECTORY DIR] [EXCLUDE REGEX] MODULES ... LIBRARIES ...): static library relief_NAME from
+# src/NAME, without the sources whose path matches REGEX.
 function(relief_module name)
-  cmake_parse_arguments(ARG "" "SOURCE_DIRECTORY" "MODULES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "SOURCE_DIRECTORY;EXCLUDE" "MODULES;LIBRARIES" ${ARGN})
   set(directory ${PROJECT_SOURCE_DIR}/src/${name})
   if(ARG_SOURCE_DIRECTORY)
     set(directory ${PROJECT_SOURCE_DIR}/src/${ARG_SOURCE_DIRECTORY})
     file(GLOB sources CONFIGURE_DEPENDS ${directory}/*.cpp)
   else()
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${directory}/*.cpp)
+  endif()
+  if(ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${ARG_EXCLUDE})
   endif()
   if(NOT sources)
     add_library(relief_${name} INTERFACE)

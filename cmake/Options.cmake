@@ -1,5 +1,6 @@
 # Options of the build and flags that every target has.
 option(RELIEF_IO "Build file readers and writers and the relief command" ON)
+option(RELIEF_VULKAN "Build the Vulkan engine" ON)
 option(RELIEF_TESTS "Build the tests" ON)
 option(RELIEF_FUZZ "Build the fuzz targets (clang)" OFF)
 option(RELIEF_DCHECKS "Check internal contracts at run time" OFF)

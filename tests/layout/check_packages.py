@@ -17,8 +17,10 @@ PACKAGES = {
     "CLI11": ["libcli11-dev"],
     "GTest": ["libgtest-dev"],
     "Python3": ["python3"],
+    # The headers; the loader comes with them. Tests need a driver and the validation layer.
+    "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],
 }
-TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make"]
+TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc"]
 
 root = pathlib.Path(sys.argv[1])
 listed = set((root / "tools/packages.txt").read_text().splitlines())

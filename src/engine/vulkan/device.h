@@ -37,6 +37,8 @@ class Device {
         /// Khronos validation with synchronisation validation; each message is kept, see
         /// validation_messages().
         bool is_validated = false;
+        /// Copies through staging memory even where the host reaches the device's memory; for tests.
+        bool is_staged = false;
     };
 
     /// Throws Error{device_missing}: no driver, no such index, or features that are named.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct KernelConfig {
     std::string shader; ///< file in shaders/ without its suffix, e.g. "bottom_build"
     /// Specialization constants 0, 1, 2, ...; constant 0 is the work-group size of every kernel.
     std::vector<uint32_t> constants;
+    /// SPIR-V of a shader that is not in shaders/; empty: the one of that name. Read while the kernel is
+    /// made.
+    std::span<const uint32_t> code = {};
 };
 
 /// One compiled shader with its constants. The device must outlive it.

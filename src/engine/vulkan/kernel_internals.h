@@ -1,0 +1,25 @@
+// Vulkan's side of Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp and commands.cpp only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/vulkan/device_internals.h"
+#include "engine/vulkan/kernel.h"
+
+namespace relief::vulkan {
+
+struct Kernel::Implementation {
+    std::string name;
+    uint32_t group_size = 0;
+    vk::raii::Pipeline pipeline = nullptr;
+};
+
+struct BindingTable::Implementation {
+    Device::Implementation* device = nullptr;
+    std::vector<Buffer> unbound; ///< zeros: one for storage, one for each format of texels
+    vk::raii::DescriptorPool pool = nullptr;
+    vk::raii::DescriptorSet set = nullptr;
+};
+
+} // namespace relief::vulkan
