@@ -14,7 +14,7 @@ namespace {
 
 // Pixels.
 constexpr double kWidth = 1120, kPlotTop = 92, kPlotHeight = 300, kLeft = 64, kGap = 62, kRight = 16;
-constexpr double kLabelHeight = 104, kNoteHeight = 17;
+constexpr double kLabelHeight = 112, kNoteHeight = 17;
 
 /// Told apart by those who see few colours (Okabe and Ito 2008).
 constexpr std::array<const char*, 8> kColors = {"#0072b2", "#e69f00", "#d55e00", "#009e73",
@@ -160,7 +160,9 @@ class ChartWriter {
         add("<line x1=\"{:g}\" y1=\"{:g}\" x2=\"{:g}\" y2=\"{:g}\" stroke=\"#222\"/>\n", x, base, x + width,
             base);
         add("<text x=\"{:g}\" y=\"{:g}\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n",
-            x + width / 2, base + kLabelHeight - 22, escape(panel.title));
+            x + width / 2, base + kLabelHeight - 34, escape(panel.title));
+        add("<text x=\"{:g}\" y=\"{:g}\" text-anchor=\"middle\" font-size=\"11\">{}</text>\n", x + width / 2,
+            base + kLabelHeight - 19, escape(panel.subtitle));
     }
 
     void write_bar(const Bar& bar, const Axis& axis, double center, double width) {
@@ -178,7 +180,7 @@ class ChartWriter {
             add("<line x1=\"{0:.1f}\" y1=\"{1:.2f}\" x2=\"{0:.1f}\" y2=\"{2:.2f}\" stroke=\"#222\"/>\n",
                 center, base - axis.height(bar.lowest), base - axis.height(bar.highest));
         if (sum > 0)
-            add("<text x=\"{:.1f}\" y=\"{:.2f}\" text-anchor=\"middle\" font-size=\"10\">{}</text>\n", center,
+            add("<text x=\"{:.1f}\" y=\"{:.2f}\" text-anchor=\"middle\" font-size=\"9\">{}</text>\n", center,
                 base - std::max(axis.height(sum), axis.height(bar.highest)) - 4,
                 format_value(chart_.unit, sum));
         if (!bar.note.empty())
@@ -202,7 +204,10 @@ std::string format_value(Unit unit, double value) {
                              : fmt::format("{:.3g} {}", number, name);
     };
     if (value == 0) return "0";
-    if (unit == Unit::milliseconds) return value >= 1000 ? format(value / 1000, "s") : format(value, "ms");
+    if (unit == Unit::milliseconds) {
+        if (value >= 1000) return format(value / 1000, "s");
+        return value >= 0.1 ? format(value, "ms") : format(value * 1000, "us");
+    }
     for (const auto& [size, name] : {std::pair(1e12, "TB"), {1e9, "GB"}, {1e6, "MB"}, {1e3, "KB"}})
         if (value >= size) return format(value / size, name);
     return format(value, "B");

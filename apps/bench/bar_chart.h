@@ -19,6 +19,7 @@ struct Bar {
 
 struct Panel {
     std::string title;
+    std::string subtitle; ///< may be empty
     std::vector<Bar> bars;
 };
 

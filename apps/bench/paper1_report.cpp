@@ -80,8 +80,9 @@ Chart make_table_chart(const Json& result) {
                 {},
                 {get_where(result)}};
     for (const Json& row : result["table1_1"]) {
-        Panel panel{fmt::format("{}, {} patches, {:.1f} bytes each", row["scene"].get<std::string>(),
-                                row["patches"].get<uint64_t>(), row["direct"]["bytes_a_patch"].get<double>()),
+        Panel panel{row["scene"].get<std::string>(),
+                    fmt::format("{} patches, {:.1f} bytes each", row["patches"].get<uint64_t>(),
+                                row["direct"]["bytes_a_patch"].get<double>()),
                     {}};
         panel.bars.push_back(make_bytes_bar("direct", 0, row["direct"]["total_bytes"].get<double>()));
         panel.bars.push_back(make_bytes_bar("paper", 1, row["paper"]["direct_bytes"].get<double>()));
@@ -103,7 +104,7 @@ Chart make_frame_chart(const Json& result) {
                 {},
                 get_notes(result, "figure1_7")};
     for (const Json& scene : result["figure1_7"]) {
-        Panel panel{scene["scene"].get<std::string>(), {}};
+        Panel panel{scene["scene"].get<std::string>(), "", {}};
         for (const Json& variant : scene["variants"]) {
             const std::string name = variant["name"].get<std::string>();
             if (variant["outcome"] == "measured") {
@@ -127,7 +128,7 @@ Chart make_cast_chart(const Json& result) {
                 {},
                 get_notes(result, "figure1_9")};
     for (const Json& scene : result["figure1_9"]) {
-        Panel panel{scene["scene"].get<std::string>(), {}};
+        Panel panel{scene["scene"].get<std::string>(), "", {}};
         for (const Json& variant : scene["variants"])
             for (const Json& cast : variant["casts"]) {
                 const std::string kind = cast["kind"] == "shadow" ? "shadow" : "primary";
@@ -140,7 +141,7 @@ Chart make_cast_chart(const Json& result) {
 }
 
 Chart make_depth_chart(const Json& result) {
-    Chart chart{"Figure 1.10: casts by depth of the path, Bark",
+    Chart chart{"Figure 1.10: casts by depth of the path, Bark in white",
                 get_axis(result, "time of a cast; (sh): shadow rays"),
                 Unit::milliseconds,
                 Scale::linear,
@@ -149,7 +150,7 @@ Chart make_depth_chart(const Json& result) {
                 get_notes(result, "figure1_10")};
     for (const Json& scene : result["figure1_10"])
         for (const Json& variant : scene["variants"]) {
-            Panel panel{variant["name"] == "direct" ? "with the cache" : "no cache, as in the paper", {}};
+            Panel panel{variant["name"] == "direct" ? "with the cache" : "no cache, as in the paper", "", {}};
             for (const Json& cast : variant["casts"])
                 panel.bars.push_back(make_stage_bar(
                     fmt::format("{}{}", cast["depth"].get<int>(), cast["kind"] == "shadow" ? " (sh)" : ""),
