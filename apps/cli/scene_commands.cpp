@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "relief/devices.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
@@ -102,14 +103,31 @@ int run_inspect(const InspectOptions& options) {
     return options.is_strict && has(Severity::warning) ? kExitWarnings : kExitDone;
 }
 
+nlohmann::ordered_json to_json(const DeviceInfo& device) {
+    return {{"engine", "vulkan"},       {"device", device.index}, {"name", device.name},
+            {"driver", device.driver},  {"kind", device.kind},    {"memory_bytes", device.memory_bytes},
+            {"missing", device.missing}};
+}
+
+void print_device(const DeviceInfo& device) {
+    fmt::print("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
+               device.driver, double(device.memory_bytes) / double(1u << 30));
+    if (!device.missing.empty())
+        fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
+}
+
 int run_devices(bool is_json) {
     const std::vector<std::string> isas = available_isas();
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+    const std::vector<DeviceInfo> devices = vulkan_devices();
     if (is_json) {
-        const nlohmann::ordered_json cpu = {{"engine", "cpu"}, {"threads", threads}, {"isa", isas}};
-        fmt::print("{}\n", nlohmann::ordered_json::array({cpu}).dump());
+        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        list.push_back({{"engine", "cpu"}, {"threads", threads}, {"isa", isas}});
+        for (const DeviceInfo& device : devices) list.push_back(to_json(device));
+        fmt::print("{}\n", list.dump());
     } else {
-        fmt::print("cpu  {} threads  {}\n", threads, fmt::join(isas, " "));
+        fmt::print("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
+        for (const DeviceInfo& device : devices) print_device(device);
     }
     return kExitDone;
 }

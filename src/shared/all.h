@@ -14,3 +14,4 @@
 #include "shared/bindings.h"
 #include "shared/device_scene.h"
 #include "shared/device_rays.h"
+#include "shared/device_sort.h"

@@ -1,5 +1,9 @@
 // What a displaced surface is: the exact float operations of one vertex, in the one order that every engine
 // keeps. Shared edges are closed because both of their patches run these lines on the same numbers.
+#ifndef RELIEF_DISPLACE_H
+#ifndef __cplusplus
+#define RELIEF_DISPLACE_H
+#endif
 
 /// Point at parameter s between a and b; exact at s = 0 and s = 1 for finite a, b.
 FN Float blend(Float a, Float b, Float s) {
@@ -30,3 +34,5 @@ FN Float carry_through_frame(Float t, Float b, Float n, Float frame_t, Float fra
     EXACT Float d = t * frame_t + b * frame_b + n * frame_n;
     return d;
 }
+
+#endif

@@ -9,6 +9,7 @@
 // From 400 x 400 stratified samples an entry; the tests compute the integrals anew and compare. The averages
 // are 2 integral(albedo(x) x dx) of the linearly interpolated table, not of the lobe itself, so that what the
 // table says adds up to one exactly.
+#ifdef __cplusplus
 // clang-format off
 const float kGgxScale[256] = {
     0.02569f, 0.02558f, 0.08667f, 0.18498f, 0.30862f, 0.44515f, 0.58182f, 0.70716f, 0.81241f, 0.89262f, 0.94707f, 0.97890f, 0.99395f, 0.99904f, 0.99996f, 1.00000f,
@@ -53,34 +54,57 @@ const float kGgxAverageBias[16] = {
     0.04835f, 0.04821f, 0.04693f, 0.04371f, 0.03875f, 0.03283f, 0.02682f, 0.02133f, 0.01666f, 0.01287f, 0.00989f, 0.00760f, 0.00586f, 0.00454f, 0.00354f, 0.00279f
 };
 // clang-format on
+#else
+// Shaders read the same numbers from memory: compilers for devices copy a constant array to each place that
+// indexes it, which costs some of them minutes. Kernels find the table bound
+// (engine/vulkan/binding_table.cpp).
+#include "shared/bindings.h"
+layout(binding = kBindAlbedos) uniform samplerBuffer ggx_albedo_table;
+#endif
 
 /// Albedo = f0 * scale + f90 * bias.
 struct GgxAlbedo {
     float scale, bias;
 };
 
+const uint kGgxAverages = 256u; ///< where the averages follow in the table
+const uint kGgxEntryCount = 272u;
+
+/// Entry of the table.
+FN GgxAlbedo read_ggx_albedo(uint i) {
+#ifdef __cplusplus
+    GgxAlbedo result = {i < kGgxAverages ? kGgxScale[i] : kGgxAverageScale[i - kGgxAverages],
+                        i < kGgxAverages ? kGgxBias[i] : kGgxAverageBias[i - kGgxAverages]};
+#else
+    vec4 texel = texelFetch(ggx_albedo_table, int(i));
+    GgxAlbedo result = {texel.x, texel.y};
+#endif
+    return result;
+}
+
+FN GgxAlbedo mix_ggx_albedo(GgxAlbedo a, GgxAlbedo b, float f) {
+    GgxAlbedo result = {mix(a.scale, b.scale, f), mix(a.bias, b.bias, f)};
+    return result;
+}
+
 FN GgxAlbedo lookup_ggx_albedo(float roughness, float cos_theta) {
     float y = clamp(roughness, 0.0f, 1.0f) * 15.0f;
     float x = sqrt(clamp(cos_theta, 0.0f, 1.0f)) * 15.0f;
     float row = min(floor(y), 14.0f);
     float column = min(floor(x), 14.0f);
-    float fy = y - row;
     float fx = x - column;
     uint i = uint(row) * 16u + uint(column);
-    GgxAlbedo result = {
-        mix(mix(kGgxScale[i], kGgxScale[i + 1u], fx), mix(kGgxScale[i + 16u], kGgxScale[i + 17u], fx), fy),
-        mix(mix(kGgxBias[i], kGgxBias[i + 1u], fx), mix(kGgxBias[i + 16u], kGgxBias[i + 17u], fx), fy)};
-    return result;
+    GgxAlbedo above = mix_ggx_albedo(read_ggx_albedo(i), read_ggx_albedo(i + 1u), fx);
+    GgxAlbedo below = mix_ggx_albedo(read_ggx_albedo(i + 16u), read_ggx_albedo(i + 17u), fx);
+    return mix_ggx_albedo(above, below, y - row);
 }
 
 /// Cosine-weighted mean over the hemisphere.
 FN GgxAlbedo lookup_ggx_average(float roughness) {
     float y = clamp(roughness, 0.0f, 1.0f) * 15.0f;
     float row = min(floor(y), 14.0f);
-    uint i = uint(row);
-    GgxAlbedo result = {mix(kGgxAverageScale[i], kGgxAverageScale[i + 1u], y - row),
-                        mix(kGgxAverageBias[i], kGgxAverageBias[i + 1u], y - row)};
-    return result;
+    uint i = kGgxAverages + uint(row);
+    return mix_ggx_albedo(read_ggx_albedo(i), read_ggx_albedo(i + 1u), y - row);
 }
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "engine/vulkan/commands.h"
 #include "math/scalar.h"
+#include "relief/error.h"
 #include "vulkan/gpu_fixture.h"
 #include "vulkan/test_shaders.h"
 
@@ -32,6 +33,80 @@ TEST_F(Commands, fills_and_dispatches_see_each_other_in_order) {
     const std::vector<uint32_t> result = copy.download<uint32_t>(kCount);
     for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], (70 + i) * 100 + i);
     EXPECT_EQ(commands.dispatch_count(), 2u);
+}
+
+TEST_F(Commands, dispatches_of_many_groups_cover_every_invocation) {
+    // Groups of 2 make more than one row of them.
+    constexpr uint32_t kCount = 200'001;
+    const Buffer values(device(), {.name = "values", .bytes = kCount * 4});
+    BindingTable bindings(device());
+    bindings.bind(scalar::kBindFilm, values);
+    const Kernel kernel = make_test_kernel(device(), "add_index", {2});
+    EXPECT_EQ(kernel.group_size(), 2u);
+    vulkan::Commands commands(device(), bindings);
+    commands.fill(values, 0, kCount * 4, 3);
+    commands.dispatch(kernel, kCount, AddIndexPush{kCount, 2});
+    commands.run();
+    const std::vector<uint32_t> result = values.download<uint32_t>(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], 6 + i);
+}
+
+TEST_F(Commands, indirect_dispatches_read_what_came_before) {
+    constexpr uint32_t kCount = 640;
+    const Buffer values(device(), {.name = "values", .bytes = kCount * 4});
+    const Buffer arguments(device(), {.name = "arguments", .bytes = 32, .is_indirect = true});
+    BindingTable bindings(device());
+    bindings.bind(scalar::kBindFilm, values);
+    const Kernel kernel = make_test_kernel(device(), "add_index");
+    vulkan::Commands commands(device(), bindings);
+    commands.fill(values, 0, kCount * 4, 1);
+    commands.fill(arguments, 0, 32, 1);
+    commands.fill(arguments, 16, 4, 5);
+    commands.dispatch_indirect(kernel, arguments, 16, AddIndexPush{kCount, 10});
+    commands.run();
+    const std::vector<uint32_t> result = values.download<uint32_t>(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], i < 320 ? 10 + i : 1);
+}
+
+TEST_F(Commands, of_nothing_do_nothing) {
+    BindingTable bindings(device());
+    const Buffer values(device(), {.name = "values", .bytes = 16});
+    const Kernel kernel = make_test_kernel(device(), "add_index");
+    vulkan::Commands commands(device(), bindings);
+    commands.run();
+    commands.dispatch(kernel, 0, AddIndexPush{0, 0});
+    commands.fill(values, 0, 0, 1);
+    commands.copy(values, 0, values, 8, 0);
+    commands.run();
+    EXPECT_EQ(commands.dispatch_count(), 0u);
+}
+
+TEST_F(Commands, time_goes_to_the_stage_that_took_it) {
+    constexpr uint32_t kCount = 1u << 20;
+    const Buffer values(device(), {.name = "values", .bytes = kCount * 4});
+    BindingTable bindings(device());
+    bindings.bind(scalar::kBindFilm, values);
+    const Kernel kernel = make_test_kernel(device(), "add_index");
+    vulkan::Commands commands(device(), bindings);
+    commands.fill(values, 0, kCount * 4, 1);
+    commands.begin_stage(Stage::sort);
+    for (int i = 0; i < 20; ++i) commands.dispatch(kernel, kCount, AddIndexPush{kCount, 1});
+    commands.begin_stage(Stage::film);
+    commands.dispatch(kernel, 64, AddIndexPush{64, 1});
+    commands.begin_stage(Stage::shade);
+    commands.run();
+    const std::array<double, kStageCount>& seconds = commands.stage_seconds();
+    EXPECT_GT(seconds[size_t(Stage::sort)], 0.0);
+    EXPECT_GT(seconds[size_t(Stage::film)], 0.0);
+    EXPECT_LT(seconds[size_t(Stage::film)], seconds[size_t(Stage::sort)]);
+    EXPECT_EQ(seconds[size_t(Stage::shade)], 0.0);
+    EXPECT_EQ(seconds[size_t(Stage::top_traversal)], 0.0);
+}
+
+TEST_F(Commands, unknown_shaders_and_group_sizes_are_refused) {
+    EXPECT_THROW(Kernel(device(), {"no_such_shader", {64}}), Error);
+    EXPECT_THROW(make_test_kernel(device(), "add_index", {}), Error);
+    EXPECT_THROW(make_test_kernel(device(), "add_index", {1u << 20}), Error);
 }
 
 } // namespace

@@ -16,17 +16,15 @@ inline const Device& get_test_device() {
 
 class GpuTest : public testing::Test {
   protected:
-    GpuTest() : first_message_(get_test_device().validation_messages().size()) {}
-
     void TearDown() override {
         const std::vector<std::string> messages = device().validation_messages();
-        for (size_t i = first_message_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+        for (; told_count_ < messages.size(); ++told_count_) ADD_FAILURE() << messages[told_count_];
     }
 
     static const Device& device() { return get_test_device(); }
 
   private:
-    size_t first_message_;
+    static inline size_t told_count_ = 0; ///< messages that have failed a test
 };
 
 } // namespace relief::vulkan::tests

@@ -27,6 +27,7 @@ constexpr std::array<TexelFormat, scalar::kTexelBindingCount> kTexelFormats = {
     TexelFormat::rgba16_float, // half texels
     TexelFormat::r32_float,    // environment
     TexelFormat::rg32_uint,    // emitters
+    TexelFormat::rg32_float,   // albedos
 };
 
 TexelFormat find_format(uint32_t binding) {
@@ -60,6 +61,18 @@ const Buffer& find_unbound(BindingTable::Implementation& table, const Device& de
     return table.unbound.back();
 }
 
+/// What ggx_albedo.h reads in C++.
+Buffer make_albedos(const Device& device) {
+    std::vector<scalar::GgxAlbedo> entries(scalar::kGgxEntryCount);
+    for (uint32_t i = 0; i < entries.size(); ++i) entries[i] = scalar::read_ggx_albedo(i);
+    Buffer buffer(device, {.name = "albedos",
+                           .bytes = entries.size() * sizeof(entries[0]),
+                           .purpose = Purpose::structures,
+                           .format = TexelFormat::rg32_float});
+    buffer.upload(entries);
+    return buffer;
+}
+
 } // namespace
 
 BindingTable::BindingTable(const Device& device) : implementation_(std::make_unique<Implementation>()) {
@@ -80,6 +93,8 @@ BindingTable::BindingTable(const Device& device) : implementation_(std::make_uni
         bind(i, find_unbound(own, device, TexelFormat::none));
     for (uint32_t i = 0; i < scalar::kTexelBindingCount; ++i)
         bind(scalar::kFirstTexelBinding + i, find_unbound(own, device, kTexelFormats[i]));
+    own.albedos = make_albedos(device);
+    bind(scalar::kBindAlbedos, own.albedos);
 }
 BindingTable::~BindingTable() = default;
 BindingTable::BindingTable(BindingTable&&) noexcept = default;

@@ -48,6 +48,7 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
         device.internals().set_name(implementation_->pipeline, config.shader);
     });
 }
+Kernel::Kernel() = default;
 Kernel::~Kernel() = default;
 Kernel::Kernel(Kernel&&) noexcept = default;
 Kernel& Kernel::operator=(Kernel&&) noexcept = default;

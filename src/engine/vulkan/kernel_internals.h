@@ -18,6 +18,7 @@ struct Kernel::Implementation {
 struct BindingTable::Implementation {
     Device::Implementation* device = nullptr;
     std::vector<Buffer> unbound; ///< zeros: one for storage, one for each format of texels
+    Buffer albedos;              ///< always bound at kBindAlbedos
     vk::raii::DescriptorPool pool = nullptr;
     vk::raii::DescriptorSet set = nullptr;
 };

@@ -1,0 +1,42 @@
+// Second step of a pass: the histogram becomes the place where each tile's pairs of each digit begin. One group
+// walks over the whole of it, kSortGroupSize * kSortItemCount words at a time.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "sort.glsl"
+
+shared uint sums[kSortGroupSize];
+
+/// Sum over the lanes before this one; `sums` holds the sums up to each lane afterwards.
+uint scan_lanes(uint lane, uint value) {
+    sums[lane] = value;
+    barrier();
+    for (uint distance = 1u; distance < kSortGroupSize; distance *= 2u) {
+        uint below = lane >= distance ? sums[lane - distance] : 0u;
+        barrier();
+        sums[lane] += below;
+        barrier();
+    }
+    return sums[lane] - value;
+}
+
+void main() {
+    uint lane = gl_LocalInvocationID.x;
+    uint word_count = count_tiles() * kSortDigitCount;
+    uint total = 0u;
+    for (uint begin = 0u; begin < word_count; begin += kSortTileSize) {
+        uint first = begin + lane * kSortItemCount;
+        uint own = 0u;
+        for (uint k = 0u; k < kSortItemCount; ++k)
+            if (first + k < word_count) own += histogram[first + k];
+        uint place = total + scan_lanes(lane, own);
+        total += sums[kSortGroupSize - 1u];
+        barrier(); // before the next round overwrites the sums
+        for (uint k = 0u; k < kSortItemCount; ++k) {
+            if (first + k >= word_count) break;
+            uint count = histogram[first + k];
+            histogram[first + k] = place;
+            place += count;
+        }
+    }
+}

@@ -1,0 +1,115 @@
+// One source, two languages: the shared formulas give on the device what they give in C++.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/vulkan/commands.h"
+#include "math/scalar.h"
+#include "vulkan/gpu_fixture.h"
+#include "vulkan/test_shaders.h"
+
+namespace relief::scalar {
+#define FN inline
+#include "vulkan/shaders/formula_cases-inl.h"
+#undef FN
+} // namespace relief::scalar
+
+namespace relief::vulkan::tests {
+namespace {
+
+using scalar::FormulaInput;
+using scalar::FormulaOutput;
+
+constexpr uint32_t kCount = 1u << 14;
+constexpr uint32_t kPartCount = 6;
+
+std::vector<FormulaInput> make_inputs() {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(0.0f, 0.999f);
+    std::vector<FormulaInput> inputs(kCount);
+    for (FormulaInput& input : inputs) {
+        input.a = uint32_t(random());
+        input.b = uint32_t(random());
+        input.c = uint32_t(random());
+        input.d = uint32_t(random());
+        for (float& u : input.u) u = unit(random);
+    }
+    return inputs;
+}
+
+std::vector<FormulaOutput> run_on_device(const Device& device, const std::vector<FormulaInput>& inputs) {
+    Buffer from(device, {.name = "inputs", .bytes = inputs.size() * sizeof(FormulaInput)});
+    const Buffer to(device, {.name = "outputs", .bytes = inputs.size() * sizeof(FormulaOutput)});
+    from.upload(inputs);
+    BindingTable bindings(device);
+    bindings.bind(scalar::kBindRays, from);
+    bindings.bind(scalar::kBindHits, to);
+    vulkan::Commands commands(device, bindings);
+    for (uint32_t part = 0; part < kPartCount; ++part) {
+        const Kernel kernel = make_test_kernel(device, "formulas", {64, part});
+        commands.dispatch(kernel, kCount, kCount);
+        commands.run();
+    }
+    return to.download<FormulaOutput>(inputs.size());
+}
+
+FormulaOutput run_in_cpp(const FormulaInput& input) {
+    return {scalar::run_exact(input),   scalar::run_warp(input),  scalar::run_camera(input),
+            scalar::run_shading(input), scalar::run_light(input), scalar::run_tone(input)};
+}
+
+/// Largest |device - cpp| / (1 + |cpp|) over the floats of one part.
+template <class Part> float find_worst(const Part& device, const Part& cpp) {
+    static_assert(sizeof(Part) % sizeof(float) == 0);
+    const auto a = std::bit_cast<std::array<float, sizeof(Part) / sizeof(float)>>(device);
+    const auto b = std::bit_cast<std::array<float, sizeof(Part) / sizeof(float)>>(cpp);
+    float worst = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const float difference = std::fabs(a[i] - b[i]) / (1.0f + std::fabs(b[i]));
+        worst = std::isnan(difference) ? INFINITY : std::fmax(worst, difference);
+    }
+    return worst;
+}
+
+class Formulas : public GpuTest {
+  protected:
+    static void SetUpTestSuite() {
+        inputs_ = make_inputs();
+        outputs_ = run_on_device(device(), inputs_);
+    }
+    static void TearDownTestSuite() {
+        inputs_.clear();
+        outputs_.clear();
+    }
+    /// All results of one part lie within `bound`.
+    template <class Part> void expect_close(Part FormulaOutput::*part, float bound) {
+        for (size_t i = 0; i < inputs_.size(); ++i)
+            ASSERT_LE(find_worst(outputs_[i].*part, run_in_cpp(inputs_[i]).*part), bound) << "input " << i;
+    }
+
+    static inline std::vector<FormulaInput> inputs_;
+    static inline std::vector<FormulaOutput> outputs_;
+};
+
+TEST_F(Formulas, of_integers_and_of_topology_are_equal) {
+    using Words = std::array<uint32_t, sizeof(scalar::ExactResults) / sizeof(uint32_t)>;
+    for (size_t i = 0; i < inputs_.size(); ++i)
+        ASSERT_EQ(std::bit_cast<Words>(outputs_[i].exact),
+                  std::bit_cast<Words>(scalar::run_exact(inputs_[i])))
+            << "input " << i;
+}
+
+TEST_F(Formulas, of_warps_are_close) { expect_close(&FormulaOutput::warp, 1e-5f); }
+TEST_F(Formulas, of_the_camera_are_close) { expect_close(&FormulaOutput::camera, 1e-4f); }
+TEST_F(Formulas, of_the_bsdf_are_close) { expect_close(&FormulaOutput::shading, 2e-4f); }
+TEST_F(Formulas, of_lights_are_close) { expect_close(&FormulaOutput::light, 1e-4f); }
+TEST_F(Formulas, of_tones_are_close) { expect_close(&FormulaOutput::tone, 1e-5f); }
+
+} // namespace
+} // namespace relief::vulkan::tests

@@ -1,0 +1,163 @@
+// Every formula of src/shared with a value that a device can get wrong, run on one set of numbers. For GLSL
+// and for C++ inside relief::scalar, like the formulas.
+
+struct FormulaInput {
+    uint a, b, c, d;
+    float u[12]; ///< in [0, 1)
+};
+
+/// Equal on every device.
+struct ExactResults {
+    uint hash, pixel_seed;
+    UintPair sobol;
+    uint unit, cell, cell_column, cell_row, cell_is_upper;
+    uint blend_quad, filter_texels, decode_row, carried; ///< bits of floats that decide topology
+};
+
+struct WarpResults {
+    Vec2 disk, triangle;
+    Vec3 hemisphere, cone, sphere;
+    Basis basis;
+    Vec3 there_and_back;
+    float pdf;
+};
+
+struct CameraResults {
+    CameraFrame frame;
+    CameraRay pinhole, lens;
+    CameraProjection projection;
+};
+
+struct ShadingResults {
+    Vec3 f0;
+    float specular_probability;
+    Vec3 value;
+    float pdf;
+    Vec3 direction, weight;
+    GgxAlbedo albedo;
+};
+
+struct LightResults {
+    float weight;
+    Vec2 place;
+    Vec3 direction;
+    float cone_height, distance;
+    Vec3 normal;
+};
+
+struct ToneResults {
+    Vec3 shown;
+    float encoded, decoded;
+};
+
+struct FormulaOutput {
+    ExactResults exact;
+    WarpResults warp;
+    CameraResults camera;
+    ShadingResults shading;
+    LightResults light;
+    ToneResults tone;
+};
+
+FN ExactResults run_exact(FormulaInput from) {
+    ExactResults r;
+    r.hash = hash_combine(from.a, from.b);
+    r.pixel_seed = make_pixel_seed(from.a, from.b, from.c);
+    r.sobol = sobol_bits(from.a, from.b, from.c & 31u);
+    r.unit = floatBitsToUint(uint_to_unit(from.d));
+    r.cell = make_cell_rank(from.a & 0xfffu, from.b & 0xfffu, from.c & 1u);
+    r.cell_column = cell_column(r.cell);
+    r.cell_row = cell_row(r.cell);
+    r.cell_is_upper = cell_is_upper(r.cell);
+    r.blend_quad =
+        floatBitsToUint(blend_quad(from.u[0], from.u[1], from.u[2], from.u[3], from.u[4], from.u[5]));
+    r.filter_texels =
+        floatBitsToUint(filter_texels(from.u[6], from.u[7], from.u[8], from.u[9], from.u[10], from.u[11]));
+    r.decode_row =
+        floatBitsToUint(decode_row(from.u[0], from.u[2], from.u[4], from.u[6], from.u[8], from.u[10]));
+    r.carried = floatBitsToUint(
+        carry_through_frame(from.u[1], from.u[3], from.u[5], from.u[7], from.u[9], from.u[11]));
+    return r;
+}
+
+FN Vec2 make_pair(float x, float y) {
+    Vec2 r = {x, y};
+    return r;
+}
+
+FN Vec3 make_triple(float x, float y, float z) {
+    Vec3 r = {x, y, z};
+    return r;
+}
+
+FN WarpResults run_warp(FormulaInput from) {
+    Vec2 u = make_pair(from.u[0], from.u[1]);
+    WarpResults r;
+    r.disk = square_to_disk(u);
+    r.triangle = square_to_triangle(u);
+    r.hemisphere = square_to_cosine_hemisphere(u);
+    r.cone = square_to_cone(u, 0.01f + from.u[2]);
+    r.sphere = square_to_sphere(make_pair(from.u[3], from.u[4]));
+    r.basis = make_basis(r.sphere);
+    r.there_and_back = from_local(r.basis, to_local(r.basis, r.hemisphere));
+    r.pdf = cosine_hemisphere_pdf(r.hemisphere.z) + cone_pdf(0.01f + from.u[2]) + sphere_pdf();
+    return r;
+}
+
+FN CameraResults run_camera(FormulaInput from) {
+    CameraResults r;
+    r.frame = make_camera_frame(make_triple(from.u[0], from.u[1], 2.0f + from.u[2]),
+                                make_triple(from.u[3], from.u[4], from.u[5]), make_triple(0.0f, 1.0f, 0.0f),
+                                0.3f + from.u[6], make_pair(640.0f, 360.0f));
+    r.frame.aperture_radius = 0.1f * from.u[7];
+    r.frame.focus_distance = 1.0f + from.u[8];
+    Vec2 pixel = make_pair(640.0f * from.u[9], 360.0f * from.u[10]);
+    r.pinhole = make_pinhole_ray(r.frame, pixel);
+    r.lens = make_camera_ray(r.frame, pixel, make_pair(from.u[11], from.u[0]));
+    r.projection = project_point(r.frame, r.lens.origin + r.lens.direction);
+    return r;
+}
+
+FN ShadingResults run_shading(FormulaInput from) {
+    BsdfParameters p;
+    p.base_color = make_triple(from.u[0], from.u[1], from.u[2]);
+    p.roughness = 0.2f + 0.8f * from.u[3];
+    p.metallic = from.u[4];
+    p.ior = 1.0f + from.u[5];
+    Vec3 wo = square_to_cone(make_pair(from.u[6], from.u[7]), 0.95f);
+    Vec3 wi = square_to_cone(make_pair(from.u[8], from.u[9]), 0.95f);
+    Bsdf b = make_bsdf(p, wo.z);
+    BsdfValue v = evaluate_bsdf(b, wo, wi);
+    BsdfSample s = sample_bsdf(b, wo, 0.5f, make_pair(from.u[10], from.u[11]));
+    ShadingResults r;
+    r.f0 = b.f0;
+    r.specular_probability = b.specular_probability;
+    r.value = v.value;
+    r.pdf = v.pdf;
+    r.direction = s.direction;
+    r.weight = s.weight;
+    r.albedo = lookup_ggx_albedo(p.roughness, wo.z);
+    return r;
+}
+
+FN LightResults run_light(FormulaInput from) {
+    Vec3 d = square_to_sphere(make_pair(from.u[0], from.u[1]));
+    Vec3 shading = square_to_cone(make_pair(from.u[2], from.u[3]), 0.9f);
+    Vec3 wo = square_to_cone(make_pair(from.u[4], from.u[5]), 0.9f);
+    LightResults r;
+    r.weight = power_heuristic(from.u[6], 0.1f + from.u[7]);
+    r.place = direction_to_latlong(d);
+    r.direction = latlong_to_direction(make_pair(from.u[0], from.u[1]));
+    r.cone_height = sphere_cone_height(from.u[8], from.u[9] + 0.01f);
+    r.distance = sphere_distance(d * 3.0f, 3.1f + from.u[10], shading);
+    r.normal = bend_normal(shading, make_triple(0.0f, 0.0f, 1.0f), wo);
+    return r;
+}
+
+FN ToneResults run_tone(FormulaInput from) {
+    ToneResults r;
+    r.shown = tone_map_filmic(make_triple(10.0f * from.u[0], from.u[1], from.u[2] - 0.2f));
+    r.encoded = encode_srgb(from.u[3]);
+    r.decoded = decode_srgb(from.u[4]);
+    return r;
+}

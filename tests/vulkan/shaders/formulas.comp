@@ -1,0 +1,23 @@
+// Runs every shared formula on the device.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/all.h"
+#include "formula_cases-inl.h"
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint kPart = 0u;
+layout(scalar, binding = kBindRays) readonly buffer Inputs { FormulaInput inputs[]; };
+layout(scalar, binding = kBindHits) buffer Outputs { FormulaOutput outputs[]; };
+layout(push_constant) uniform Push { uint count; };
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    FormulaInput from = inputs[i];
+    if (kPart == 0u) outputs[i].exact = run_exact(from);
+    if (kPart == 1u) outputs[i].warp = run_warp(from);
+    if (kPart == 2u) outputs[i].camera = run_camera(from);
+    if (kPart == 3u) outputs[i].shading = run_shading(from);
+    if (kPart == 4u) outputs[i].light = run_light(from);
+    if (kPart == 5u) outputs[i].tone = run_tone(from);
+}
