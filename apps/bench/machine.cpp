@@ -6,6 +6,8 @@
 
 #include <sys/utsname.h>
 
+#include "relief/devices.h"
+
 namespace relief::bench {
 
 namespace {
@@ -38,8 +40,24 @@ Json describe_machine() {
             {"threads", std::thread::hardware_concurrency()}};
 }
 
+Json describe_vulkan_devices() {
+    Json devices = Json::array();
+    for (const DeviceInfo& device : vulkan_devices())
+        devices.push_back({{"device", device.index},
+                           {"name", device.name},
+                           {"driver", device.driver},
+                           {"kind", device.kind},
+                           {"memory_bytes", device.memory_bytes},
+                           {"missing", device.missing}});
+    return devices;
+}
+
 Json describe_device(const Statistics& s) {
-    return {{"engine", s.engine}, {"name", s.device}, {"isa", s.isa}, {"threads", s.threads}};
+    Json result = {{"engine", s.engine}, {"name", s.device}, {"isa", s.isa}, {"threads", s.threads}};
+    if (s.engine != "vulkan") return result;
+    for (const DeviceInfo& device : vulkan_devices())
+        if (device.name == s.device) result["driver"] = device.driver;
+    return result;
 }
 
 } // namespace relief::bench

@@ -13,7 +13,10 @@ nlohmann::ordered_json describe_build();
 /// {system, processor, threads} of this machine.
 nlohmann::ordered_json describe_machine();
 
-/// {engine, name, isa, threads} as a render reported them.
+/// A list of {device, name, driver, kind, memory_bytes, missing}: what the Vulkan engine could run on.
+nlohmann::ordered_json describe_vulkan_devices();
+
+/// {engine, name, isa, threads} as a render reported them, and the driver of a Vulkan device.
 nlohmann::ordered_json describe_device(const Statistics& statistics);
 
 } // namespace relief::bench

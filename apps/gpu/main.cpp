@@ -80,6 +80,12 @@ int run_bench_verb(const Options& options) {
     return 0;
 }
 
+int run_devices_verb() {
+    const Json devices = bench::describe_vulkan_devices();
+    fmt::print("{}\n", devices.dump(1));
+    return devices.empty() ? int(ErrorKind::device_missing) : 0;
+}
+
 void add_options(CLI::App& verb, Options& options, const char* output) {
     verb.add_option("-o", options.output, output);
     verb.add_option("--device", options.device, "index of the device; default: the best one");
@@ -97,11 +103,13 @@ int run(int argument_count, char** arguments) {
     add_options(*paper1, options, "folder for JSON, CSV and charts; default: paper1");
     paper1->add_option("--runs", options.runs, "that count, after one to warm up")
         ->check(CLI::Range(1, 1000));
+    CLI::App* devices = app.add_subcommand("devices", "List the Vulkan devices as JSON");
     try {
         app.parse(argument_count, arguments);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : int(ErrorKind::usage);
     }
+    if (devices->parsed()) return run_devices_verb();
     return parity->parsed() ? run_parity_verb(options) : run_bench_verb(options);
 }
 

@@ -72,6 +72,7 @@ $(if [ -s "$file" ]; then cat "$file"; else echo null; fi)}"
 }
 
 cd "$logs" || exit 1
+"$here/relief-gpu" devices >devices.json 2>devices.log
 for part in $(echo "$parts" | tr , ' '); do
     # $device and $quick are words of their own, or nothing.
     case $part in
