@@ -99,6 +99,31 @@ void add_layer(double* sums, Source source, const FilmSample& film_sample, bool 
     }
 }
 
+void add_layer_sums(double* sums, Source source, const FilmSums& added) {
+    switch (source) {
+    case Source::shading_normal:
+        return add_to(sums, added.shading_normal);
+    case Source::geometric_normal:
+        return add_to(sums, added.geometric_normal);
+    case Source::albedo:
+        return add_to(sums, added.albedo);
+    case Source::position:
+        return add_to(sums, added.position);
+    case Source::uv:
+        sums[0] += added.uv.x, sums[1] += added.uv.y;
+        return;
+    case Source::variance:
+        return add_to(sums, added.squares);
+    case Source::cost:
+        sums[0] += added.cost;
+        return;
+    case Source::depth:
+    case Source::id:
+    case Source::samples:
+        return;
+    }
+}
+
 /// Variance of the mean of n samples from their sum and their sum of squares (unbiased); 0 for one sample.
 double variance_of_mean(double sum, double sum_of_squares, uint32_t n) {
     if (n < 2) return 0;
@@ -166,14 +191,30 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     ++counts_[index];
     const bool is_hit = sample.id != 0;
     if (!hit_counts_.empty() && is_hit) ++hit_counts_[index];
-    // Among equal depths the lowest id wins, so that the layer does not depend on which sample came first.
-    if (!depths_.empty() && is_hit &&
-        (sample.depth < depths_[index] || (sample.depth == depths_[index] && sample.id < ids_[index]))) {
-        depths_[index] = sample.depth;
-        ids_[index] = sample.id;
-    }
+    if (is_hit) add_nearest(index, sample.depth, sample.id);
     for (const Layer& layer : layers_)
         add_layer(sums + layer.sum_offset, kLayerKinds[layer.kind].source, sample, is_hit);
+}
+
+void Film::add_sums(int x, int y, const FilmSums& added) {
+    const size_t index = pixel_index(x, y);
+    double* sums = sums_.data() + index * stride_;
+    add_to(sums, added.radiance);
+    sums[3] += added.hit_count;
+    counts_[index] += added.count;
+    if (!hit_counts_.empty()) hit_counts_[index] += added.hit_count;
+    if (added.id != 0) add_nearest(index, added.depth, added.id);
+    for (const Layer& layer : layers_)
+        add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
+}
+
+/// Among equal depths the lowest id wins, so that the layer does not depend on which sample came first.
+void Film::add_nearest(size_t pixel, float depth, uint32_t id) {
+    if (depths_.empty()) return;
+    const bool is_nearer = depth < depths_[pixel];
+    if (!is_nearer && !(depth == depths_[pixel] && id < ids_[pixel])) return;
+    depths_[pixel] = depth;
+    ids_[pixel] = id;
 }
 
 void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {

@@ -21,6 +21,18 @@ struct FilmSample {
     float cost = 0;  ///< rays traced for this sample
 };
 
+/// The same, summed over several samples of one pixel.
+struct FilmSums {
+    uint32_t count = 0;     ///< samples
+    uint32_t hit_count = 0; ///< of them, those whose camera ray hit a surface
+    Vec3f radiance{}, squares{};
+    float cost = 0;
+    Vec3f shading_normal{}, geometric_normal{}, position{}, albedo{};
+    Vec2f uv{};
+    float depth = std::numeric_limits<float>::infinity(); ///< the least
+    uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
+};
+
 /// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
 /// order. Different pixels may be fed at the same time.
 class Film {
@@ -32,6 +44,8 @@ class Film {
     const Window& window() const { return window_; }
     /// (x, y) in pixels of the whole picture, inside the window.
     void add_sample(int x, int y, const FilmSample& sample);
+    /// As many samples at once as `sums` holds.
+    void add_sums(int x, int y, const FilmSums& sums);
 
     /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
@@ -42,6 +56,7 @@ class Film {
 
   private:
     size_t pixel_index(int x, int y) const;
+    void add_nearest(size_t pixel, float depth, uint32_t id);
 
     int full_width_, full_height_;
     Window window_;

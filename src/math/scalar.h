@@ -19,6 +19,7 @@ using Vec3 = relief::Vec3<float>;
 
 inline float select(bool condition, float a, float b) { return condition ? a : b; }
 inline Vec3 select(bool condition, const Vec3& a, const Vec3& b) { return condition ? a : b; }
+inline Vec2 select(bool condition, const Vec2& a, const Vec2& b) { return condition ? a : b; }
 inline uint select(bool condition, uint a, uint b) { return condition ? a : b; }
 inline float abs(float a) { return std::fabs(a); }
 inline float min(float a, float b) { return b < a ? b : a; }
@@ -28,11 +29,18 @@ inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
 inline float atan(float y, float x) { return std::atan2(y, x); }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector.
+inline Vec3 make_unit(const Vec3& a) { return relief::normalize(a); }
 using relief::cross;
 using relief::dot;
+using relief::is_finite;
+using relief::length;
+using relief::max;
+using relief::min;
 using relief::normalize;
 using std::acos;
 using std::atan;
+using std::ceil;
 using std::cos;
 using std::exp;
 using std::exp2;

@@ -6,4 +6,6 @@
 
 const float kPi = 3.14159265358979f;
 
+FN float make_infinity() { return uintBitsToFloat(0x7f800000u); }
+
 #endif

@@ -1,5 +1,6 @@
 // The common dialect of GLSL 4.60 and C++20 (see docs/decisions/one-source-formulas.md). For GLSL this file
-// defines the names; C++ instances define them before the include: FN EXACT Float Bool Uint Vec2 Vec3 select.
+// defines the names; C++ instances define them before the include: FN EXACT Float Bool Uint Vec2 Vec3 select
+// is_finite make_unit.
 #ifndef __cplusplus
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H
@@ -11,5 +12,22 @@
 #define Vec2 vec2
 #define Vec3 vec3
 #define select(condition, a, b) ((condition) ? (a) : (b))
+
+bool is_finite(vec3 v) { return all(lessThanEqual(abs(v), vec3(3.402823466e38f))); }
+
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h gives.
+vec3 make_unit(vec3 a) {
+    precise float squared = a.x * a.x + a.y * a.y + a.z * a.z;
+    if (!(squared > 1e-37) || !(squared < 3e38)) {
+        float largest = max(abs(a.x), max(abs(a.y), abs(a.z)));
+        if (!(largest > 0.0) || !(largest < 3e38)) return vec3(0.0);
+        precise vec3 scaled = a / largest;
+        precise float length2 = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
+        precise vec3 tiny = scaled / sqrt(length2);
+        return tiny;
+    }
+    precise vec3 unit = a / sqrt(squared);
+    return unit;
+}
 #endif
 #endif

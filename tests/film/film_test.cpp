@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "math/vec.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -108,6 +109,31 @@ TEST(Film, keeps_small_contributions_beside_large_sums) {
     film.add_sample(0, 0, make_hit(1e8f, 1, 1));
     for (int k = 0; k < 1000; ++k) film.add_sample(0, 0, make_hit(1, 1, 1));
     EXPECT_FLOAT_EQ(value(film.resolve(), 0, 0, "R"), float((1e8 + 1000) / 1001));
+}
+
+TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
+    Film one_by_one(2, 1, {}, kAllLayers), summed(2, 1, {}, kAllLayers);
+    const FilmSample hits[3] = {make_hit(1, 10, 7), make_hit(3, 4, 9), make_hit(4, 4, 8)};
+    FilmSums sums;
+    for (const FilmSample& hit : hits) {
+        one_by_one.add_sample(1, 0, hit);
+        ++sums.count, ++sums.hit_count;
+        sums.radiance += hit.radiance, sums.squares += hit.radiance * hit.radiance;
+        sums.cost += hit.cost;
+        sums.shading_normal += hit.shading_normal, sums.geometric_normal += hit.geometric_normal;
+        sums.position += hit.position, sums.albedo += hit.albedo;
+        sums.uv = sums.uv + hit.uv;
+    }
+    sums.depth = 4, sums.id = 8;
+    FilmSample miss;
+    miss.radiance = {0.5f, 0, 2}, miss.cost = 1;
+    one_by_one.add_sample(1, 0, miss);
+    summed.add_sums(1, 0, sums);
+    FilmSums missed;
+    missed.count = 1;
+    missed.radiance = miss.radiance, missed.squares = miss.radiance * miss.radiance, missed.cost = miss.cost;
+    summed.add_sums(1, 0, missed);
+    EXPECT_EQ(summed.resolve().pixels, one_by_one.resolve().pixels);
 }
 
 TEST(Film, counts_its_bytes) {

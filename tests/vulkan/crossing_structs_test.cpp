@@ -24,6 +24,9 @@ static_assert(sizeof(scalar::MaterialData) == 11 * 4);
 static_assert(sizeof(scalar::TileRecord) == 5 * 4);
 static_assert(sizeof(scalar::RayData) == 9 * 4);
 static_assert(sizeof(scalar::HitData) == 7 * 4);
+static_assert(sizeof(scalar::CastPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 
 /// Distinct numbers; as floats normal, because devices may flush others.
 class Numbers {

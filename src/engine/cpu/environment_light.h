@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/environment_distribution.h"
 #include "relief/scene.h"
 
 namespace relief::cpu {
@@ -19,9 +20,7 @@ class EnvironmentLight {
         float pdf;        ///< per solid angle; 0: nothing could be drawn
         Vec2f position{}; ///< in the image
     };
-    /// Draws from a piecewise constant density over latitude and longitude, luminance times sin(theta);
-    /// uniformly over the sphere without an image (Pharr, Jakob and Humphreys 2023, Physically Based
-    /// Rendering, section 12.5.2).
+    /// Draws by brightness (shared/environment.h); uniformly over the sphere without an image.
     DirectionSample draw_direction(const Vec2f& u) const;
     Vec3f radiance(const DirectionSample& drawn) const;
     float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
@@ -34,24 +33,15 @@ class EnvironmentLight {
     Lookup look_up(const Vec3f& direction) const;
 
     /// Mean over all directions.
-    float mean_luminance() const { return mean_luminance_; }
-    size_t byte_count() const {
-        return (rows_.size() + columns_.size()) * sizeof(float) + guides_.size() * sizeof(uint16_t);
-    }
+    float mean_luminance() const { return distribution_.mean_luminance; }
+    size_t byte_count() const;
 
   private:
-    void build_distribution();
     float cell_density(uint32_t column, uint32_t row, const Vec3f& direction) const;
-    Vec3f local_from_world(const Vec3f& d) const;
-    Vec3f world_from_local(const Vec3f& d) const;
 
     Environment environment_;
-    Vec3f scale_{};
-    float sin_turn_ = 0, cos_turn_ = 1;
-    float mean_luminance_ = 0;
-    uint32_t cells_x_ = 0, cells_y_ = 0;
-    std::vector<float> rows_;    ///< cells_y_ + 1 cumulative probabilities
-    std::vector<float> columns_; ///< cells_x_ + 1 cumulative probabilities a row
+    EnvironmentDistribution distribution_;
+    scalar::EnvironmentData data_;
     /// Where to search for a random number: the cells of each row, then the rows.
     std::vector<uint16_t> guides_;
 };

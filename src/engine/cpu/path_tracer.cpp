@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/timer.h"
+#include "engine/camera_frame.h"
 #include "engine/cpu/textures.h"
 #include "math/scalar.h"
 
@@ -14,14 +14,7 @@ namespace relief::cpu {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kSpecularRoughness = 0.2f; ///< below it a reflection keeps the ray's bias
-constexpr uint32_t kLargestBias = 3;
-constexpr int kRouletteDepth = 3; ///< bounces that are never cut short
 constexpr int kPacketEdge = 4;
-
-// Pairs of dimensions of the sampler.
-constexpr uint32_t kPixelPair = 0, kLensPair = 1, kFirstBouncePair = 2, kPairsPerBounce = 4;
-enum BouncePair : uint32_t { kPickPair, kLightPair, kBsdfPair, kRoulettePair };
 
 struct Path {
     int x = 0, y = 0;
@@ -67,7 +60,7 @@ class TileTracer {
   private:
     void start_paths();
     void start_path(Path& path) const;
-    void trace_paths();
+    void trace_paths(int depth);
     void shade_paths();
     bool shade_path(uint32_t index);
     void add_background(Path& path) const;
@@ -77,7 +70,7 @@ class TileTracer {
     bool continue_path(Path& path, const Vertex& vertex, const VertexRandom& random);
     static bool survives_roulette(Path& path, float u_roulette);
     void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
-    void trace_shadow_rays();
+    void trace_shadow_rays(int depth);
     void finish_paths();
     Vertex make_vertex(const Path& path);
     VertexRandom draw_random(const Path& path) const;
@@ -99,23 +92,13 @@ class TileTracer {
     PatchSamplesCache patches_;
 };
 
-scalar::CameraFrame make_camera(const PreparedScene& scene) {
-    const Camera& camera = scene.camera;
-    const float fov = camera.fov_degrees * std::numbers::pi_v<float> / 180;
-    scalar::CameraFrame frame = scalar::make_camera_frame(camera.from, camera.to, camera.up, fov,
-                                                          {float(scene.width), float(scene.height)});
-    frame.aperture_radius = camera.aperture_radius;
-    frame.focus_distance = camera.focus_distance;
-    return frame;
-}
-
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
     : tracer_(scene.tracer),
       lights_(scene.lights),
       settings_(scene.settings),
       film_(film),
       counters_(counters),
-      camera_(make_camera(scene.tracer.scene())) {
+      camera_(make_camera_frame(scene.tracer.scene())) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
             for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
@@ -130,10 +113,10 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
 void TileTracer::trace_sample(int index) {
     sample_index_ = uint32_t(index);
     start_paths();
-    while (!active_.empty()) {
-        trace_paths();
+    for (int depth = 0; !active_.empty(); ++depth) {
+        trace_paths(depth);
         shade_paths();
-        trace_shadow_rays();
+        trace_shadow_rays(depth);
     }
     finish_paths();
 }
@@ -148,13 +131,8 @@ void TileTracer::start_paths() {
 }
 
 void TileTracer::start_path(Path& path) const {
-    const Vec2f jitter = scalar::sobol_pair(path.seed, sample_index_, kPixelPair);
-    const Vec2f position{float(path.x) + jitter.x, float(path.y) + jitter.y};
-    const scalar::CameraRay ray =
-        camera_.aperture_radius > 0
-            ? scalar::make_camera_ray(camera_, position,
-                                      scalar::sobol_pair(path.seed, sample_index_, kLensPair))
-            : scalar::make_pinhole_ray(camera_, position);
+    const Vec2f corner{float(path.x), float(path.y)};
+    const scalar::CameraRay ray = scalar::start_camera_ray(camera_, corner, path.seed, sample_index_);
     path.depth = 0;
     path.ray = {ray.origin, 0, ray.direction, kInfinity, 0};
     path.throughput = {1, 1, 1};
@@ -162,11 +140,11 @@ void TileTracer::start_path(Path& path) const {
     path.result.cost = 1;
 }
 
-void TileTracer::trace_paths() {
+void TileTracer::trace_paths(int depth) {
     rays_.clear();
     for (uint32_t i : active_) rays_.push_back(paths_[i].ray);
     hits_.assign(active_.size(), TraceHit{});
-    tracer_.closest_hits(rays_, hits_);
+    tracer_.closest_hits(rays_, hits_, depth);
     for (size_t k = 0; k < active_.size(); ++k) paths_[active_[k]].hit = hits_[k];
 }
 
@@ -215,7 +193,7 @@ Vertex TileTracer::make_vertex(const Path& path) {
             v.material.base_color * fetch_texture(*v.material.base_color_texture, v.point.uv);
     if (v.material.roughness_texture)
         v.material.roughness *= fetch_texture(*v.material.roughness_texture, v.point.uv).x;
-    v.material.base_color = max(Vec3f{}, min(v.material.base_color, {1, 1, 1}));
+    v.material.base_color = scalar::limit_color(v.material.base_color);
     v.material.roughness = std::clamp(v.material.roughness, 0.0f, 1.0f);
     const Vec3f wo = -path.ray.direction;
     v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
@@ -224,9 +202,7 @@ Vertex TileTracer::make_vertex(const Path& path) {
         v.point.shading_normal = -v.point.shading_normal;
     }
     v.basis = scalar::make_basis(scalar::bend_normal(v.point.shading_normal, v.point.geometric_normal, wo));
-    v.wo_local = scalar::to_local(v.basis, wo);
-    // Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
-    v.wo_local = normalize({v.wo_local.x, v.wo_local.y, std::max(v.wo_local.z, 1e-4f)});
+    v.wo_local = scalar::lift_viewer(scalar::to_local(v.basis, wo));
     v.bsdf = scalar::make_bsdf(
         {v.material.base_color, v.material.roughness, v.material.metallic, v.material.ior}, v.wo_local.z);
     return v;
@@ -287,17 +263,14 @@ bool TileTracer::continue_path(Path& path, const Vertex& vertex, const VertexRan
     path.previous = vertex.point.position;
     path.bsdf_pdf = drawn.pdf;
     start_bounce_ray(path, vertex, direction,
-                     !drawn.is_specular || vertex.material.roughness >= kSpecularRoughness);
+                     scalar::is_wide_bounce(drawn.is_specular, vertex.material.roughness));
     path.result.cost += 1;
     ++path.depth;
     return true;
 }
 
-/// Ends dim paths at random and makes up for them (Arvo and Kirk 1990).
 bool TileTracer::survives_roulette(Path& path, float u_roulette) {
-    if (path.depth < kRouletteDepth) return true;
-    const float brightest = std::max({path.throughput.x, path.throughput.y, path.throughput.z});
-    const float probability = std::min(brightest, 1.0f);
+    const float probability = scalar::survival_probability(uint32_t(path.depth), path.throughput);
     if (u_roulette >= probability) return false;
     path.throughput *= 1 / probability;
     return true;
@@ -308,7 +281,7 @@ void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f&
     const TraceHit& hit = path.hit;
     uint32_t bias = hit.bias;
     Vec3f origin = tracer_.offset_origin(vertex.point, direction);
-    if (is_wide && settings_.level == kAutoLevel && bias < kLargestBias) {
+    if (is_wide && settings_.level == kAutoLevel && bias < scalar::kLargestBias) {
         const SurfacePoint coarse =
             tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
         const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
@@ -317,9 +290,9 @@ void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f&
     path.ray = {origin, 0, direction, kInfinity, bias};
 }
 
-void TileTracer::trace_shadow_rays() {
+void TileTracer::trace_shadow_rays(int depth) {
     occluded_.assign(shadow_rays_.size(), 0);
-    tracer_.any_hits(shadow_rays_, occluded_);
+    tracer_.any_hits(shadow_rays_, occluded_, depth);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
     counters_.shadow_rays += shadow_rays_.size();
@@ -332,14 +305,13 @@ void TileTracer::finish_paths() {
 }
 
 VertexRandom TileTracer::draw_random(const Path& path) const {
-    const auto draw_pair = [&](BouncePair pair) {
-        const uint32_t dimensions = kFirstBouncePair + uint32_t(path.depth) * kPairsPerBounce + pair;
-        return scalar::sobol_pair(path.seed, sample_index_, dimensions);
+    const auto draw_pair = [&](uint32_t kind) {
+        return scalar::draw_bounce_pair(path.seed, sample_index_, uint32_t(path.depth), kind);
     };
-    const Vec2f pick = draw_pair(kPickPair);
-    VertexRandom random{pick.x, pick.y, draw_pair(kLightPair), draw_pair(kBsdfPair)};
-    if (path.depth >= kRouletteDepth || lights_.has_emitters()) {
-        const Vec2f pair = draw_pair(kRoulettePair);
+    const Vec2f pick = draw_pair(scalar::kPickPair);
+    VertexRandom random{pick.x, pick.y, draw_pair(scalar::kLightPair), draw_pair(scalar::kBsdfPair)};
+    if (uint32_t(path.depth) >= scalar::kRouletteDepth || lights_.has_emitters()) {
+        const Vec2f pair = draw_pair(scalar::kRoulettePair);
         random.u_roulette = pair.x, random.u_emitter = pair.y;
     }
     return random;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "math/scalar.h"
 #include "surface/texels.h"
 
 namespace relief::cpu {
@@ -9,14 +10,15 @@ namespace relief::cpu {
 namespace {
 
 Vec3f make_color(const Texture& texture, const std::array<float, 4>& channels) {
-    if (texture.channel_count < 3) return {channels[0], channels[0], channels[0]};
-    return {channels[0], channels[1], channels[2]};
+    return scalar::make_texture_color(texture.channel_count, {channels[0], channels[1], channels[2]});
 }
 
-/// Bilinear value at (x, y), in texels from the centre of texel (0, 0); repeated in x.
-Vec3f fetch_bilinear(const Texture& texture, float x, float y, WrapMode wrap_y) {
-    const float whole_x = floor_texel(x), whole_y = floor_texel(y);
-    const float fx = x - whole_x, fy = y - whole_y;
+Vec2f size_of(const Texture& texture) { return {float(texture.width), float(texture.height)}; }
+
+/// Bilinear value at a place in texels from the centre of texel (0, 0); repeated in x.
+Vec3f fetch_bilinear(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
+    const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
+    const float fx = at.x - whole_x, fy = at.y - whole_y;
     const auto column = [&](int64_t i) { return uint32_t(wrap_index(i, texture.width, WrapMode::repeat)); };
     const auto row = [&](int64_t i) { return uint32_t(wrap_index(i, texture.height, wrap_y)); };
     const uint32_t x0 = column(int64_t(whole_x)), x1 = column(int64_t(whole_x) + 1);
@@ -34,16 +36,11 @@ Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
 
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
-    // The whole part goes first: far from zero a float would have no bits left for the position between
-    // texels.
-    const float x = (uv.x - floor_texel(uv.x)) * float(texture.width) - 0.5f;
-    const float y = (1.0f - (uv.y - floor_texel(uv.y))) * float(texture.height) - 0.5f;
-    return fetch_bilinear(texture, x, y, WrapMode::repeat);
+    return fetch_bilinear(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat);
 }
 
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
-    return fetch_bilinear(texture, position.x * float(texture.width) - 0.5f,
-                          position.y * float(texture.height) - 0.5f, WrapMode::clamp);
+    return fetch_bilinear(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
 }
 
 } // namespace relief::cpu

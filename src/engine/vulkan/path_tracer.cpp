@@ -1,0 +1,195 @@
+#include "engine/vulkan/path_tracer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "engine/camera_frame.h"
+
+namespace relief::vulkan {
+
+namespace {
+
+constexpr uint32_t kGroupSize = 64;
+
+static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathData) == 60 && sizeof(scalar::SurfacePointData) == 64);
+static_assert(sizeof(scalar::FilmSumsData) == 96);
+static_assert(offsetof(scalar::CounterData, shadow_count) ==
+              offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
+
+Kernel make_kernel(const Device& device, const char* shader) {
+    return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
+}
+
+template <class T> Buffer make_buffer(const Device& device, const char* name, uint64_t count) {
+    return Buffer(device, {.name = name, .bytes = count * sizeof(T), .purpose = Purpose::ray_buffers});
+}
+
+FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
+    FilmSums sums;
+    sums.count = uint32_t(sample_count);
+    sums.hit_count = uint32_t(data.hit_count);
+    sums.radiance = data.radiance, sums.squares = data.squares;
+    sums.cost = data.cost;
+    sums.shading_normal = data.shading_normal, sums.geometric_normal = data.geometric_normal;
+    sums.position = data.position, sums.albedo = data.albedo;
+    sums.uv = data.uv;
+    sums.depth = data.depth, sums.id = data.id;
+    return sums;
+}
+
+} // namespace
+
+PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
+    : tracer_(tracer),
+      settings_(settings),
+      camera_(make_camera_frame(tracer.scene())),
+      capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
+      lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
+    const Device& device = tracer.device();
+    camera_kernel_ = make_kernel(device, "camera");
+    background_ = make_kernel(device, "background");
+    surface_point_ = make_kernel(device, "surface_point");
+    light_sample_ = make_kernel(device, "light_sample");
+    bounce_ = make_kernel(device, "bounce");
+    shadow_light_ = make_kernel(device, "shadow_light");
+    film_ = make_kernel(device, "film");
+    paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
+    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_);
+    film_sums_ = make_buffer<scalar::FilmSumsData>(device, "film_sums", capacity_);
+    path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
+    next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_);
+    shadow_list_ = make_buffer<uint32_t>(device, "shadow_list", capacity_);
+    BindingTable& bindings = tracer.bindings();
+    lights_.bind(bindings);
+    bindings.bind(scalar::kBindPaths, paths_);
+    bindings.bind(scalar::kBindPoints, points_);
+    bindings.bind(scalar::kBindFilm, film_sums_);
+    bindings.bind(scalar::kBindPathList, path_list_);
+    bindings.bind(scalar::kBindNextPathList, next_path_list_);
+    bindings.bind(scalar::kBindShadowList, shadow_list_);
+}
+
+void PathTracer::trace_samples(Film& film, PixelRange pixels, SampleRange samples) {
+    for (uint64_t done = 0; done < pixels.count; done += capacity_) {
+        const PixelRange batch{pixels.first + done, std::min<uint64_t>(capacity_, pixels.count - done)};
+        for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
+            trace_batch(film, batch, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)});
+    }
+}
+
+void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples) {
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::film);
+    commands.fill(film_sums_, 0, pixels.count * sizeof(scalar::FilmSumsData), 0);
+    for (int k = 0; k < samples.count; ++k) trace_sample(film, pixels, uint32_t(samples.first + k));
+    commands.run();
+    add_to_film(film, pixels, samples.count);
+}
+
+scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
+    scalar::PathPush push{};
+    lights_.describe(push);
+    push.capacity = capacity_;
+    push.last_depth = uint32_t(settings_.bounces);
+    push.sample_index = sample_index;
+    push.has_auto_levels = settings_.level == kAutoLevel;
+    return push;
+}
+
+void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index) {
+    Commands& commands = tracer_.commands();
+    const Window& window = film.window();
+    const scalar::CameraPush camera{camera_,
+                                    uint32_t(window.x0),
+                                    uint32_t(window.y0),
+                                    uint32_t(window.x1 - window.x0),
+                                    uint32_t(pixels.first),
+                                    uint32_t(pixels.count),
+                                    sample_index,
+                                    settings_.seed};
+    commands.begin_stage(Stage::shade);
+    commands.dispatch(camera_kernel_, pixels.count, camera);
+    scalar::PathPush push = make_push(sample_index);
+    push.count = uint32_t(pixels.count);
+    for (; push.count > 0; ++push.depth) {
+        add_cast(push.depth, tracer_.closest_hits(path_list_, push.count), casts_);
+        const NextRays next = shade_depth(push);
+        trace_shadow_rays(push, next.shadow_count);
+        push.count = next.path_count;
+        if (push.count > 0)
+            commands.copy(next_path_list_, 0, path_list_, 0, uint64_t(push.count) * sizeof(uint32_t));
+    }
+    commands.begin_stage(Stage::film);
+    push.count = uint32_t(pixels.count);
+    commands.dispatch(film_, pixels.count, push);
+}
+
+/// Light that rays met, the surfaces that they hit, what is drawn there.
+PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    commands.fill(tracer_.counter_buffer(), offsetof(scalar::CounterData, path_count), 2 * sizeof(uint32_t),
+                  0);
+    commands.dispatch(background_, push.count, push);
+    commands.dispatch(surface_point_, push.count, push);
+    commands.dispatch(light_sample_, push.count, push);
+    if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
+    const scalar::CounterData& counters = tracer_.read_counters();
+    return {counters.path_count, counters.shadow_count};
+}
+
+void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
+    if (shadow_count == 0) return;
+    CastStatistics cast = tracer_.any_hits(shadow_list_, shadow_count);
+    cast.is_shadow = true;
+    add_cast(push.depth, cast, shadow_casts_);
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    push.count = shadow_count;
+    commands.dispatch(shadow_light_, shadow_count, push);
+}
+
+void PathTracer::add_to_film(Film& film, PixelRange pixels, int sample_count) const {
+    const std::vector<scalar::FilmSumsData> sums =
+        film_sums_.download<scalar::FilmSumsData>(size_t(pixels.count));
+    const Window& window = film.window();
+    const uint64_t width = uint64_t(window.x1 - window.x0);
+    for (size_t k = 0; k < sums.size(); ++k) {
+        const uint64_t pixel = pixels.first + k;
+        film.add_sums(window.x0 + int(pixel % width), window.y0 + int(pixel / width),
+                      make_sums(sums[k], sample_count));
+    }
+}
+
+void PathTracer::add_cast(uint32_t depth, const CastStatistics& cast, std::vector<CastStatistics>& casts) {
+    if (casts.size() <= depth) casts.resize(depth + 1);
+    CastStatistics& sum = casts[depth];
+    sum.depth = int(depth);
+    sum.is_shadow = cast.is_shadow;
+    sum.rays += cast.rays, sum.pairs += cast.pairs;
+    sum.top_traversal_s += cast.top_traversal_s, sum.sort_s += cast.sort_s;
+    sum.bottom_build_s += cast.bottom_build_s, sum.bottom_traversal_s += cast.bottom_traversal_s;
+}
+
+uint64_t PathTracer::ray_count() const {
+    uint64_t count = 0;
+    for (const CastStatistics& cast : casts_) count += cast.rays;
+    for (const CastStatistics& cast : shadow_casts_) count += cast.rays;
+    return count;
+}
+
+void PathTracer::add_statistics(Statistics& statistics) const {
+    for (const CastStatistics& cast : casts_)
+        (cast.depth == 0 ? statistics.camera_rays : statistics.bounce_rays) += cast.rays;
+    for (const CastStatistics& cast : shadow_casts_) statistics.shadow_rays += cast.rays;
+    for (size_t depth = 0; depth < casts_.size(); ++depth) {
+        statistics.casts.push_back(casts_[depth]);
+        if (depth < shadow_casts_.size() && shadow_casts_[depth].rays > 0)
+            statistics.casts.push_back(shadow_casts_[depth]);
+    }
+}
+
+} // namespace relief::vulkan

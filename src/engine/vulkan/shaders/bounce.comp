@@ -1,0 +1,54 @@
+// The next ray of each path, or its end.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/vulkan/shaders/kernel.glsl"
+#include "engine/vulkan/shaders/paths.glsl"
+#include "engine/vulkan/shaders/surface_point.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
+RayData start_bounce_ray(HitData hit, SurfacePointData point, uint bias, vec3 direction, bool is_wide) {
+    vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
+    if (is_wide && push.has_auto_levels != 0u && bias < kLargestBias) {
+        FacetPoint coarse = evaluate_point(instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v), bias + 1u);
+        float side = dot(coarse.facet.normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
+        if (side > 0.0) {
+            origin = offset_origin(coarse.facet.position, coarse.facet.normal, coarse.position_error, direction);
+            bias += 1u;
+        }
+    }
+    RayData ray = {origin, 0.0, direction, make_infinity(), bias};
+    return ray;
+}
+
+void continue_path(uint path_index, HitData hit) {
+    PathData path = paths[path_index];
+    SurfacePointData point = points[path_index];
+    RayData ray = rays[path_index];
+    vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
+    vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
+    vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
+    Scattering scattering = make_scattering(point, materials[instances[hit.instance].material], -ray.direction);
+    BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, pick.y, u);
+    vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
+    if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return;
+    vec3 throughput = path.throughput * drawn.weight;
+    float probability = survival_probability(push.depth, throughput);
+    if (!is_finite(throughput) || last.x >= probability) return;
+    paths[path_index].throughput = throughput * (1.0 / probability);
+    paths[path_index].previous = point.position;
+    paths[path_index].bsdf_pdf = drawn.pdf;
+    paths[path_index].cost = path.cost + 1.0;
+    rays[path_index] =
+        start_bounce_ray(hit, point, ray.bias, direction, is_wide_bounce(drawn.is_specular, point.roughness));
+    next_path_list[atomicAdd(counters.path_count, 1u)] = path_index;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = path_list[index];
+    HitData hit = hits[path_index];
+    if (is_hit(hit)) continue_path(path_index, hit);
+}

@@ -1,0 +1,59 @@
+// Rules of the path tracer that both engines follow: which random numbers a vertex takes, what it reflects
+// with, when a path ends and what surface its next ray sees.
+#ifndef RELIEF_PATH_H
+#ifndef __cplusplus
+#define RELIEF_PATH_H
+#endif
+
+const float kSpecularRoughness = 0.2f; ///< below it a reflection keeps the ray's bias
+const uint kLargestBias = 3u;
+const uint kRouletteDepth = 3u; ///< bounces that are never cut short
+
+// Pairs of dimensions of the sampler.
+const uint kPixelPair = 0u;
+const uint kLensPair = 1u;
+const uint kFirstBouncePair = 2u;
+const uint kPairsPerBounce = 4u;
+const uint kPickPair = 0u; ///< (light, lobe)
+const uint kLightPair = 1u;
+const uint kBsdfPair = 2u;
+const uint kRoulettePair = 3u; ///< (roulette, emitter)
+
+/// Pair `kind` of the vertex that `depth` bounces lead to.
+FN Vec2 draw_bounce_pair(uint pixel_seed, uint sample_index, uint depth, uint kind) {
+    return sobol_pair(pixel_seed, sample_index, kFirstBouncePair + depth * kPairsPerBounce + kind);
+}
+
+/// Ray through a random point of pixel (x, y).
+FN CameraRay start_camera_ray(CameraFrame camera, Vec2 corner, uint pixel_seed, uint sample_index) {
+    Vec2 position = corner + sobol_pair(pixel_seed, sample_index, kPixelPair);
+    if (camera.aperture_radius > 0.0f)
+        return make_camera_ray(camera, position, sobol_pair(pixel_seed, sample_index, kLensPair));
+    return make_pinhole_ray(camera, position);
+}
+
+/// What a base colour may be once textures have been multiplied in.
+FN Vec3 limit_color(Vec3 color) {
+    Vec3 zero = {0.0f, 0.0f, 0.0f};
+    Vec3 one = {1.0f, 1.0f, 1.0f};
+    return max(zero, min(color, one));
+}
+
+/// Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
+FN Vec3 lift_viewer(Vec3 wo_local) {
+    Vec3 lifted = {wo_local.x, wo_local.y, max(wo_local.z, 1e-4f)};
+    return normalize(lifted);
+}
+
+/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990).
+FN float survival_probability(uint depth, Vec3 throughput) {
+    float brightest = max(max(throughput.x, throughput.y), throughput.z);
+    return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);
+}
+
+/// True where the next ray may see a coarser surface.
+FN bool is_wide_bounce(bool is_specular, float roughness) {
+    return !is_specular || roughness >= kSpecularRoughness;
+}
+
+#endif

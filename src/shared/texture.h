@@ -1,0 +1,27 @@
+// Where bilinear look-ups of colour textures and environments read.
+#ifndef RELIEF_TEXTURE_H
+#ifndef __cplusplus
+#define RELIEF_TEXTURE_H
+#endif
+
+/// uv in texels from the centre of texel (0, 0); row 0 is v = 1. The whole part goes first: far from zero a
+/// float would have no bits left for the position between texels.
+FN Vec2 locate_texture_uv(Vec2 uv, Vec2 size) {
+    Vec2 result = {(uv.x - floor_texel(uv.x)) * size.x - 0.5f,
+                   (1.0f - (uv.y - floor_texel(uv.y))) * size.y - 0.5f};
+    return result;
+}
+
+/// Position in [0, 1]^2 from the top left corner of a latitude-longitude image, in texels as above.
+FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
+    Vec2 result = {position.x * size.x - 0.5f, position.y * size.y - 0.5f};
+    return result;
+}
+
+/// Colour of a texel or a bilinear value: a texture of one or two channels is grey.
+FN Vec3 make_texture_color(uint channel_count, Vec3 channels) {
+    Vec3 grey = {channels.x, channels.x, channels.x};
+    return select(channel_count < 3u, grey, channels);
+}
+
+#endif

@@ -1,0 +1,251 @@
+// The kernels of the path tracer one by one: tables of a small scene with every kind of surface and light,
+// paths and hits made up by the test, and the CPU engine's view of the same.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "engine/cpu/lights.h"
+#include "engine/cpu/textures.h"
+#include "engine/cpu/tracer.h"
+#include "engine/vulkan/commands.h"
+#include "engine/vulkan/device_lights.h"
+#include "gpu_fixture.h"
+#include "support/bodies.h"
+#include "support/shading_scenes.h"
+
+namespace relief::vulkan::tests {
+
+inline std::shared_ptr<Texture> make_colors(uint32_t width, uint32_t height, float brightest, uint32_t seed) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = width, texture->height = height, texture->channel_count = 3;
+    for (uint32_t k = 0; k < width * height; ++k)
+        for (uint32_t c = 0; c < 4; ++c)
+            texture->floats.push_back(
+                c == 3 ? 1.0f : brightest * scalar::uint_to_unit(scalar::hash_combine(seed, 4 * k + c)));
+    return texture;
+}
+
+inline std::shared_ptr<Texture> make_half_greys(uint32_t width, uint32_t height) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = width, texture->height = height, texture->channel_count = 1;
+    for (uint32_t k = 0; k < width * height; ++k)
+        // 0x3800 to 0x3bff: from a half to one.
+        texture->halves.insert(texture->halves.end(),
+                               {uint16_t(0x3800 + scalar::hash_uint(k) % 0x400), 0, 0, 0x3c00});
+    return texture;
+}
+
+inline void add_lights(Scene& scene) {
+    Light sun, delta_sun, lamp, delta_lamp;
+    sun.direction = {1, -2, 0.5f}, sun.angle_degrees = 12, sun.strength = 2;
+    delta_sun.direction = {-1, -1, 0}, delta_sun.angle_degrees = 0, delta_sun.color = {1, 0.5f, 0.25f};
+    lamp.type = delta_lamp.type = LightType::point;
+    lamp.position = {2, 3, 1}, lamp.radius = 0.6f, lamp.strength = 20;
+    delta_lamp.position = {-3, 2, 2}, delta_lamp.strength = 15;
+    scene.lights = {sun, delta_sun, lamp, delta_lamp};
+    Environment environment;
+    environment.texture = make_colors(48, 24, 2, 5);
+    environment.rotate_degrees = 77;
+    environment.strength = 0.7f;
+    scene.environment = environment;
+}
+
+inline void add_displaced(Scene& scene, Mesh mesh, DisplacementSpace space, const Affine& place,
+                          const Material& material) {
+    add_object(scene, std::move(mesh), material);
+    scene.objects.back().displacement = uint32_t(scene.displacements.size());
+    scene.objects.back().world_from_object = place;
+    scene.displacements.push_back(
+        test::make_displacement(test::make_random_map(64, 48, 0.1f, 3 + uint32_t(space)), space));
+}
+
+/// Tangent and object space, a mirrored emitter, plain quads and smooth normals; textures repeat.
+inline Scene make_shading_scene() {
+    Scene scene;
+    Material colored = make_matte(0.9f), shiny, glowing;
+    colored.base_color_texture = make_colors(17, 9, 1.2f, 1);
+    shiny.roughness_texture = make_half_greys(8, 5);
+    shiny.metallic = 0.4f, shiny.roughness = 0.6f;
+    glowing.emission = {4, 3, 1};
+    add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
+    add_displaced(scene, test::make_torus(6, 8), DisplacementSpace::object,
+                  compose(make_translation({2.5f, 0.5f, 0}), make_scale({-0.5f, 0.6f, 0.7f})), glowing);
+    Mesh floor = make_floor(6);
+    floor.uvs = {{-1.7f, 3.2f}, {2.9f, 3.1f}, {3.0f, -2.5f}, {-1.6f, -2.4f}};
+    add_object(scene, floor, shiny);
+    scene.objects.back().world_from_object = make_translation({0, -2, 0});
+    add_object(scene, make_sphere(3, SphereNormals::smooth), glowing);
+    scene.objects.back().world_from_object =
+        compose(make_translation({-2.5f, 0, 1}), make_scale({0.3f, 0.4f, 0.3f}));
+    add_lights(scene);
+    scene.camera.from = {0, 2, 9}, scene.camera.focus_distance = 8, scene.camera.aperture_radius = 0.1f;
+    return scene;
+}
+
+/// A path that met something, as both engines see it.
+struct ShadingCase {
+    cpu::TraceHit hit;
+    scalar::RayData ray;
+    scalar::PathData path;
+};
+
+class ShadingBench {
+  public:
+    static constexpr uint32_t kCount = 4096;
+
+    ShadingBench(const Device& device, std::shared_ptr<const PreparedScene> scene,
+                 const RenderSettings& settings)
+        : prepared(std::move(scene)),
+          tracer(prepared, settings),
+          cpu_lights(tracer),
+          device_scene(device, *prepared),
+          lights(device, *prepared, device_scene),
+          bindings(device),
+          commands(device, bindings),
+          device_(device) {
+        device_scene.bind(bindings);
+        lights.bind(bindings);
+        rays = make<scalar::RayData>(scalar::kBindRays, 2 * kCount);
+        hits = make<scalar::HitData>(scalar::kBindHits, 2 * kCount);
+        counters = make<scalar::CounterData>(scalar::kBindCounters, 1);
+        paths = make<scalar::PathData>(scalar::kBindPaths, kCount);
+        points = make<scalar::SurfacePointData>(scalar::kBindPoints, kCount);
+        film = make<scalar::FilmSumsData>(scalar::kBindFilm, kCount);
+        path_list = make<uint32_t>(scalar::kBindPathList, kCount);
+        next_path_list = make<uint32_t>(scalar::kBindNextPathList, kCount);
+        shadow_list = make<uint32_t>(scalar::kBindShadowList, kCount);
+        std::vector<uint32_t> all(kCount);
+        std::iota(all.begin(), all.end(), 0u);
+        path_list.upload(all);
+    }
+
+    scalar::PathPush make_push(uint32_t depth) const {
+        scalar::PathPush push{};
+        lights.describe(push);
+        push.count = push.capacity = kCount;
+        push.depth = depth;
+        push.last_depth = 6;
+        push.sample_index = 5;
+        push.has_auto_levels = 1;
+        return push;
+    }
+
+    void upload(const std::vector<ShadingCase>& cases) {
+        std::vector<scalar::HitData> hit_data;
+        std::vector<scalar::RayData> ray_data;
+        std::vector<scalar::PathData> path_data;
+        for (const ShadingCase& c : cases) {
+            hit_data.push_back({c.hit.t, c.hit.instance, c.hit.patch, c.hit.u, c.hit.v,
+                                scalar::make_cell_rank(c.hit.i, c.hit.j, c.hit.is_upper), c.hit.levels});
+            ray_data.push_back(c.ray);
+            path_data.push_back(c.path);
+        }
+        hits.upload(hit_data);
+        rays.upload(ray_data);
+        paths.upload(path_data);
+    }
+
+    template <class Push> void run(const char* shader, const Push& push) {
+        const Kernel kernel(device_, {.shader = shader, .constants = {64}});
+        commands.dispatch(kernel, push.count, push);
+        commands.run();
+    }
+
+    std::shared_ptr<const PreparedScene> prepared;
+    cpu::Tracer tracer;
+    cpu::LightSet cpu_lights;
+    DeviceScene device_scene;
+    DeviceLights lights;
+    BindingTable bindings;
+    vulkan::Commands commands;
+    Buffer rays, hits, counters, paths, points, film, path_list, next_path_list, shadow_list;
+
+  private:
+    /// Zeros, bound.
+    template <class T> Buffer make(uint32_t binding, uint64_t count) {
+        Buffer buffer(device_, {.name = "test", .bytes = count * sizeof(T)});
+        commands.fill(buffer, 0, count * sizeof(T), 0);
+        commands.run();
+        bindings.bind(binding, buffer);
+        return buffer;
+    }
+    const Device& device_;
+};
+
+/// Random numbers of one case.
+class CaseRandom {
+  public:
+    explicit CaseRandom(uint32_t index) : seed_(scalar::hash_uint(index)) {}
+    float next() { return scalar::uint_to_unit(scalar::hash_combine(seed_, ++count_)); }
+    Vec3f next_direction() {
+        const float x = next(), y = next();
+        return normalize(scalar::square_to_sphere({x, y}));
+    }
+
+  private:
+    uint32_t seed_, count_ = 0;
+};
+
+/// Hits all over the scene, seen from everywhere.
+inline std::vector<ShadingCase> make_cases(const PreparedScene& scene) {
+    std::vector<ShadingCase> cases(ShadingBench::kCount);
+    for (uint32_t k = 0; k < cases.size(); ++k) {
+        CaseRandom random(k);
+        ShadingCase& c = cases[k];
+        c.hit.instance = k % uint32_t(scene.instances.size());
+        const Instance& instance = scene.instances[c.hit.instance];
+        const Surface& surface = scene.surfaces[instance.surface];
+        c.hit.patch = uint32_t(random.next() * float(surface.patch_count()));
+        c.hit.bias = uint8_t(random.next() * 3);
+        const PatchLevels levels = instance.levels->at(c.hit.patch).biased(c.hit.bias);
+        c.hit.levels = pack_levels(levels);
+        const float u = random.next(), v = random.next();
+        const scalar::CellPlace place =
+            scalar::locate_cell(surface.quads[c.hit.patch].is_triangle(), 1u << levels.patch, u, v);
+        c.hit.u = place.u, c.hit.v = place.v;
+        c.hit.i = uint16_t(place.i), c.hit.j = uint16_t(place.j), c.hit.is_upper = place.is_upper;
+        c.hit.t = 1 + random.next();
+        c.ray = {{}, 0, random.next_direction(), scalar::make_infinity(), c.hit.bias};
+        c.path.throughput = {0.2f + 0.8f * random.next(), 0.5f, 1};
+        c.path.bsdf_pdf = 0.1f + random.next();
+        c.path.previous = random.next_direction() * 5.0f;
+        c.path.pixel_seed = scalar::hash_uint(k + 77);
+        c.path.cost = 1;
+    }
+    return cases;
+}
+
+/// What the CPU engine shades at a hit.
+struct CpuVertex {
+    cpu::SurfacePoint point; ///< normals on the viewer's side
+    bool is_flipped;
+    Material material;
+    scalar::Basis basis;
+    Vec3f wo_local;
+    scalar::Bsdf bsdf;
+};
+
+inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
+    const PreparedScene& scene = tracer.scene();
+    CpuVertex v;
+    v.point = tracer.make_surface_point(c.hit);
+    v.material = scene.materials[scene.instances[c.hit.instance].material];
+    Material& m = v.material;
+    if (m.base_color_texture)
+        m.base_color = m.base_color * cpu::fetch_texture(*m.base_color_texture, v.point.uv);
+    if (m.roughness_texture) m.roughness *= cpu::fetch_texture(*m.roughness_texture, v.point.uv).x;
+    m.base_color = scalar::limit_color(m.base_color);
+    const Vec3f wo = -c.ray.direction;
+    v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
+    if (v.is_flipped)
+        v.point.geometric_normal = -v.point.geometric_normal,
+        v.point.shading_normal = -v.point.shading_normal;
+    v.basis = scalar::make_basis(scalar::bend_normal(v.point.shading_normal, v.point.geometric_normal, wo));
+    v.wo_local = scalar::lift_viewer(scalar::to_local(v.basis, wo));
+    v.bsdf = scalar::make_bsdf({m.base_color, m.roughness, m.metallic, m.ior}, v.wo_local.z);
+    return v;
+}
+
+} // namespace relief::vulkan::tests
