@@ -50,6 +50,9 @@ struct RequestData {
     uint instance, patch_index, levels;
 };
 
+/// Bits that tell which patches were asked for.
+const uint kRequestBits = 65536u;
+
 /// Entry of the hash table of directories: the tree over the tiles of a patch at given levels.
 struct DirectoryData {
     uint patch_number; ///< of the patch among all; kNone: empty

@@ -72,12 +72,15 @@ TileDirectories::Boxes TileDirectories::compute_boxes(const scalar::RequestData&
     const PatchLevels levels = unpack_levels(request.levels);
     Boxes boxes{1u << (levels.patch - scalar::kTreeLevels), {}};
     boxes.boxes.resize(size_t(boxes.side) * boxes.side);
+    // Neither box holds the other, and the tile lies in both.
+    const Box whole = compute_patch_box(surface, request.patch_index);
     parallel_for("tile_boxes", boxes.boxes.size(), 4, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             const uint32_t x = uint32_t(k) % boxes.side * kTileCells,
                            y = uint32_t(k) / boxes.side * kTileCells;
-            boxes.boxes[k] = compute_tile_box(surface, request.patch_index, levels,
+            const Box tile = compute_tile_box(surface, request.patch_index, levels,
                                               {x, y, x + kTileCells, y + kTileCells});
+            boxes.boxes[k] = {max(tile.lower, whole.lower), min(tile.upper, whole.upper)};
         }
     });
     return boxes;

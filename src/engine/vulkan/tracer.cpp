@@ -159,6 +159,7 @@ void Tracer::Implementation::traverse_scene() {
     commands.begin_stage(Stage::top_traversal);
     clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
     clear(offsetof(CounterData, request_count), sizeof(uint32_t));
+    if (directories.is_needed()) commands.fill(buffers.histogram, 0, scalar::kRequestBits / 8, 0);
     commands.dispatch(kernels.scene_traversal, push.count, push);
 }
 

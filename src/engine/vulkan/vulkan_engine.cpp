@@ -42,7 +42,7 @@ class VulkanEngine final : public Engine {
     void add_statistics(Statistics& statistics) const override;
 
   private:
-    template <class Make> auto make_station(uint32_t rays, uint32_t least, Make make_worker) const;
+    template <class Make> auto make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const;
     Station<RayBatch>& batches() const;
     bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
 
@@ -59,14 +59,15 @@ class VulkanEngine final : public Engine {
     double first_image_s_ = 0;
 };
 
+/// `rays` places, of which one in `share` are cast at a time; halved, but not below `least`, until it fits.
 template <class Make>
-auto VulkanEngine::make_station(uint32_t rays, uint32_t least, Make make_worker) const {
+auto VulkanEngine::make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const {
     for (;; rays /= 2) {
         try {
             TracerConfig config;
             config.ray_capacity = rays;
             config.slots = kSlots;
-            config.pair_capacity = std::max(rays, least) * kSlots;
+            config.pair_capacity = rays / share * kSlots;
             auto tracer = std::make_unique<Tracer>(device_, *scene_, device_scene_, settings_, config);
             auto worker = make_worker(*tracer);
             return Station<typename decltype(worker)::element_type>{std::move(tracer), std::move(worker)};
@@ -82,7 +83,7 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     timer_ = {};
     // Every path has a ray and a shadow ray.
     paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
-                          2 * uint32_t(std::min<uint64_t>(pixels, kLeastPaths)), [&](Tracer& tracer) {
+                          2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths)), 2, [&](Tracer& tracer) {
                               return std::make_unique<PathTracer>(tracer, settings_);
                           });
     progress_ = {};
@@ -119,7 +120,7 @@ bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* 
 
 Station<RayBatch>& VulkanEngine::batches() const {
     if (!batches_.worker)
-        batches_ = make_station(kRaysOfABatch, kLeastPaths,
+        batches_ = make_station(kRaysOfABatch, kLeastPaths, 1,
                                 [](Tracer& tracer) { return std::make_unique<RayBatch>(tracer); });
     return batches_;
 }

@@ -16,6 +16,8 @@ layout(scalar, push_constant) uniform Push { CastPush push; };
 layout(set = 0, binding = kBindNodes) uniform usamplerBuffer nodes;
 layout(set = 0, binding = kBindPrimitiveIds) uniform usamplerBuffer primitive_ids;
 layout(scalar, set = 0, binding = kBindRequests) buffer Requests { RequestData requests[]; };
+/// The histogram of the sort, which comes later, lends its first words.
+layout(scalar, set = 0, binding = kBindHistogram) buffer RequestBits { uint request_bits[]; };
 layout(scalar, set = 0, binding = kBindDirectories) readonly buffer Directories { DirectoryData directories[]; };
 
 RayData world;
@@ -88,6 +90,16 @@ uint find_directory(uint patch_number, uint levels) {
     return kNone;
 }
 
+/// Asks the host once, or seldom a few times, however many rays need the same: a bit of a hash tells that somebody
+/// did. What shares another's bit is asked for when the traversal is run again.
+void request_tiles(uint patch_number, RequestData request) {
+    uint bit = hash_directory(patch_number, request.levels) & (kRequestBits - 1u);
+    uint mask = 1u << (bit & 31u);
+    if ((atomicOr(request_bits[bit >> 5u], mask) & mask) != 0u) return;
+    uint place = atomicAdd(counters.request_count, 1u);
+    if (place < push.request_limit) requests[place] = request;
+}
+
 void enter_patch(uint patch_index, float entry) {
     uint levels = choose_levels(patch_index, entry);
     uint patch_number = surfaces[instance.surface].first_quad + patch_index;
@@ -100,8 +112,7 @@ void enter_patch(uint patch_index, float entry) {
         push_node(root, entry);
         return;
     }
-    uint place = atomicAdd(counters.request_count, 1u);
-    if (place < push.request_limit) requests[place] = RequestData(instance_index, patch_index, levels);
+    request_tiles(patch_number, RequestData(instance_index, patch_index, levels));
 }
 
 void enter_tile(uint tree, float entry) {
@@ -141,12 +152,14 @@ void intersect_polygons(uint first, uint count) {
     }
 }
 
-bool is_wanted(BoxInterval interval) {
-    if (!is_box_met(interval) || interval.entry > find_limit()) return false;
-    return push.round == 0u || interval.exit * kBoxSlack >= cursor.entry;
+/// `entry`: not before that of any node above, so that what a round leaves out comes after all that it offers.
+bool is_wanted(BoxInterval interval, float entry) {
+    if (!is_box_met(interval) || entry > find_limit()) return false;
+    if (push.round == 0u || instance_index == kNone) return true;
+    return max(interval.exit, entry) * kBoxSlack >= cursor.entry;
 }
 
-void enter_inner(uint first) {
+void enter_inner(uint first, float parent_entry) {
     float entry[2];
     bool wanted[2];
     for (int k = 0; k < 2; ++k) {
@@ -154,8 +167,8 @@ void enter_inner(uint first) {
         vec3 lower = uintBitsToFloat(texelFetch(nodes, place).xyz);
         vec3 upper = uintBitsToFloat(texelFetch(nodes, place + 1).xyz);
         BoxInterval interval = cross_box(ray, lower, upper, world.t_min, world.t_max);
-        entry[k] = interval.entry;
-        wanted[k] = is_wanted(interval);
+        entry[k] = max(interval.entry, parent_entry);
+        wanted[k] = is_wanted(interval, entry[k]);
     }
     bool is_second_nearer = entry[1] < entry[0];
     uint near = is_second_nearer ? 1u : 0u;
@@ -188,7 +201,7 @@ void walk() {
         uint kind_and_count = texelFetch(nodes, 2 * int(node) + 1).w;
         uint kind = kind_and_count >> kNodeKindShift;
         if (kind == kNodeInner)
-            enter_inner(first);
+            enter_inner(first, entry);
         else if (kind == kNodeInstance) {
             if (instances[first].root == kNone) continue;
             world_size = stack_size;
