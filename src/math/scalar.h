@@ -28,11 +28,14 @@ inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
 inline float atan(float y, float x) { return std::atan2(y, x); }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector.
+inline Vec3 make_unit(const Vec3& a) { return relief::normalize(a); }
 using relief::cross;
 using relief::dot;
 using relief::normalize;
 using std::acos;
 using std::atan;
+using std::ceil;
 using std::cos;
 using std::exp;
 using std::exp2;

@@ -36,7 +36,8 @@ const uint kBindFilm = 26u;         ///< float: sums of each pixel
 const uint kBindPathList = 27u;     ///< uint: paths on their way
 const uint kBindNextPathList = 28u; ///< uint: those that go on
 const uint kBindShadowList = 29u;   ///< uint: rays towards lights
-const uint kStorageBindingCount = 30u;
+const uint kBindDirectories = 30u;  ///< DirectoryData: hash table of the tiles of patches above level 5
+const uint kStorageBindingCount = 31u;
 
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
@@ -57,6 +58,15 @@ const uint kBindEnvironment = 45u;  ///< r32f: cumulative distributions
 const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emissive patches
 const uint kBindAlbedos = 47u;      ///< rg32f: table of ggx_albedo.h; every table of bindings holds it
 const uint kTexelBindingCount = 16u;
+
+// Indirect group counts, in the order of kBindArguments.
+const uint kArgumentsPairs = 0u;
+const uint kArgumentsJobs = 1u;
+const uint kArgumentsBuilds = 2u; ///< and the following, one a bin
+const uint kArgumentCount = 6u;
+
+// Bins of trees to be built, by the lanes that a tree is worth: up to 2 x 2 cells, up to 8 x 8, more.
+const uint kBuildBinCount = 3u;
 
 const uint kMaxPushBytes = 128u;
 const uint kNone = 0xffffffffu;

@@ -2,6 +2,7 @@
 #ifndef RELIEF_DEVICE_RAYS_H
 #ifndef __cplusplus
 #define RELIEF_DEVICE_RAYS_H
+#include "shared/sobol.h"
 #endif
 
 /// World space; hits lie in (t_min, t_max].
@@ -41,6 +42,52 @@ struct CandidateData {
     uint instance, tree;
     uint patch_index;
     uint levels; ///< packed, as this ray sees the patch
+    float entry; ///< where the ray meets its box
+};
+
+/// A patch above level 5 whose tiles a ray asks for.
+struct RequestData {
+    uint instance, patch_index, levels;
+};
+
+/// Entry of the hash table of directories: the tree over the tiles of a patch at given levels.
+struct DirectoryData {
+    uint patch_number; ///< of the patch among all; kNone: empty
+    uint levels;
+    uint root; ///< node
+};
+
+FN uint hash_directory(uint patch_number, uint levels) {
+    return hash_combine(hash_uint(patch_number), levels);
+}
+
+/// What the kernels of a cast are told.
+struct CastPush {
+    uint first, count;   ///< part of the active rays that is worked on
+    uint round;          ///< 0: rays start afresh
+    uint is_any;         ///< anything in the way ends the ray
+    uint wave;           ///< number of this wave of jobs
+    uint pool_start;     ///< pool_head when the wave began
+    uint pool_budget;    ///< units that the wave may fill
+    uint pool_capacity;  ///< units
+    uint is_cached;      ///< trees of earlier waves may serve
+    uint root;           ///< node of the tree of instances; kNone: nothing to be seen
+    uint patch_count;    ///< trees below are patches, from there on tiles
+    uint directory_mask; ///< entries of the hash table - 1
+    uint request_limit;
+    uint is_ray_lod;    ///< levels by the ray's own distance
+    float pixel_angle;  ///< of a cell at distance 1
+    uint builds_stride; ///< places of each bin
+};
+
+/// A bottom tree: what rays want of it in this round, and where in the pool it is.
+struct TreeRecord {
+    uint begin, end; ///< its pairs, sorted
+    uint need;       ///< make_need of all of them; zero between rounds
+    uint coverage;   ///< what the tree in the pool serves; 0: there is none
+    uint address;    ///< in units of the pool, counted on for ever
+    uint ready_wave; ///< wave of jobs in which its pairs may be traced
+    uint build_wave; ///< and in which it was, or is to be, built
 };
 
 /// What kernels count; zeroed by the host where it says so.
@@ -52,14 +99,19 @@ struct CounterData {
     uint request_count;         ///< patches whose tiles are asked for
     uint pool_head;             ///< next free place of the pool, in units; grows for ever, modulo 2^32
     uint next_job;              ///< queue of the persistent kernel
-    uint build_count[4];        ///< jobs to be built, by bin
-    uint pairs_done, jobs_done; ///< over the whole render, modulo 2^32: proofs that nothing was lost
-    uint pairs_emitted, jobs_made;
+    uint build_count[3];        ///< jobs to be built, by bin
+    uint pairs_done, jobs_done; ///< of this wave: proofs that nothing was lost
     uint pairs_with_hit;
     uint reused;
     uint built[6];   ///< trees, by level
     uint path_count; ///< paths that go on
     uint shadow_count;
+};
+
+/// Launches to be sized: invocations a group, and trees a group in each bin of builds.
+struct ArgumentsPush {
+    uint group_size;
+    uint builds_per_group[3];
 };
 
 #endif

@@ -32,11 +32,6 @@ struct SurfaceData {
     uint map;                 ///< index into maps; kNone: not displaced
 };
 
-const uint kWrapClamp = 0u;
-const uint kWrapRepeat = 1u;
-const uint kWrapMirror = 2u;
-const uint kWrapBlack = 3u;
-
 /// d = matrix (texel - midlevel).
 struct MapData {
     Vec3 row0, row1, row2;

@@ -11,5 +11,19 @@
 #define Vec2 vec2
 #define Vec3 vec3
 #define select(condition, a, b) ((condition) ? (a) : (b))
+
+vec3 make_unit(vec3 a) {
+    precise float squared = a.x * a.x + a.y * a.y + a.z * a.z;
+    if (!(squared > 1e-37) || !(squared < 3e38)) {
+        float largest = max(abs(a.x), max(abs(a.y), abs(a.z)));
+        if (!(largest > 0.0) || !(largest < 3e38)) return vec3(0.0);
+        precise vec3 scaled = a / largest;
+        precise float length2 = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
+        precise vec3 tiny = scaled / sqrt(length2);
+        return tiny;
+    }
+    precise vec3 unit = a / sqrt(squared);
+    return unit;
+}
 #endif
 #endif

@@ -26,6 +26,8 @@ class LevelField {
                               const LevelFieldConfig& config);
 
     PatchLevels at(uint32_t patch) const;
+    /// All patches have the same levels.
+    bool is_uniform() const { return packed_.empty(); }
     int max_level() const { return max_level_; }
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
 

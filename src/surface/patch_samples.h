@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "math/scalar.h"
 #include "surface/surface.h"
 
 namespace relief {
@@ -35,8 +36,7 @@ VertexData blend_line(const VertexData& a, const VertexData& b, float s);
 /// Sample of an edge, counted from the start of its line in [0, 2^patch_level], after its move onto the
 /// nearest sample of the edge's level (half way: the later one).
 inline uint32_t move_edge_sample(uint32_t k, int patch_level, int edge_level) {
-    const uint32_t shift = uint32_t(patch_level - edge_level);
-    return (k + ((1u << shift) >> 1)) >> shift << shift;
+    return scalar::move_line_sample(k, uint32_t(patch_level - edge_level));
 }
 
 class PatchSamples {

@@ -14,6 +14,7 @@
 
 #include "math/affine.h"
 #include "math/box.h"
+#include "math/scalar.h"
 #include "relief/scene.h"
 #include "surface/bounds_pyramid.h"
 
@@ -114,8 +115,8 @@ struct PatchLevels {
     /// Levels of surface M_k: every level lowered by `bias`, not below 0.
     PatchLevels biased(uint32_t bias) const {
         PatchLevels result;
-        result.patch = uint8_t(patch > bias ? patch - bias : 0);
-        for (int k = 0; k < 4; ++k) result.edge[k] = uint8_t(edge[k] > bias ? edge[k] - bias : 0);
+        result.patch = uint8_t(scalar::lower_level(patch, bias));
+        for (int k = 0; k < 4; ++k) result.edge[k] = uint8_t(scalar::lower_level(edge[k], bias));
         return result;
     }
 };
@@ -129,8 +130,8 @@ inline uint32_t pack_levels(const PatchLevels& levels) {
 
 inline PatchLevels unpack_levels(uint32_t packed) {
     PatchLevels levels;
-    levels.patch = uint8_t(packed & 15);
-    for (int k = 0; k < 4; ++k) levels.edge[k] = uint8_t(packed >> (4 + 4 * k) & 15);
+    levels.patch = uint8_t(scalar::packed_patch_level(packed));
+    for (uint32_t k = 0; k < 4; ++k) levels.edge[k] = uint8_t(scalar::packed_edge_level(packed, k));
     return levels;
 }
 

@@ -12,23 +12,21 @@
 
 namespace relief {
 
-/// std::floor without the call that it is on instruction sets that have no rounding.
-inline float floor_texel(float x) {
-    if (!(std::fabs(x) < 0x1p23f)) return x; // whole already, or not finite
-    const float whole = float(int32_t(x));
-    return whole > x ? whole - 1 : whole;
-}
+using scalar::floor_texel;
 
 /// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
 /// representable.
+inline constexpr int32_t kFarTexel = 1 << 30;
+static_assert(uint32_t(WrapMode::clamp) == scalar::kWrapClamp &&
+              uint32_t(WrapMode::repeat) == scalar::kWrapRepeat &&
+              uint32_t(WrapMode::mirror) == scalar::kWrapMirror &&
+              uint32_t(WrapMode::black) == scalar::kWrapBlack);
 template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
-    if (index >= 0 && index < size) return index;
-    if (wrap == WrapMode::clamp) return index < 0 ? 0 : size - 1;
-    if (wrap == WrapMode::black) return -1;
-    const Index period = wrap == WrapMode::mirror ? 2 * size : size;
-    Index rest = index % period;
-    if (rest < 0) rest += period;
-    return rest < size ? rest : period - 1 - rest;
+    // Both periods divide twice the size.
+    if (index > kFarTexel || index < -kFarTexel)
+        index = wrap == WrapMode::repeat || wrap == WrapMode::mirror ? index % (2 * size)
+                                                                     : (index < 0 ? Index(-1) : size);
+    return scalar::wrap_texel(int32_t(index), int32_t(size), uint32_t(wrap));
 }
 
 /// The texel in column x and row y, both inside the texture: four channels, so that it fills a register.

@@ -44,9 +44,8 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction
             visit.surface->positions[quad.vertex[(k + 1) % 4]] - visit.surface->positions[quad.vertex[k]];
         longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
     }
-    const float width = visit.scene->pixel_angle * std::fmax(entry * direction_length, 1e-20f);
-    const float wanted = std::ceil(std::log2(std::fmax(longest / width, 1.0f)));
-    const uint8_t level = uint8_t(std::fmin(wanted, float(visit.levels.patch)));
+    const uint8_t level = uint8_t(scalar::choose_ray_level(longest, entry * direction_length,
+                                                           visit.scene->pixel_angle, visit.levels.patch));
     visit.levels.patch = level;
     visit.levels.edge = {level, level, level, level};
     visit.cell_size = 1.0f / float(1u << level);

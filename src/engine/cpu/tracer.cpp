@@ -8,8 +8,8 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
+#include "engine/scene_trees.h"
 #include "relief/error.h"
-#include "structures/sah_bvh.h"
 
 namespace relief::cpu {
 
@@ -18,30 +18,6 @@ namespace {
 /// One batch of a kind in so many measures how much of its time goes into patches; the clock would cost too
 /// much in all of them.
 constexpr uint64_t kTimedBatchInterval = 32;
-
-std::vector<Box> compute_patch_boxes(const Surface& surface) {
-    std::vector<Box> boxes(surface.patch_count());
-    parallel_for("patch_boxes", boxes.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) boxes[k] = compute_patch_box(surface, uint32_t(k));
-    });
-    return boxes;
-}
-
-/// Displaced patches are dear to enter, so each has a leaf of its own; polygons share leaves.
-WideBvh build_surface_tree(const Surface& surface) {
-    SahBvhBuilder::Config config;
-    config.max_leaf_size = surface.has_displacement ? 1 : 4;
-    return make_wide_bvh(SahBvhBuilder::build(compute_patch_boxes(surface), config));
-}
-
-WideBvh build_instance_tree(const PreparedScene& scene, const std::vector<WideBvh>& surface_trees) {
-    std::vector<Box> boxes;
-    for (const Instance& instance : scene.instances)
-        boxes.push_back(transform_box(instance.world_from_object, surface_trees[instance.surface].bounds));
-    SahBvhBuilder::Config config;
-    config.max_leaf_size = 1;
-    return make_wide_bvh(SahBvhBuilder::build(boxes, config));
-}
 
 /// Corners of the micro-triangle (u, v) lies in, object space: a triangle's own, or those of a cell of the
 /// patch.
@@ -235,8 +211,12 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
                                                 "", "`relief devices` lists those that work"});
-    for (const Surface& surface : scene_->surfaces) self.surface_trees.push_back(build_surface_tree(surface));
-    self.instance_tree = build_instance_tree(*scene_, self.surface_trees);
+    std::vector<Box> boxes;
+    for (const Surface& surface : scene_->surfaces) {
+        self.surface_trees.push_back(make_wide_bvh(build_surface_bvh(surface)));
+        boxes.push_back(self.surface_trees.back().bounds);
+    }
+    self.instance_tree = make_wide_bvh(build_instance_bvh(*scene_, boxes));
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);

@@ -1,0 +1,36 @@
+// The pool of bottom trees: a ring that is filled on and on. Places are numbered for ever; what lies more
+// than the pool's size behind is gone. The counterpart of engine/cpu/bottom_cache.h; its look-up is
+// shaders/bottom_cache.comp.
+#pragma once
+
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
+#include "engine/vulkan/kernel.h"
+#include "math/scalar.h"
+
+namespace relief::vulkan {
+
+/// One thread at a time.
+class BottomCache {
+  public:
+    /// `cap_bytes` 0: trees serve one wave of jobs only, and the pool is working memory. Throws
+    /// Error{out_of_memory}.
+    BottomCache(const Device& device, uint64_t cap_bytes);
+
+    void bind(BindingTable& bindings) const;
+
+    /// Fills in what a wave of jobs is told. Records what must be done before it; `trees` are the records of
+    /// all trees.
+    void begin_wave(scalar::CastPush& push, const Buffer& counters, const Buffer& trees, Commands& commands);
+    /// `pool_head` as the wave left it.
+    void end_wave(const scalar::CounterData& counters);
+
+  private:
+    Buffer pool_;
+    bool is_kept_;
+    uint32_t capacity_; ///< units
+    uint32_t head_ = 0; ///< units filled so far
+    uint32_t wave_ = 0;
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,27 @@
+// The kernels of a cast, specialised for the device, the leaf and the form of the bottom level.
+#pragma once
+
+#include <array>
+
+#include "engine/vulkan/kernel.h"
+#include "engine/vulkan/tracer.h"
+#include "math/scalar.h"
+
+namespace relief::vulkan {
+
+struct CastKernels {
+    CastKernels(const Device& device, const RenderSettings& settings, const TracerConfig& config,
+                uint32_t stack_size);
+
+    /// The fused form leaves pairs of large trees to `leftover`; only devices that bound the loops of an
+    /// invocation have any.
+    bool is_fused, has_leftover = false;
+    uint32_t fused_group_count = 0, fused_jobs_per_group = 0;
+    scalar::ArgumentsPush arguments_push; ///< for prepare_arguments
+
+    Kernel scene_traversal, find_jobs, prepare_arguments, bottom_cache, patch_traversal, bottom_fused,
+        leftover, commit_round, finish_hits;
+    std::array<Kernel, scalar::kBuildBinCount> bottom_build;
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,73 @@
+// The prepared scene in device memory: tables, geometry, upper trees and texels, in the layout of
+// shared/device_scene.h.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "engine/prepared_scene.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/kernel.h"
+#include "math/scalar.h"
+#include "structures/bvh.h"
+
+namespace relief::vulkan {
+
+/// A node of an upper tree: two texels.
+struct NodeTexels {
+    Vec3f lower;
+    uint32_t first;
+    Vec3f upper;
+    uint32_t kind_and_count;
+};
+static_assert(sizeof(NodeTexels) == 32);
+
+/// Every displaced and plain surface, and every texture of maps, materials and the environment. Immutable
+/// once made. Throws Error{out_of_memory} with the byte count for what the device cannot hold.
+class DeviceScene {
+  public:
+    DeviceScene(const Device& device, const PreparedScene& scene);
+
+    void bind(BindingTable& bindings) const;
+
+    /// Node of the tree of instances; scalar::kNone without anything to be seen.
+    uint32_t root() const { return root_; }
+    /// Number of the first patch of a surface among all; trees of tiles are numbered from patch_count() on.
+    uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
+    uint32_t patch_count() const { return patch_count_; }
+    /// Entries that a ray's stack needs for both upper trees.
+    uint32_t stack_size() const { return stack_size_; }
+    uint32_t node_count() const { return uint32_t(node_count_); }
+    const Buffer& nodes() const { return nodes_; }
+    /// Index into the table of textures; scalar::kNone for null.
+    uint32_t texture_index(const Texture* texture) const;
+
+  private:
+    struct Tables {
+        std::vector<scalar::InstanceData> instances;
+        std::vector<scalar::SurfaceData> surfaces;
+        std::vector<scalar::MapData> maps;
+        std::vector<scalar::TextureData> textures;
+    };
+    struct Arrays;
+    void add_textures(const Device& device, const PreparedScene& scene);
+    void add_map(const Surface& surface);
+    void add_surfaces(const PreparedScene& scene, Arrays& arrays);
+    void add_instances(const PreparedScene& scene, Arrays& arrays);
+    void add_trees(const PreparedScene& scene, Arrays& arrays);
+    void upload(const Device& device, Arrays& arrays);
+
+    Tables tables_;
+    std::map<const Texture*, uint32_t> texture_indices_;
+    uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0;
+    size_t node_count_ = 0;
+    struct Binding {
+        uint32_t number;
+        Buffer buffer;
+    };
+    std::vector<Binding> buffers_;
+    Buffer nodes_;
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,29 @@
+// Group counts of the launches that follow, from what was counted on the device.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/vulkan/shaders/kernel.glsl"
+#include "shared/lang.h"
+#include "shared/bindings.h"
+#include "shared/device_rays.h"
+
+layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData counters; };
+layout(scalar, set = 0, binding = kBindArguments) buffer Arguments { uint arguments[]; };
+layout(scalar, push_constant) uniform Push { ArgumentsPush push; };
+
+const uint kMostGroups = 65535u;
+
+void write_groups(uint place, uint items, uint items_per_group) {
+    uint groups = (items + items_per_group - 1u) / items_per_group;
+    uint rows = (groups + kMostGroups - 1u) / kMostGroups;
+    arguments[4u * place] = rows > 1u ? kMostGroups : groups;
+    arguments[4u * place + 1u] = rows;
+    arguments[4u * place + 2u] = groups > 0u ? 1u : 0u;
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x > 0u) return;
+    write_groups(kArgumentsPairs, counters.pair_count, push.group_size);
+    write_groups(kArgumentsJobs, counters.job_count, push.group_size);
+    for (uint bin = 0u; bin < kBuildBinCount; ++bin)
+        write_groups(kArgumentsBuilds + bin, counters.build_count[bin], push.builds_per_group[bin]);
+}

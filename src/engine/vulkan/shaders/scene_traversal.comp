@@ -1,0 +1,236 @@
+// One ray through the two upper levels, nearest first: polygons are hit at once, displaced patches are offered to
+// the bottom level, the nearest few of those that come after the ray's cursor (Harada 2015, section 1.5.3, in
+// rounds). A round may be run again, so it changes nothing but hits, which only come nearer.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/vulkan/shaders/kernel.glsl"
+#include "engine/vulkan/shaders/rays.glsl"
+#include "shared/bottom_tree.h"
+#include "shared/lod.h"
+
+layout(constant_id = 1) const uint kSlots = 4;
+layout(constant_id = 2) const uint kStackSize = 128;
+const uint kMostSlots = 8u;
+
+layout(scalar, push_constant) uniform Push { CastPush push; };
+layout(set = 0, binding = kBindNodes) uniform usamplerBuffer nodes;
+layout(set = 0, binding = kBindPrimitiveIds) uniform usamplerBuffer primitive_ids;
+layout(scalar, set = 0, binding = kBindRequests) buffer Requests { RequestData requests[]; };
+layout(scalar, set = 0, binding = kBindDirectories) readonly buffer Directories { DirectoryData directories[]; };
+
+RayData world;
+ObjectRay ray;
+InstanceData instance;
+uint instance_index; ///< kNone: in world space
+HitData best;
+CursorData cursor;
+
+CandidateData slots[kMostSlots];
+uint slot_count = 0u;
+
+uint stack_node[kStackSize];
+float stack_entry[kStackSize];
+uint stack_size = 0u;
+
+void push_node(uint node, float entry) {
+    stack_node[stack_size] = node;
+    stack_entry[stack_size] = entry;
+    ++stack_size;
+}
+
+/// Distance beyond which nothing matters to this round.
+float find_limit() {
+    float limit = slot_count == kSlots ? min(best.t, slots[kSlots - 1u].entry) : best.t;
+    return limit * kBoxSlack;
+}
+
+bool is_after(CandidateData a, float entry, uint at_instance, uint tree) {
+    if (a.entry != entry) return a.entry > entry;
+    if (a.instance != at_instance) return a.instance > at_instance;
+    return a.tree > tree;
+}
+
+/// Keeps the candidate if it comes after the cursor and is among the nearest so far.
+void offer_candidate(CandidateData candidate) {
+    if (push.round > 0u && !is_after(candidate, cursor.entry, cursor.instance, cursor.tree)) return;
+    if (slot_count == kSlots && !is_after(slots[kSlots - 1u], candidate.entry, candidate.instance, candidate.tree))
+        return;
+    uint place = slot_count < kSlots ? slot_count : kSlots - 1u;
+    slot_count = min(slot_count + 1u, kSlots);
+    for (; place > 0u && is_after(slots[place - 1u], candidate.entry, candidate.instance, candidate.tree); --place)
+        slots[place] = slots[place - 1u];
+    slots[place] = candidate;
+}
+
+/// Levels that this ray sees a patch at, packed.
+uint choose_levels(uint patch_index, float entry) {
+    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.bias);
+    if (push.is_ray_lod == 0u) return levels;
+    SurfaceData s = surfaces[instance.surface];
+    uvec4 quad = load_quad(s, patch_index);
+    float longest = 0.0;
+    for (uint k = 0u; k < 4u; ++k) {
+        vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - load_position(s, quad[k]);
+        longest = max(longest, length(transform_vector(instance.world_from_object, edge)));
+    }
+    return pack_uniform_level(choose_ray_level(longest, entry * length(world.direction), push.pixel_angle,
+                                               packed_patch_level(levels)));
+}
+
+/// Node of the tree over the tiles of a patch; kNone where the host has still to make it.
+uint find_directory(uint patch_number, uint levels) {
+    uint place = hash_directory(patch_number, levels) & push.directory_mask;
+    while (directories[place].patch_number != kNone) {
+        if (directories[place].patch_number == patch_number && directories[place].levels == levels)
+            return directories[place].root;
+        place = (place + 1u) & push.directory_mask;
+    }
+    return kNone;
+}
+
+void enter_patch(uint patch_index, float entry) {
+    uint levels = choose_levels(patch_index, entry);
+    uint patch_number = surfaces[instance.surface].first_quad + patch_index;
+    if (packed_patch_level(levels) <= kTreeLevels) {
+        offer_candidate(CandidateData(instance_index, patch_number, patch_index, levels, entry));
+        return;
+    }
+    uint root = find_directory(patch_number, levels);
+    if (root != kNone) {
+        push_node(root, entry);
+        return;
+    }
+    uint place = atomicAdd(counters.request_count, 1u);
+    if (place < push.request_limit) requests[place] = RequestData(instance_index, patch_index, levels);
+}
+
+void enter_tile(uint tree, float entry) {
+    TileRecord tile = tile_records[tree - push.patch_count];
+    offer_candidate(CandidateData(instance_index, tree, tile.patch_index, tile.levels, entry));
+}
+
+bool is_before_best(float t, uint patch_index, uint cell) {
+    if (t != best.t) return t < best.t;
+    if (instance_index != best.instance) return instance_index < best.instance;
+    if (patch_index != best.patch_index) return patch_index < best.patch_index;
+    return cell < best.cell;
+}
+
+void offer_triangle(uint patch_index, vec3 a, vec3 b, vec3 c, uint is_upper) {
+    TriangleHit found = intersect_sheared(ray, a, b, c, world.t_min, best.t);
+    if (found.t == kInfinity || !is_before_best(found.t, patch_index, is_upper)) return;
+    best.t = found.t;
+    best.instance = instance_index;
+    best.patch_index = patch_index;
+    best.u = is_upper != 0u ? found.weight_b : found.weight_b + found.weight_c;
+    best.v = is_upper != 0u ? found.weight_b + found.weight_c : found.weight_c;
+    best.cell = is_upper;
+    best.levels = 0u;
+}
+
+void intersect_polygons(uint first, uint count) {
+    SurfaceData s = surfaces[instance.surface];
+    for (uint k = 0u; k < count; ++k) {
+        uint patch_index = texelFetch(primitive_ids, int(first + k)).x;
+        uvec4 quad = load_quad(s, patch_index);
+        vec3 p0 = shear_vertex(ray, load_position(s, quad.x));
+        vec3 p1 = shear_vertex(ray, load_position(s, quad.y));
+        vec3 p2 = shear_vertex(ray, load_position(s, quad.z));
+        offer_triangle(patch_index, p0, p1, p2, 0u);
+        if (!is_triangle(quad)) offer_triangle(patch_index, p0, p2, shear_vertex(ray, load_position(s, quad.w)), 1u);
+    }
+}
+
+bool is_wanted(BoxInterval interval) {
+    if (!is_box_met(interval) || interval.entry > find_limit()) return false;
+    return push.round == 0u || interval.exit * kBoxSlack >= cursor.entry;
+}
+
+void enter_inner(uint first) {
+    float entry[2];
+    bool wanted[2];
+    for (int k = 0; k < 2; ++k) {
+        int place = 2 * int(first) + 2 * k;
+        vec3 lower = uintBitsToFloat(texelFetch(nodes, place).xyz);
+        vec3 upper = uintBitsToFloat(texelFetch(nodes, place + 1).xyz);
+        BoxInterval interval = cross_box(ray, lower, upper, world.t_min, world.t_max);
+        entry[k] = interval.entry;
+        wanted[k] = is_wanted(interval);
+    }
+    bool is_second_nearer = entry[1] < entry[0];
+    uint near = is_second_nearer ? 1u : 0u;
+    if (wanted[1u - near]) push_node(first + 1u - near, entry[1u - near]);
+    if (wanted[near]) push_node(first + near, entry[near]);
+}
+
+void enter_instance(uint index) {
+    instance_index = index;
+    instance = instances[index];
+    ray = enter_object(world, instance);
+}
+
+void leave_instance() {
+    instance_index = kNone;
+    ray = make_object_ray(world.origin, world.direction);
+}
+
+void walk() {
+    uint world_size = 0u; // entries of the stack that wait outside the instance
+    push_node(push.root, world.t_min);
+    leave_instance();
+    while (stack_size > 0u) {
+        --stack_size;
+        if (instance_index != kNone && stack_size < world_size) leave_instance();
+        float entry = stack_entry[stack_size];
+        if (entry > find_limit()) continue;
+        uint node = stack_node[stack_size];
+        uint first = texelFetch(nodes, 2 * int(node)).w;
+        uint kind_and_count = texelFetch(nodes, 2 * int(node) + 1).w;
+        uint kind = kind_and_count >> kNodeKindShift;
+        if (kind == kNodeInner)
+            enter_inner(first);
+        else if (kind == kNodeInstance) {
+            if (instances[first].root == kNone) continue;
+            world_size = stack_size;
+            enter_instance(first);
+            push_node(instance.root, entry);
+        } else if (kind == kNodePatch)
+            enter_patch(first, entry);
+        else if (kind == kNodeTile)
+            enter_tile(first, entry);
+        else {
+            intersect_polygons(first, kind_and_count & ((1u << kNodeKindShift) - 1u));
+            if (push.is_any != 0u && best.instance != kNone) return;
+        }
+    }
+}
+
+void main() {
+    uint place = invocation_index();
+    if (place >= push.count) return;
+    uint ray_index = active_rays[push.first + place];
+    world = rays[ray_index];
+    best = HitData(world.t_max, kNone, kNone, 0.0, 0.0, 0u, 0u);
+    if (push.round > 0u) {
+        cursor = cursors[ray_index];
+        if (hits[ray_index].instance != kNone) best = hits[ray_index];
+    }
+    if (push.root != kNone) walk();
+    if (push.is_any != 0u && best.instance != kNone) slot_count = 0u;
+    if (push.round == 0u || best.instance != kNone) {
+        HitData result = best;
+        if (best.instance == kNone) result.t = kInfinity;
+        hits[ray_index] = result;
+    }
+    nearest[place] = make_nearest(best.t, 0xffffffffu);
+    uint first_pair = slot_count > 0u ? atomicAdd(counters.pair_count, slot_count) : 0u;
+    for (uint k = 0u; k < kSlots; ++k) {
+        uint candidate = place * kSlots + k;
+        if (k < slot_count) {
+            candidates[candidate] = slots[k];
+            pairs[first_pair + k] = uvec2(slots[k].tree, candidate);
+        } else {
+            candidates[candidate].instance = kNone;
+        }
+    }
+}
