@@ -115,12 +115,21 @@ Json make_casts(const std::string& name, const std::vector<Variant>& variants) {
     return entry;
 }
 
+void check_scenes(const std::vector<std::string>& scenes) {
+    const std::string known = fmt::format("{}", fmt::join(kPaper1Scenes, ", "));
+    if (scenes.empty()) throw Error(ErrorKind::usage, {"no scene to measure", "", "known: " + known});
+    for (const std::string& name : scenes)
+        if (std::find(kPaper1Scenes.begin(), kPaper1Scenes.end(), name) == kPaper1Scenes.end())
+            throw Error(ErrorKind::usage, {"not a scene of paper 1", name, "known: " + known});
+}
+
 /// One suite in the making.
 class Paper1 {
   public:
     Paper1(const Paper1Options& options, const Report& report) : options_(options), report_(report) {}
 
     Json run() {
+        check_scenes(options_.scenes);
         // The largest first, while the process has held nothing else.
         for (const std::string& name : kPaper1Scenes)
             if (std::find(options_.scenes.begin(), options_.scenes.end(), name) != options_.scenes.end())

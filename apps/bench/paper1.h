@@ -28,8 +28,9 @@ struct Paper1Options {
 /// Options of a run that only shows that everything works: tiny pictures, one run.
 Paper1Options make_quick_options(Paper1Options options);
 
-/// Measures all, in the order that keeps the peak of memory honest: the largest scene first. Throws what
-/// rendering throws, apart from what is refused for want of memory: that is a result.
+/// Measures all, in the order that keeps the peak of memory honest: the largest scene first. Throws
+/// Error{usage} for a scene that is none of the paper's, and what rendering throws, apart from what is
+/// refused for want of memory: that is a result.
 nlohmann::ordered_json run_paper1(const Paper1Options& options, const Report& report);
 
 struct ReportFile {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,7 +26,9 @@ struct Options {
     std::filesystem::path pipeline_cache;
     int device = -1;
     bool is_quick = false;
+    std::vector<std::string> scenes; ///< empty: all
     int runs = 5;
+    uint64_t tessellated_limit_mebibytes = 4096;
 };
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
@@ -48,10 +51,11 @@ RenderSettings make_settings(const Options& options) {
 int run_parity_verb(const Options& options) {
     ParityOptions parity;
     parity.settings = make_settings(options);
-    parity.is_quick = options.is_quick;
+    if (!options.scenes.empty()) parity.scenes = options.scenes;
     if (options.is_quick) {
         parity.settings.width = 96, parity.settings.height = 64;
         parity.noise_samples = 16;
+        parity.scenes = {"ear"};
     }
     Json result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
     result.update(run_parity(parity, report));
@@ -66,6 +70,8 @@ int run_bench_verb(const Options& options) {
     bench::Paper1Options paper1;
     paper1.settings = make_settings(options);
     paper1.runs = options.runs;
+    paper1.tessellated_limit_bytes = options.tessellated_limit_mebibytes << 20;
+    if (!options.scenes.empty()) paper1.scenes = options.scenes;
     if (options.is_quick) {
         paper1 = bench::make_quick_options(paper1);
         paper1.scenes = {"bark"};
@@ -90,6 +96,7 @@ void add_options(CLI::App& verb, Options& options, const char* output) {
     verb.add_option("-o", options.output, output);
     verb.add_option("--device", options.device, "index of the device; default: the best one");
     verb.add_option("--pipeline-cache", options.pipeline_cache, "file that keeps compiled kernels");
+    verb.add_option("--scenes", options.scenes, "some of the scenes")->delimiter(',');
     verb.add_flag("--quick", options.is_quick, "tiny pictures of one scene: only shows that it works");
 }
 
@@ -103,6 +110,10 @@ int run(int argument_count, char** arguments) {
     add_options(*paper1, options, "folder for JSON, CSV and charts; default: paper1");
     paper1->add_option("--runs", options.runs, "that count, after one to warm up")
         ->check(CLI::Range(1, 1000));
+    paper1
+        ->add_option("--tessellated-limit", options.tessellated_limit_mebibytes,
+                     "MiB: pre-tessellated scenes above are left out; default 4096")
+        ->check(CLI::Range(0, 1 << 30));
     CLI::App* devices = app.add_subcommand("devices", "List the Vulkan devices as JSON");
     try {
         app.parse(argument_count, arguments);

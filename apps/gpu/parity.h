@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -34,7 +35,7 @@ double compute_largest_z(const Image& a, const Image& b);
 struct ParityOptions {
     RenderSettings settings; ///< of the Vulkan engine: device, size, pipeline cache
     int noise_samples = 256; ///< a pixel, of the pictures whose means are compared
-    bool is_quick = false;   ///< the ear alone
+    std::vector<std::string> scenes = {"ear", "pumpkin", "bark", "barks", "party"};
 };
 
 /// {cases: [{name, outcome, ...}], passed, failed}: first hits at every level, leaf, form of the bottom

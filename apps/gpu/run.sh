@@ -1,6 +1,7 @@
 #!/bin/sh
 # Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and nothing else.
-#   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick]
+#   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick] [--parity WORDS] [--bench WORDS]
+# WORDS are more options of `relief-gpu parity` or `relief-gpu bench`, e.g. --bench "--scenes bark,party --runs 7".
 # RESULT.json (default relief-gpu.json here) tells each part's outcome; logs and charts lie in a folder beside it.
 # Exit code: 0 when every part asked for passed, 1 otherwise, 2 for wrong usage.
 set -u
@@ -10,13 +11,17 @@ result=relief-gpu.json
 parts=tests,parity,bench
 device=
 quick=
+parity_words=
+bench_words=
 while [ $# -gt 0 ]; do
     case $1 in
     -o) result=${2:?-o needs a file} && shift 2 ;;
     --parts) parts=${2:?--parts needs a list} && shift 2 ;;
     --device) device="--device ${2:?--device needs a number}" && shift 2 ;;
+    --parity) parity_words=${2?--parity needs words} && shift 2 ;;
+    --bench) bench_words=${2?--bench needs words} && shift 2 ;;
     --quick) quick=--quick && shift ;;
-    *) sed -n '2,5s/^# *//p' "$0" >&2 && exit 2 ;;
+    *) sed -n '2,6s/^# *//p' "$0" >&2 && exit 2 ;;
     esac
 done
 for part in $(echo "$parts" | tr , ' '); do
@@ -74,13 +79,13 @@ $(if [ -s "$file" ]; then cat "$file"; else echo null; fi)}"
 cd "$logs" || exit 1
 "$here/relief-gpu" devices >devices.json 2>devices.log
 for part in $(echo "$parts" | tr , ' '); do
-    # $device and $quick are words of their own, or nothing.
+    # $device, $quick and the further words are split into words, or nothing.
     case $part in
     tests) run_part tests tests.json "$here/vulkan_tests" --gtest_output=json:tests.json ;;
     parity) run_part parity parity.json "$here/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
-        $device $quick ;;
+        $device $quick $parity_words ;;
     bench) run_part bench paper1/paper1.json "$here/relief-gpu" bench -o paper1 --pipeline-cache pipelines \
-        $device $quick ;;
+        $device $quick $bench_words ;;
     esac
 done
 rm -rf "$logs/lib"
