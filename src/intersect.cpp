@@ -31,7 +31,7 @@ Intersector::Intersector(Scene scene, const RenderSettings& settings)
     validate_settings(settings);
     implementation_->threads = settings.threads;
     with_threads(settings.threads, [&] {
-        implementation_->engine = make_cpu_engine(prepare_scene(std::move(scene), settings), settings);
+        implementation_->engine = make_engine(prepare_scene(std::move(scene), settings), settings);
     });
 }
 

@@ -57,7 +57,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         // First, so that a picture that cannot be held is refused before the scene is prepared.
         Film film(settings.width, settings.height, settings.crop, settings.layers);
         const std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
-        const std::unique_ptr<Engine> engine = make_cpu_engine(prepared, settings);
+        const std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 
         const Timer timer;

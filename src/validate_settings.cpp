@@ -27,6 +27,12 @@ void validate_settings(const RenderSettings& s) {
             fmt::format("0 to {}", kMaxBounces));
     require(s.threads >= 0 && s.threads <= kMaxThreads, "the number of threads is out of range",
             "0 (all cores) to 4096");
+    require(s.device >= -1, "the device is out of range", "-1 (the best) or an index of vulkan_devices()");
+    require(s.engine == EngineKind::vulkan || (s.device == -1 && s.bottom == BottomForm::automatic),
+            "a device and a form of the bottom kernel go with the Vulkan engine",
+            "engine = EngineKind::vulkan");
+    require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
+            "engine = EngineKind::cpu");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
             fmt::format("auto, or 0 to {}", kMaxLevel));
     require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",

@@ -11,6 +11,7 @@
 
 #include "bench/paper1.h"
 #include "commands.h"
+#include "engine_options.h"
 #include "exit_codes.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -26,6 +27,7 @@ constexpr int64_t kMaxLimitMegabytes = int64_t(1) << 30;
 struct BenchOptions {
     std::string suite = "paper1";
     std::filesystem::path folder;
+    EngineOptions engine;
     bench::Paper1Options paper1;
     bool is_quick = false, is_quiet = false;
 };
@@ -99,8 +101,6 @@ void add_setting_options(CLI::App& verb, RenderSettings& s) {
     });
     add("--level", "auto|N", "from the size on screen (default), or 2^N cells a side",
         [&s](const std::string& text) { s.level = parse_level(text); });
-    add("--threads", "N", "0: all cores (default)",
-        [&s](const std::string& text) { s.threads = int(parse_integer("--threads", text, 0, kMaxThreads)); });
 }
 
 } // namespace
@@ -113,7 +113,11 @@ Command add_bench(CLI::App& verb) {
         ->type_name("DIR");
     add_run_options(verb, *options);
     add_setting_options(verb, options->paper1.settings);
-    return [options] { return run_bench(*options); };
+    add_engine_options(verb, options->engine, options->paper1.settings);
+    return [options] {
+        complete_engine_options(options->engine, options->paper1.settings);
+        return run_bench(*options);
+    };
 }
 
 } // namespace relief::cli

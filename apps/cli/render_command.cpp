@@ -44,7 +44,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
 void print_summary(const Statistics& s, const RenderSettings& settings) {
     const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
-               s.triangles, s.instances, s.engine, s.isa, s.threads);
+               s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
     fmt::print(stderr, "{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
                settings.height, settings.spp, rays, s.render_s,
                s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);

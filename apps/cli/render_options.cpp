@@ -131,28 +131,13 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_machine_options(CLI::App& verb, RenderOptions& o) {
-    add(verb, "--engine", "NAME", "cpu", [](const std::string& text) {
-        parse_word("--engine", text, std::array<Word<int>, 1>{{{"cpu", 0}}});
-    });
+    add_engine_options(verb, o.engine, o.settings);
     add(verb, "--structure", "NAME", "of the scene: bvh", [](const std::string& text) {
         parse_word("--structure", text, std::array<Word<int>, 1>{{{"bvh", 0}}});
     });
     add(verb, "--traversal", "NAME", "how it is walked: wide", [](const std::string& text) {
         parse_word("--traversal", text, std::array<Word<int>, 1>{{{"wide", 0}}});
     });
-    add(verb, "--threads", "N", "0: all cores (default)", [&o](const std::string& text) {
-        o.settings.threads = int(parse_integer("--threads", text, 0, kMaxThreads));
-    });
-    add(verb, "--isa", "NAME", "best (default), avx512, avx2, sse4, neon, scalar",
-        [&o](const std::string& text) {
-            constexpr std::array<Word<Isa>, 6> words{{{"best", Isa::best},
-                                                      {"avx512", Isa::avx512},
-                                                      {"avx2", Isa::avx2},
-                                                      {"sse4", Isa::sse4},
-                                                      {"neon", Isa::neon},
-                                                      {"scalar", Isa::scalar}}};
-            o.settings.isa = parse_word("--isa", text, words);
-        });
     add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 256",
         [&o](const std::string& text) {
             o.settings.bottom_cache_bytes =
@@ -191,6 +176,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
 }
 
 void complete_render_options(RenderOptions& o) {
+    complete_engine_options(o.engine, o.settings);
     if (o.input.empty())
         throw Error(ErrorKind::usage,
                     {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine_options.h"
 #include "progress.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -23,6 +24,7 @@ struct RenderOptions {
     std::filesystem::path input, output, statistics_file;
     MeshSceneOptions mesh;
     std::vector<std::string> mesh_only; ///< options given that only a mesh takes
+    EngineOptions engine;
     RenderSettings settings; ///< of the command line; picture defaults apply where `given` is empty
     PictureDefaults given;   ///< picture settings that the command line holds
     std::optional<std::pair<int, int>> samples;

@@ -31,4 +31,13 @@ class Engine {
 std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene,
                                         const RenderSettings& settings);
 
+/// Only in builds with Vulkan. Throws Error{device_missing}: no driver, no such device, or one that lacks
+/// what is named; Error{out_of_memory} for a scene that the device cannot hold.
+std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
+                                           const RenderSettings& settings);
+
+/// The engine that `settings` names.
+std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
+                                    const RenderSettings& settings);
+
 } // namespace relief

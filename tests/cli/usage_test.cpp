@@ -59,16 +59,26 @@ TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
 }
 
 TEST_F(Usage, only_what_exists_can_be_chosen) {
-    expect_refused({"render", "plane.obj", "--engine", "vulkan"}, "one of: cpu");
+    expect_refused({"render", "plane.obj", "--engine", "opencl"}, "one of: cpu, vulkan");
+    expect_refused({"render", "plane.obj", "--engine", "vulkan", "--bottom", "fuse"}, "'fused'");
     expect_refused({"render", "plane.obj", "--structure", "lbvh"}, "one of: bvh");
     expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: wide");
-    for (const char* option : {"--device", "--method", "--bottom", "--frames"}) {
+    for (const char* option : {"--method", "--frames"}) {
         expect_refused({"render", "plane.obj", option, "0"}, option);
         EXPECT_FALSE(contains(run({"render", "--help"}).output, std::string(option) + " ")) << option;
     }
     expect_refused({"render", "plane.obj", "--surface", "tesselated"}, "'tessellated'");
     expect_refused({"render", "plane.obj", "--layers", "depth,Normal"}, "unknown layer 'Normal'");
     expect_refused({"render", "plane.obj", "-o", "a.png", "--layers", "depth"}, ".exr");
+}
+
+TEST_F(Usage, options_of_one_engine_do_not_go_with_the_other) {
+    for (const std::string verb : {"render", "bench"}) {
+        const std::string input = verb == "render" ? "plane.obj" : "paper1";
+        expect_refused({verb, input, "--device", "0"}, "--engine vulkan");
+        expect_refused({verb, input, "--bottom", "auto"}, "--engine vulkan");
+        expect_refused({verb, input, "--engine", "vulkan", "--isa", "best"}, "leave out --engine vulkan");
+    }
 }
 
 TEST_F(Usage, mesh_options_do_not_go_with_a_scene_file) {
