@@ -52,6 +52,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     camera_kernel_ = make_kernel(device, "camera");
     background_ = make_kernel(device, "background");
     surface_point_ = make_kernel(device, "surface_point");
+    shading_normal_ = make_kernel(device, "shading_normal");
     light_sample_ = make_kernel(device, "light_sample");
     bounce_ = make_kernel(device, "bounce");
     shadow_light_ = make_kernel(device, "shadow_light");
@@ -135,6 +136,7 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
                   0);
     commands.dispatch(background_, push.count, push);
     commands.dispatch(surface_point_, push.count, push);
+    commands.dispatch(shading_normal_, push.count, push);
     commands.dispatch(light_sample_, push.count, push);
     if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
     const scalar::CounterData& counters = tracer_.read_counters();
