@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test dev asan tsan fuzz coverage format clean packages release asan-slice
+.PHONY: help render test dev asan tsan fuzz coverage format clean packages release asan-slice gpu-bundle
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -16,6 +16,7 @@ help:
 	@echo 'make tsan      all tests under the thread sanitizer'
 	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers'
 	@echo 'make coverage  line coverage of the tests: build/coverage/report.txt'
+	@echo 'make gpu-bundle  tests and measurements for a bare GPU machine: out/relief-gpu-bundle'
 	@echo 'make format    clang-format over all sources'
 	@echo 'make clean     remove build/ (pictures in out/ stay)'
 	@echo 'make packages  install the Debian packages of tools/packages.txt that are missing'
@@ -67,6 +68,10 @@ fuzz: packages
 coverage: packages
 	$(call configure_and_build,coverage)
 	tools/report_coverage.sh build/coverage $(JOBS)
+
+gpu-bundle: packages
+	$(call configure_and_build,release,relief-gpu vulkan_tests)
+	tools/make_gpu_bundle.sh build/release out/relief-gpu-bundle
 
 format: packages
 	clang-format -i $(SOURCES)

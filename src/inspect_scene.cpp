@@ -10,6 +10,7 @@
 #include "engine/tessellate.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
+#include "validate_settings.h"
 
 namespace relief {
 
@@ -75,10 +76,17 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
     add("structures", fmt::format("{} bytes", statistics.structures_bytes));
     add("tessellated",
-        fmt::format("{} bytes at the levels of this view", estimate_tessellation_bytes(*prepared)));
+        fmt::format("{} bytes at the levels of this view", estimate_tessellation(*prepared).peak_bytes));
 }
 
 } // namespace
+
+TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings& settings) {
+    validate_settings(settings);
+    RenderSettings direct = settings;
+    direct.surface = SurfaceMode::direct;
+    return estimate_tessellation(*prepare_scene(scene, direct));
+}
 
 Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
     Inspection result;

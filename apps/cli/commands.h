@@ -17,6 +17,7 @@ Command add_scene(CLI::App& verb);
 Command add_compare(CLI::App& verb);
 Command add_merge(CLI::App& verb);
 Command add_devices(CLI::App& verb);
+Command add_bench(CLI::App& verb);
 
 /// Parses the command line, runs its verb, reports errors on stderr. Returns the exit code.
 int run(int argument_count, const char* const* arguments);

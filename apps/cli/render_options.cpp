@@ -115,18 +115,7 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
         o.settings.surface = parse_word("--surface", text, words);
     });
     add(verb, "--level", "auto|N", "from the size on screen, or 2^N cells a side",
-        [&o](const std::string& text) {
-            if (text == "auto") {
-                o.settings.level = kAutoLevel;
-                return;
-            }
-            try {
-                o.settings.level = int(parse_integer("--level", text, 0, kMaxLevel));
-            } catch (const Error&) {
-                refuse_value("--level", text,
-                             fmt::format("'auto' or a whole number from 0 to {}", kMaxLevel));
-            }
-        });
+        [&o](const std::string& text) { o.settings.level = parse_level(text); });
     add(verb, "--pixel-error", "F", "cell size aimed at, pixels; default 1", [&o](const std::string& text) {
         o.settings.pixel_error = float(parse_number("--pixel-error", text, 1e-3, 1e3));
     });

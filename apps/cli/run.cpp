@@ -35,6 +35,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     add("scene", "Write a sample scene", add_scene);
     add("compare", "Difference of two pictures; exit 7 where it is above the threshold", add_compare);
     add("merge", "Join tiles and sample ranges of one picture", add_merge);
+    add("bench", "Measure, and compare with the figures of a paper", add_bench);
     add("devices", "List what can render on this machine", add_devices);
     return verbs;
 }

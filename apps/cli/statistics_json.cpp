@@ -35,6 +35,20 @@ Json make_memory(const Statistics& s) {
             {"peak_resident", s.peak_resident_bytes}};
 }
 
+Json make_casts(const Statistics& s) {
+    Json casts = Json::array();
+    for (const CastStatistics& cast : s.casts)
+        casts.push_back({{"depth", cast.depth},
+                         {"kind", cast.is_shadow ? "shadow" : (cast.depth == 0 ? "camera" : "bounce")},
+                         {"rays", cast.rays},
+                         {"pairs", cast.pairs},
+                         {"top_traversal_s", cast.top_traversal_s},
+                         {"sort_s", cast.sort_s},
+                         {"bottom_build_s", cast.bottom_build_s},
+                         {"bottom_traversal_s", cast.bottom_traversal_s}});
+    return casts;
+}
+
 } // namespace
 
 Json make_statistics_json(const Statistics& s, const RenderSettings& settings) {
@@ -53,6 +67,7 @@ Json make_statistics_json(const Statistics& s, const RenderSettings& settings) {
     root["time_s"] = make_times(s);
     root["stage_s"] = make_stages(s);
     root["rays"] = make_rays(s);
+    root["casts"] = make_casts(s);
     root["pairs"] = {{"emitted", s.pairs_emitted}, {"with_hit", s.pairs_with_hit}};
     root["bottom"] = {{"built", s.bottom_built}, {"reused", s.bottom_reused}, {"levels", s.bottom_levels}};
     root["memory_bytes"] = make_memory(s);

@@ -3,6 +3,8 @@
 #include <cctype>
 #include <charconv>
 
+#include "relief/render.h"
+
 namespace relief::cli {
 
 void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
@@ -36,6 +38,15 @@ std::vector<int64_t> parse_integers(const std::string& option, const std::string
     for (const std::string& part : parts)
         values.push_back(parse_integer(option, part, range.first, range.second));
     return values;
+}
+
+int parse_level(const std::string& text) {
+    if (text == "auto") return kAutoLevel;
+    try {
+        return int(parse_integer("--level", text, 0, kMaxLevel));
+    } catch (const Error&) {
+        refuse_value("--level", text, fmt::format("'auto' or a whole number from 0 to {}", kMaxLevel));
+    }
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

@@ -29,6 +29,9 @@ double parse_number(const std::string& option, const std::string& text, double l
 std::vector<int64_t> parse_integers(const std::string& option, const std::string& text, char separator,
                                     size_t count, std::pair<int64_t, int64_t> range);
 
+/// A value of --level: auto, or cells 2^N a side.
+int parse_level(const std::string& text);
+
 /// Parts of "a,b,c"; an empty text has no parts.
 std::vector<std::string> split(const std::string& text, char separator);
 

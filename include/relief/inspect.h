@@ -1,6 +1,7 @@
 // What a scene, a mesh or a map is, what it will cost, and what is wrong with it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,18 @@ struct Inspection {
     std::vector<Fact> facts;
     std::vector<Finding> findings;
 };
+
+/// What a scene would hold with every displaced patch cut into micro-quads up front: the baseline of direct
+/// tracing.
+struct TessellationCost {
+    uint64_t micro_quads = 0;
+    uint64_t geometry_bytes = 0;   ///< exact
+    uint64_t structures_bytes = 0; ///< from the size of such trees elsewhere: within a tenth
+    uint64_t peak_bytes = 0;       ///< of the displaced surfaces while they are made, what a render asks for
+};
+
+/// Cost at the levels of `settings`; nothing is tessellated. Throws Error (bad_input).
+TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings& settings);
 
 Inspection inspect_scene(const Scene& scene, const RenderSettings& settings);
 Inspection inspect_mesh(const Mesh& mesh);

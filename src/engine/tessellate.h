@@ -3,12 +3,12 @@
 #pragma once
 
 #include "engine/prepared_scene.h"
+#include "relief/inspect.h"
 
 namespace relief {
 
-/// Bytes that the tessellated scene would hold: vertices, quads, tree, and what building them takes at the
-/// peak.
-uint64_t estimate_tessellation_bytes(const PreparedScene& scene);
+/// Of a scene that is not tessellated yet, at the levels of its instances.
+TessellationCost estimate_tessellation(const PreparedScene& scene);
 
 /// Replaces every displaced surface by its micro-quads at the levels of each instance (instances with equal
 /// levels share them). Throws Error{out_of_memory} beforehand, with the byte count, when the machine cannot

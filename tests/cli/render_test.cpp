@@ -134,6 +134,14 @@ TEST_F(Render, statistics_hold_every_stable_key) {
                             "/rays/bounce",
                             "/rays/total",
                             "/rays/per_second",
+                            "/casts/0/depth",
+                            "/casts/0/kind",
+                            "/casts/0/rays",
+                            "/casts/0/pairs",
+                            "/casts/0/top_traversal_s",
+                            "/casts/0/sort_s",
+                            "/casts/0/bottom_build_s",
+                            "/casts/0/bottom_traversal_s",
                             "/pairs/emitted",
                             "/pairs/with_hit",
                             "/bottom/built",
@@ -164,6 +172,9 @@ TEST_F(Render, statistics_add_up) {
     EXPECT_EQ(rays["total"], rays["camera"].get<uint64_t>() + rays["shadow"].get<uint64_t>() +
                                  rays["bounce"].get<uint64_t>());
     EXPECT_GT(rays["per_second"], 0.0);
+    EXPECT_EQ(s["casts"][0]["kind"], "camera");
+    EXPECT_EQ(s["casts"][0]["rays"], rays["camera"]);
+    EXPECT_EQ(s["casts"][1]["kind"], "shadow");
     const json& memory = s["memory_bytes"];
     uint64_t parts = 0;
     for (const char* kind : {"geometry", "structures", "displacement", "bottom_cache", "ray_buffers"}) {

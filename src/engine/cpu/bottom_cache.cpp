@@ -41,6 +41,11 @@ void TraceCounters::add(const TraceCounters& other) {
     pairs_emitted += other.pairs_emitted, pairs_with_hit += other.pairs_with_hit;
     built += other.built, reused += other.reused;
     for (int level = 0; level <= kMaxLevel; ++level) built_at_level[level] += other.built_at_level[level];
+    bottom_build_s += other.bottom_build_s, sampled_bottom_s += other.sampled_bottom_s;
+}
+
+void CastCounters::add(const CastCounters& other) {
+    batches += other.batches, rays += other.rays, pairs += other.pairs;
     bottom_build_s += other.bottom_build_s, trace_s += other.trace_s;
     sampled_trace_s += other.sampled_trace_s, sampled_bottom_s += other.sampled_bottom_s;
 }
@@ -228,6 +233,15 @@ TraceCounters BottomCache::sum_counters() const {
     for (const TraceContext* context = contexts_.load(); context; context = context->next)
         sum.add(context->counters);
     return sum;
+}
+
+std::vector<CastCounters> BottomCache::sum_casts() const {
+    std::vector<CastCounters> sums;
+    for (const TraceContext* context = contexts_.load(); context; context = context->next) {
+        sums.resize(std::max(sums.size(), context->casts.size()));
+        for (size_t k = 0; k < context->casts.size(); ++k) sums[k].add(context->casts[k]);
+    }
+    return sums;
 }
 
 } // namespace relief::cpu

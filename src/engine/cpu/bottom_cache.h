@@ -23,10 +23,19 @@ struct TraceCounters {
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
     uint64_t built = 0, reused = 0;
     uint64_t built_at_level[kMaxLevel + 1] = {};
-    double bottom_build_s = 0, trace_s = 0;
-    double sampled_trace_s = 0, sampled_bottom_s = 0; ///< of the batches that were timed patch by patch
+    double bottom_build_s = 0;
+    double sampled_bottom_s = 0; ///< in patches, of the batches that were timed patch by patch
 
     void add(const TraceCounters& other);
+};
+
+/// The batches of one kind of rays at one depth of their paths.
+struct CastCounters {
+    uint64_t batches = 0, rays = 0, pairs = 0;
+    double bottom_build_s = 0, trace_s = 0;           ///< tracing: without building
+    double sampled_trace_s = 0, sampled_bottom_s = 0; ///< of the batches that were timed patch by patch
+
+    void add(const CastCounters& other);
 };
 
 /// What one worker needs while it traces a batch. Taken with BottomCache::acquire, given back with release.
@@ -46,8 +55,8 @@ struct TraceContext {
     std::unique_ptr<void, AlignedFree> tree_scratch, directory_scratch;
     size_t directory_scratch_bytes = 0;
     TraceCounters counters;
-    bool is_timed = false; ///< this batch measures its bottom stage
-    uint64_t batch_count = 0;
+    bool is_timed = false;           ///< this batch measures its bottom stage
+    std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1
 };
 
 class BottomCache {
@@ -75,6 +84,7 @@ class BottomCache {
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
     size_t peak_byte_count() const { return peak_.load() + table_bytes(); }
     TraceCounters sum_counters() const;
+    std::vector<CastCounters> sum_casts() const;
 
   private:
     CachedTree* find(TraceContext& context, const TreeKey& key) const;

@@ -60,7 +60,7 @@ class TileTracer {
   private:
     void start_paths();
     void start_path(Path& path) const;
-    void trace_paths();
+    void trace_paths(int depth);
     void shade_paths();
     bool shade_path(uint32_t index);
     void add_background(Path& path) const;
@@ -70,7 +70,7 @@ class TileTracer {
     bool continue_path(Path& path, const Vertex& vertex, const VertexRandom& random);
     static bool survives_roulette(Path& path, float u_roulette);
     void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
-    void trace_shadow_rays();
+    void trace_shadow_rays(int depth);
     void finish_paths();
     Vertex make_vertex(const Path& path);
     VertexRandom draw_random(const Path& path) const;
@@ -113,10 +113,10 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
 void TileTracer::trace_sample(int index) {
     sample_index_ = uint32_t(index);
     start_paths();
-    while (!active_.empty()) {
-        trace_paths();
+    for (int depth = 0; !active_.empty(); ++depth) {
+        trace_paths(depth);
         shade_paths();
-        trace_shadow_rays();
+        trace_shadow_rays(depth);
     }
     finish_paths();
 }
@@ -140,11 +140,11 @@ void TileTracer::start_path(Path& path) const {
     path.result.cost = 1;
 }
 
-void TileTracer::trace_paths() {
+void TileTracer::trace_paths(int depth) {
     rays_.clear();
     for (uint32_t i : active_) rays_.push_back(paths_[i].ray);
     hits_.assign(active_.size(), TraceHit{});
-    tracer_.closest_hits(rays_, hits_);
+    tracer_.closest_hits(rays_, hits_, depth);
     for (size_t k = 0; k < active_.size(); ++k) paths_[active_[k]].hit = hits_[k];
 }
 
@@ -290,9 +290,9 @@ void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f&
     path.ray = {origin, 0, direction, kInfinity, bias};
 }
 
-void TileTracer::trace_shadow_rays() {
+void TileTracer::trace_shadow_rays(int depth) {
     occluded_.assign(shadow_rays_.size(), 0);
-    tracer_.any_hits(shadow_rays_, occluded_);
+    tracer_.any_hits(shadow_rays_, occluded_, depth);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
     counters_.shadow_rays += shadow_rays_.size();

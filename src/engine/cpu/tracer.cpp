@@ -17,8 +17,8 @@ namespace relief::cpu {
 
 namespace {
 
-/// One batch in so many measures how much of its time goes into patches; the clock would cost too much in all
-/// of them.
+/// One batch of a kind in so many measures how much of its time goes into patches; the clock would cost too
+/// much in all of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
 /// Corners of a micro-triangle, object space.
@@ -134,21 +134,41 @@ struct Tracer::Implementation {
     std::unique_ptr<BottomCache> cache;
     SceneView view;
 
-    template <class Trace> void trace_batch(const Trace& trace) const {
+    /// `cast` is the place in TraceContext::casts.
+    template <class Trace> void trace_batch(size_t cast, size_t rays, const Trace& trace) const {
         TraceContext& context = cache->acquire();
-        context.is_timed = context.batch_count++ % kTimedBatchInterval == 0;
+        if (context.casts.size() <= cast) context.casts.resize(cast + 1);
+        context.is_timed = context.casts[cast].batches % kTimedBatchInterval == 0;
         const Timer timer;
-        const double built_before = context.counters.bottom_build_s;
+        const TraceCounters before = context.counters;
         try {
             trace(context);
         } catch (...) {
             cache->release(context);
             throw;
         }
-        const double seconds = timer.seconds() - (context.counters.bottom_build_s - built_before);
-        context.counters.trace_s += seconds;
-        if (context.is_timed) context.counters.sampled_trace_s += seconds;
+        const double built = context.counters.bottom_build_s - before.bottom_build_s;
+        const double seconds = timer.seconds() - built;
+        context.casts[cast].add({1, rays, context.counters.pairs_emitted - before.pairs_emitted, built,
+                                 seconds, context.is_timed ? seconds : 0,
+                                 context.counters.sampled_bottom_s - before.sampled_bottom_s});
         cache->release(context);
+    }
+
+    void add_casts(Statistics& statistics) const {
+        const std::vector<CastCounters> casts = cache->sum_casts();
+        for (size_t k = 0; k < casts.size(); ++k) {
+            const CastCounters& c = casts[k];
+            if (c.rays == 0) continue;
+            const double share = c.sampled_trace_s > 0 ? c.sampled_bottom_s / c.sampled_trace_s : 0;
+            const CastStatistics cast{
+                int(k / 2), k % 2 == 1,       c.rays,           c.pairs, c.trace_s * (1 - share),
+                0,          c.bottom_build_s, c.trace_s * share};
+            statistics.casts.push_back(cast);
+            statistics.top_traversal_s += cast.top_traversal_s;
+            statistics.bottom_build_s += cast.bottom_build_s;
+            statistics.bottom_traversal_s += cast.bottom_traversal_s;
+        }
     }
 };
 
@@ -180,15 +200,15 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
 
 Tracer::~Tracer() = default;
 
-void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
-    implementation_->trace_batch([&](TraceContext& context) {
+void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
+    implementation_->trace_batch(2 * size_t(depth), rays.size(), [&](TraceContext& context) {
         implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(),
                                                rays.size());
     });
 }
 
-void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded) const {
-    implementation_->trace_batch([&](TraceContext& context) {
+void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
+    implementation_->trace_batch(2 * size_t(depth) + 1, rays.size(), [&](TraceContext& context) {
         implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(),
                                            rays.size());
     });
@@ -228,11 +248,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
     statistics.bottom_levels.resize(kTileLevel + 1);
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
-    const double share =
-        counters.sampled_trace_s > 0 ? counters.sampled_bottom_s / counters.sampled_trace_s : 0;
-    statistics.bottom_build_s += counters.bottom_build_s;
-    statistics.bottom_traversal_s += counters.trace_s * share;
-    statistics.top_traversal_s += counters.trace_s * (1 - share);
+    self.add_casts(statistics);
     statistics.structures_bytes += self.instance_tree.byte_count();
     for (const WideBvh& tree : self.surface_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();

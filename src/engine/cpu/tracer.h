@@ -54,11 +54,12 @@ class Tracer {
     ~Tracer();
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in
-    /// packets: give neighbours in runs of 16.
-    void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits) const;
+    /// packets: give neighbours in runs of 16. `depth` says where the statistics count them: bounces behind
+    /// the rays.
+    void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0) const;
 
-    /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0.
-    void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded) const;
+    /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0. Counted as shadow rays.
+    void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth = 0) const;
 
     /// All that shading needs to know of a hit.
     SurfacePoint make_surface_point(const TraceHit& hit) const;

@@ -118,9 +118,10 @@ Buffer::Implementation::~Implementation() {
     device.memory->release(memory);
 }
 
+Buffer::Buffer() noexcept = default;
+
 Buffer::Buffer(const Device& device, const BufferConfig& config)
     : implementation_(std::make_unique<Implementation>(device.internals(), config)) {}
-Buffer::Buffer() = default;
 Buffer::~Buffer() = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;

@@ -38,7 +38,7 @@ struct BufferConfig {
 /// A storage buffer. Movable; frees its memory at the end of its life, which the device must outlive.
 class Buffer {
   public:
-    Buffer();
+    Buffer() noexcept;
     /// Throws Error{out_of_memory} with the byte count when the device has no room for it, and when it is
     /// larger than one buffer may be.
     Buffer(const Device& device, const BufferConfig& config);

@@ -37,6 +37,8 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
 
 } // namespace
 
+Kernel::Kernel() noexcept = default;
+
 Kernel::Kernel(const Device& device, const KernelConfig& config)
     : implementation_(std::make_unique<Implementation>()) {
     const std::span<const uint32_t> code = config.code.empty() ? find_shader(config.shader) : config.code;
@@ -48,7 +50,6 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
         device.internals().set_name(implementation_->pipeline, config.shader);
     });
 }
-Kernel::Kernel() = default;
 Kernel::~Kernel() = default;
 Kernel::Kernel(Kernel&&) noexcept = default;
 Kernel& Kernel::operator=(Kernel&&) noexcept = default;

@@ -25,7 +25,7 @@ struct KernelConfig {
 /// One compiled shader with its constants. The device must outlive it.
 class Kernel {
   public:
-    Kernel();
+    Kernel() noexcept;
     Kernel(const Device& device, const KernelConfig& config);
     ~Kernel();
     Kernel(Kernel&&) noexcept;

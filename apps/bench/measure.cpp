@@ -1,0 +1,112 @@
+#include "bench/measure.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+
+namespace relief::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::pair<const char*, double Statistics::*> kStages[] = {
+    {"top_traversal", &Statistics::top_traversal_s},
+    {"sort", &Statistics::sort_s},
+    {"bottom_build", &Statistics::bottom_build_s},
+    {"bottom_traversal", &Statistics::bottom_traversal_s},
+    {"shade", &Statistics::shade_s},
+    {"film", &Statistics::film_s}};
+
+constexpr std::pair<const char*, double CastStatistics::*> kCastStages[] = {
+    {"top_traversal", &CastStatistics::top_traversal_s},
+    {"sort", &CastStatistics::sort_s},
+    {"bottom_build", &CastStatistics::bottom_build_s},
+    {"bottom_traversal", &CastStatistics::bottom_traversal_s}};
+
+double sum_stages(const CastStatistics& cast) {
+    return cast.top_traversal_s + cast.sort_s + cast.bottom_build_s + cast.bottom_traversal_s;
+}
+
+double sum_frame_stages(const Statistics& statistics) {
+    double sum = 0;
+    for (const auto& [name, stage] : kStages) sum += statistics.*stage;
+    return sum;
+}
+
+double get_median(std::vector<double> values) {
+    const size_t middle = values.size() / 2;
+    std::sort(values.begin(), values.end());
+    return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+void render_variant(const Scene& scene, Variant& variant, const Report& report, int run) {
+    if (!variant.refusal.empty()) return;
+    report(
+        fmt::format("{}, {}", variant.name, run == 0 ? std::string("warm-up") : fmt::format("run {}", run)));
+    try {
+        Statistics statistics = render(scene, variant.settings).statistics;
+        if (run > 0) variant.runs.push_back(std::move(statistics));
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::out_of_memory) throw;
+        variant.refusal = error.what();
+        variant.runs.clear();
+    }
+}
+
+const char* get_kind(const CastStatistics& cast) {
+    if (cast.is_shadow) return "shadow";
+    return cast.depth == 0 ? "camera" : "bounce";
+}
+
+} // namespace
+
+Json summarize(std::vector<double> values) {
+    const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+    return {
+        {"median", get_median(values)}, {"lowest", *lowest}, {"highest", *highest}, {"runs", values.size()}};
+}
+
+void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variants, const Report& report) {
+    for (int run = 0; run <= runs; ++run)
+        for (Variant& variant : variants) render_variant(scene, variant, report, run);
+}
+
+Json describe_frames(const std::vector<Statistics>& runs) {
+    Json stages;
+    for (const auto& [name, stage] : kStages)
+        stages[name] = summarize_runs(runs, [s = stage](const Statistics& run) { return run.*s; });
+    const Statistics& last = runs.back();
+    return {{"frame_s", summarize_runs(runs, [](const Statistics& s) { return s.render_s; })},
+            {"prepare_s", summarize_runs(runs, [](const Statistics& s) { return s.prepare_s; })},
+            {"stage_s", stages},
+            {"stages_total_s", summarize_runs(runs, sum_frame_stages)},
+            {"bottom_built", last.bottom_built},
+            {"bottom_reused", last.bottom_reused},
+            {"geometry_bytes", last.geometry_bytes},
+            {"structures_bytes", last.structures_bytes},
+            {"bottom_cache_bytes", last.bottom_cache_bytes},
+            {"ray_buffers_bytes", last.ray_buffers_bytes}};
+}
+
+Json describe_casts(const std::vector<Statistics>& runs) {
+    Json casts = Json::array();
+    // Every run traces the same rays, so that they have the same casts.
+    for (size_t k = 0; k < runs.front().casts.size(); ++k) {
+        const CastStatistics& first = runs.front().casts[k];
+        Json cast = {
+            {"depth", first.depth}, {"kind", get_kind(first)}, {"rays", first.rays}, {"pairs", first.pairs}};
+        for (const auto& [name, stage] : kCastStages)
+            cast["stage_s"][name] =
+                summarize_runs(runs, [k, s = stage](const Statistics& run) { return run.casts[k].*s; });
+        cast["total_s"] =
+            summarize_runs(runs, [k](const Statistics& run) { return sum_stages(run.casts[k]); });
+        casts.push_back(std::move(cast));
+    }
+    return casts;
+}
+
+} // namespace relief::bench

@@ -1,0 +1,46 @@
+// Frames measured many times in turn: medians with their spread.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "relief/render.h"
+#include "relief/scene.h"
+
+namespace relief::bench {
+
+/// Called with one line about what comes next.
+using Report = std::function<void(const std::string&)>;
+
+/// One way to render a scene, and what its runs said.
+struct Variant {
+    std::string name;
+    RenderSettings settings;
+    std::vector<Statistics> runs; ///< without the first, which warms up
+    std::string refusal;          ///< not empty: the engine refused it, for this reason
+};
+
+/// {median, lowest, highest, runs}; of an even count the mean of the middle two. `values` is not empty.
+nlohmann::ordered_json summarize(std::vector<double> values);
+
+/// The same of one number of each run.
+template <class Get> nlohmann::ordered_json summarize_runs(const std::vector<Statistics>& runs, Get get) {
+    std::vector<double> values;
+    for (const Statistics& run : runs) values.push_back(get(run));
+    return summarize(std::move(values));
+}
+
+/// Renders all variants once to warm up, then `runs` times in turn (a, b, c, a, b, c ...), so that a machine
+/// that changes its speed changes it for all. A variant that is refused for want of memory keeps the reason.
+void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variants, const Report& report);
+
+/// Median seconds by stage, frame and preparation with their spread, bytes.
+nlohmann::ordered_json describe_frames(const std::vector<Statistics>& runs);
+
+/// Median seconds of each cast: {depth, kind, rays, pairs, seconds by stage, total_s with spread}.
+nlohmann::ordered_json describe_casts(const std::vector<Statistics>& runs);
+
+} // namespace relief::bench

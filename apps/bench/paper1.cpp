@@ -1,0 +1,216 @@
+#include "bench/paper1.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/machine.h"
+#include "bench/paper1_figures.h"
+#include "bench/paper1_goals.h"
+#include "relief/error.h"
+#include "relief/inspect.h"
+#include "relief/samples.h"
+
+namespace relief::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The paper's limit of subdivision, and the one above, at which its byte counts a patch come out.
+constexpr int kTableLevels[] = {5, 6};
+
+/// The frame whose time is a goal.
+constexpr int kPartyWidth = 1920, kPartyHeight = 1080;
+
+std::string format_level(int level) { return level == kAutoLevel ? "auto" : std::to_string(level); }
+
+RenderSettings make_direct_light(const Paper1Options& options) {
+    RenderSettings settings = options.settings;
+    settings.spp = 1, settings.bounces = 0;
+    settings.surface = SurfaceMode::direct;
+    return settings;
+}
+
+/// White, so that paths end where they leave the scene, not where they have grown dim.
+Scene make_white(Scene scene) {
+    for (Material& material : scene.materials) {
+        material.base_color = {1, 1, 1};
+        material.base_color_texture = nullptr;
+    }
+    return scene;
+}
+
+RenderSettings make_uncached(RenderSettings settings) {
+    settings.bottom_cache_bytes = 0;
+    return settings;
+}
+
+Json describe_tessellation(const Scene& scene, RenderSettings settings, int level) {
+    settings.level = level;
+    const TessellationCost cost = estimate_tessellation(scene, settings);
+    return {{"level", format_level(level)},
+            {"micro_quads", cost.micro_quads},
+            {"geometry_bytes", cost.geometry_bytes},
+            {"structures_bytes", cost.structures_bytes},
+            {"total_bytes", cost.geometry_bytes + cost.structures_bytes},
+            {"peak_bytes", cost.peak_bytes}};
+}
+
+/// A row of Table 1.1.
+Json make_table_row(const std::string& name, const Scene& scene, const RenderSettings& settings,
+                    const Statistics& direct) {
+    const uint64_t total = direct.geometry_bytes + direct.structures_bytes;
+    Json tessellated = Json::array();
+    std::vector<int> levels = {settings.level};
+    for (const int level : kTableLevels)
+        if (level != settings.level) levels.push_back(level);
+    for (const int level : levels) tessellated.push_back(describe_tessellation(scene, settings, level));
+    const auto paper = std::find_if(kPaperMemory.begin(), kPaperMemory.end(),
+                                    [&](const PaperMemory& row) { return row.scene == name; });
+    return {
+        {"scene", name},
+        {"patches", direct.patches},
+        {"triangles", direct.triangles},
+        {"direct",
+         {{"geometry_bytes", direct.geometry_bytes},
+          {"structures_bytes", direct.structures_bytes},
+          {"total_bytes", total},
+          {"bytes_a_patch", double(total) / double(direct.patches)},
+          {"displacement_bytes", direct.displacement_bytes},
+          {"bottom_cache_bytes", direct.bottom_cache_bytes}}},
+        {"tessellated_estimate", std::move(tessellated)},
+        {"paper", {{"tessellated_bytes", paper->tessellated_bytes}, {"direct_bytes", paper->direct_bytes}}}};
+}
+
+/// Tessellated, unless that is refused here: beyond the limit of the options.
+Variant make_tessellated(const Paper1Options& options, const RenderSettings& direct, uint64_t peak_bytes) {
+    Variant variant{"tessellated", direct, {}, {}};
+    variant.settings.surface = SurfaceMode::tessellated;
+    if (peak_bytes > options.tessellated_limit_bytes)
+        variant.refusal = fmt::format("left out: making it takes {} bytes, the limit of this run is {}",
+                                      peak_bytes, options.tessellated_limit_bytes);
+    return variant;
+}
+
+Json make_figure1_7(const std::string& name, const std::vector<Variant>& variants, uint64_t peak_bytes) {
+    Json scene = {{"scene", name}, {"tessellated_peak_bytes", peak_bytes}, {"variants", Json::array()}};
+    for (const Variant& variant : variants) {
+        Json entry = {{"name", variant.name}, {"outcome", variant.refusal.empty() ? "measured" : "refused"}};
+        if (variant.refusal.empty())
+            entry.update(describe_frames(variant.runs));
+        else
+            entry["reason"] = variant.refusal;
+        scene["variants"].push_back(std::move(entry));
+    }
+    return scene;
+}
+
+Json make_casts(const std::string& name, const std::vector<Variant>& variants) {
+    Json entry = {{"scene", name}, {"variants", Json::array()}};
+    for (const Variant& variant : variants)
+        if (variant.settings.surface == SurfaceMode::direct && !variant.runs.empty())
+            entry["variants"].push_back({{"name", variant.name}, {"casts", describe_casts(variant.runs)}});
+    return entry;
+}
+
+/// One suite in the making.
+class Paper1 {
+  public:
+    Paper1(const Paper1Options& options, const Report& report) : options_(options), report_(report) {}
+
+    Json run() {
+        // The largest first, while the process has held nothing else.
+        for (const std::string& name : kPaper1Scenes)
+            if (std::find(options_.scenes.begin(), options_.scenes.end(), name) != options_.scenes.end())
+                measure_scene(name);
+        result_["goals"] = make_paper1_goals(result_);
+        return std::move(result_);
+    }
+
+  private:
+    void measure_scene(const std::string& name) {
+        report_("making the scene " + name);
+        const Scene scene = make_sample_scene(name, Instancing::none);
+        const Report report = [&](const std::string& line) { report_(name + ": " + line); };
+        const RenderSettings cached = make_direct_light(options_);
+        report("bytes");
+        const Statistics first = render(scene, cached).statistics;
+        if (!result_.contains("suite")) begin(first);
+        result_["table1_1"].push_back(make_table_row(name, scene, options_.settings, first));
+        if (name == "party") measure_party_frame(scene, cached, first, report);
+
+        const uint64_t peak_bytes = estimate_tessellation(scene, cached).peak_bytes;
+        std::vector<Variant> variants = {{"direct, no cache", make_uncached(cached), {}, {}},
+                                         {"direct", cached, {}, {}},
+                                         make_tessellated(options_, cached, peak_bytes)};
+        measure_in_turn(scene, options_.runs, variants, report);
+        result_["figure1_7"].push_back(make_figure1_7(name, variants, peak_bytes));
+        result_["figure1_9"].push_back(make_casts(name, variants));
+        if (name == "bark") measure_depths(scene, cached, report);
+    }
+
+    void measure_depths(const Scene& scene, RenderSettings settings, const Report& report) {
+        settings.bounces = options_.bounces;
+        std::vector<Variant> variants = {{"direct, no cache", make_uncached(settings), {}, {}},
+                                         {"direct", settings, {}, {}}};
+        measure_in_turn(make_white(scene), options_.runs, variants, [&](const std::string& line) {
+            report(fmt::format("{} bounces, {}", settings.bounces, line));
+        });
+        result_["figure1_10"].push_back(make_casts("bark", variants));
+    }
+
+    /// `first` is the render that the process has made before any other.
+    void measure_party_frame(const Scene& scene, RenderSettings settings, const Statistics& first,
+                             const Report& report) {
+        settings.width = std::min(kPartyWidth, settings.width * kPartyWidth / 1280);
+        settings.height = std::min(kPartyHeight, settings.height * kPartyHeight / 720);
+        std::vector<Variant> variants = {{"party frame", settings, {}, {}}};
+        measure_in_turn(scene, options_.runs, variants, report);
+        result_["party"] = {{"peak_resident_bytes", first.peak_resident_bytes},
+                            {"width", settings.width},
+                            {"height", settings.height},
+                            {"paper_frame_s", kPaperPartyFrameMilliseconds * 1e-3}};
+        if (variants[0].refusal.empty()) result_["party"].update(describe_frames(variants[0].runs));
+    }
+
+    void begin(const Statistics& first) {
+        const RenderSettings& s = options_.settings;
+        result_["suite"] = "paper1";
+        result_["build"] = describe_build();
+        result_["machine"] = describe_machine();
+        result_["device"] = describe_device(first);
+        result_["settings"] = {{"width", s.width},
+                               {"height", s.height},
+                               {"level", format_level(s.level)},
+                               {"spp", 1},
+                               {"bottom_cache_bytes", s.bottom_cache_bytes},
+                               {"bounces_of_figure1_10", options_.bounces},
+                               {"runs", options_.runs},
+                               {"warm_up_runs", 1},
+                               {"tessellated_limit_bytes", options_.tessellated_limit_bytes},
+                               {"scenes", options_.scenes}};
+        result_["comparable"] = kComparable;
+        for (const PaperStatement& statement : kPaperStatements)
+            result_["paper_says"].push_back({{"about", statement.about}, {"text", statement.text}});
+        for (const char* part : {"table1_1", "figure1_7", "figure1_9", "figure1_10"})
+            result_[part] = Json::array();
+    }
+
+    const Paper1Options& options_;
+    const Report& report_;
+    Json result_;
+};
+
+} // namespace
+
+Paper1Options make_quick_options(Paper1Options options) {
+    options.settings.width = 64, options.settings.height = 36;
+    options.runs = 1;
+    return options;
+}
+
+Json run_paper1(const Paper1Options& options, const Report& report) { return Paper1(options, report).run(); }
+
+} // namespace relief::bench

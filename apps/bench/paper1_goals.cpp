@@ -1,0 +1,80 @@
+#include "bench/paper1_goals.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+namespace relief::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kBytesAPatch = 64, kPartyPeakMebibytes = 512, kDepthRatio = 1.3, kPartyFrameMilliseconds = 5;
+
+void add_goal(Json& goals, const std::string& name, double goal, double reached, const char* unit) {
+    goals.push_back(
+        {{"name", name}, {"goal", goal}, {"reached", reached}, {"unit", unit}, {"met", reached <= goal}});
+}
+
+const Json* find_variant(const Json& scene, const std::string& name) {
+    for (const Json& variant : scene["variants"])
+        if (variant["name"] == name) return &variant;
+    return nullptr;
+}
+
+/// Seconds a ray of the bounces at `depth`, its shadow rays left out.
+std::optional<double> compute_seconds_a_ray(const Json& casts, int depth) {
+    for (const Json& cast : casts)
+        if (cast["depth"] == depth && cast["kind"] == "bounce")
+            return cast["total_s"]["median"].get<double>() / cast["rays"].get<double>();
+    return std::nullopt;
+}
+
+void add_depth_goal(const Json& figure, Json& goals) {
+    for (const Json& scene : figure) {
+        const Json* direct = find_variant(scene, "direct");
+        if (!direct) continue;
+        const auto first = compute_seconds_a_ray((*direct)["casts"], 1);
+        const auto last = compute_seconds_a_ray((*direct)["casts"], 5);
+        if (first && last && *first > 0)
+            add_goal(goals, "bounce 5 against bounce 1, time a ray, with the cache", kDepthRatio,
+                     *last / *first, "ratio");
+    }
+}
+
+/// Direct against the same kernels over micro-quads made up front, where those were made.
+void add_tessellated_goals(const Json& figure, Json& goals) {
+    for (const Json& scene : figure) {
+        const Json *direct = find_variant(scene, "direct"), *flat = find_variant(scene, "tessellated");
+        if (!direct || !flat || (*direct)["outcome"] != "measured" || (*flat)["outcome"] != "measured")
+            continue;
+        add_goal(goals, scene["scene"].get<std::string>() + ", direct against pre-tessellated, frame", 1,
+                 (*direct)["frame_s"]["median"].get<double>() / (*flat)["frame_s"]["median"].get<double>(),
+                 "ratio");
+    }
+}
+
+} // namespace
+
+Json make_paper1_goals(const Json& result) {
+    Json goals = Json::array();
+    double bytes_a_patch = 0;
+    for (const Json& row : result["table1_1"])
+        bytes_a_patch = std::max(bytes_a_patch, row["direct"]["bytes_a_patch"].get<double>());
+    add_goal(goals, "geometry and structures a displaced patch, worst scene", kBytesAPatch, bytes_a_patch,
+             "bytes");
+    if (result.contains("party"))
+        add_goal(goals, "party, peak resident of this process, making the scene included",
+                 kPartyPeakMebibytes, result["party"]["peak_resident_bytes"].get<double>() / (1 << 20),
+                 "MiB");
+    add_depth_goal(result["figure1_10"], goals);
+    if (result["device"]["engine"] != "vulkan") return goals;
+    if (result.contains("party") && result["party"].contains("frame_s"))
+        add_goal(goals, "party, primary and shadow rays, frame", kPartyFrameMilliseconds,
+                 1e3 * result["party"]["frame_s"]["median"].get<double>(), "ms");
+    add_tessellated_goals(result["figure1_7"], goals);
+    return goals;
+}
+
+} // namespace relief::bench

@@ -1,0 +1,129 @@
+// relief-gpu: checks and measurements of the Vulkan engine on a machine that has nothing but its driver.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/machine.h"
+#include "bench/paper1.h"
+#include "gpu/parity.h"
+#include "relief/error.h"
+
+namespace relief::gpu {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::filesystem::path output;
+    std::filesystem::path pipeline_cache;
+    int device = -1;
+    bool is_quick = false;
+    int runs = 5;
+};
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw Error(ErrorKind::failed, {"the file could not be written", file.string(), ""});
+}
+
+void report(const std::string& line) { fmt::print(stderr, "relief-gpu: {}\n", line); }
+
+RenderSettings make_settings(const Options& options) {
+    RenderSettings settings;
+    settings.engine = EngineKind::vulkan;
+    settings.device = options.device;
+    settings.pipeline_cache = options.pipeline_cache.string();
+    return settings;
+}
+
+int run_parity_verb(const Options& options) {
+    ParityOptions parity;
+    parity.settings = make_settings(options);
+    parity.is_quick = options.is_quick;
+    if (options.is_quick) {
+        parity.settings.width = 96, parity.settings.height = 64;
+        parity.noise_samples = 16;
+    }
+    Json result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
+    result.update(run_parity(parity, report));
+    fmt::print("parity: {} passed, {} failed\n", result["passed"].get<int>(), result["failed"].get<int>());
+    if (!options.output.empty()) write_text(options.output, result.dump(1) + "\n");
+    return result["failed"] == 0 && result["passed"] > 0 ? 0 : 1;
+}
+
+int run_bench_verb(const Options& options) {
+    const std::filesystem::path folder = options.output.empty() ? "paper1" : options.output;
+    std::filesystem::create_directories(folder);
+    bench::Paper1Options paper1;
+    paper1.settings = make_settings(options);
+    paper1.runs = options.runs;
+    if (options.is_quick) {
+        paper1 = bench::make_quick_options(paper1);
+        paper1.scenes = {"bark"};
+    }
+    const Json result = bench::run_paper1(paper1, report);
+    for (const bench::ReportFile& file : bench::make_paper1_files(result))
+        write_text(folder / file.name, file.text);
+    for (const Json& goal : result["goals"])
+        fmt::print("{}: {:.4g} {}, goal {:.4g}\n", goal["name"].get<std::string>(),
+                   goal["reached"].get<double>(), goal["unit"].get<std::string>(),
+                   goal["goal"].get<double>());
+    return 0;
+}
+
+int run_devices_verb() {
+    const Json devices = bench::describe_vulkan_devices();
+    fmt::print("{}\n", devices.dump(1));
+    return devices.empty() ? int(ErrorKind::device_missing) : 0;
+}
+
+void add_options(CLI::App& verb, Options& options, const char* output) {
+    verb.add_option("-o", options.output, output);
+    verb.add_option("--device", options.device, "index of the device; default: the best one");
+    verb.add_option("--pipeline-cache", options.pipeline_cache, "file that keeps compiled kernels");
+    verb.add_flag("--quick", options.is_quick, "tiny pictures of one scene: only shows that it works");
+}
+
+int run(int argument_count, char** arguments) {
+    CLI::App app("Relief on a GPU: checks and measurements", "relief-gpu");
+    app.require_subcommand(1);
+    Options options;
+    CLI::App* parity = app.add_subcommand("parity", "The Vulkan engine against the CPU engine");
+    add_options(*parity, options, "JSON file");
+    CLI::App* paper1 = app.add_subcommand("bench", "Table and figures of Harada 2015");
+    add_options(*paper1, options, "folder for JSON, CSV and charts; default: paper1");
+    paper1->add_option("--runs", options.runs, "that count, after one to warm up")
+        ->check(CLI::Range(1, 1000));
+    CLI::App* devices = app.add_subcommand("devices", "List the Vulkan devices as JSON");
+    try {
+        app.parse(argument_count, arguments);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : int(ErrorKind::usage);
+    }
+    if (devices->parsed()) return run_devices_verb();
+    return parity->parsed() ? run_parity_verb(options) : run_bench_verb(options);
+}
+
+} // namespace
+} // namespace relief::gpu
+
+int main(int argument_count, char** arguments) {
+    try {
+        return relief::gpu::run(argument_count, arguments);
+    } catch (const relief::Error& error) {
+        fmt::print(stderr, "relief-gpu: error: {}\n", error.what());
+        return int(error.kind());
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "relief-gpu: error: {}\n", error.what());
+        return int(relief::ErrorKind::failed);
+    }
+}

@@ -1,0 +1,241 @@
+#include "gpu/parity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+#include "relief/samples.h"
+#include "relief/scene.h"
+
+namespace relief::gpu {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kBlocks = 16; ///< a side
+
+size_t get_channel(const Image& image, const char* name) {
+    const auto channel = image.find_channel(name);
+    if (!channel) throw Error(ErrorKind::failed, {"a picture lacks a layer that parity needs", name, ""});
+    return *channel;
+}
+
+/// Sums over the pixels of a block: radiance (mean of R, G, B) and its variance, the channels' noise taken as
+/// fully correlated, which can only overstate it.
+struct Block {
+    double sum = 0, variance = 0, pixels = 0;
+};
+
+std::vector<Block> sum_blocks(const Image& image) {
+    constexpr std::array<const char*, 3> colors = {"R", "G", "B"};
+    constexpr std::array<const char*, 3> variances = {"variance.R", "variance.G", "variance.B"};
+    std::vector<Block> blocks(kBlocks * kBlocks);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            Block& block = blocks[size_t(y * kBlocks / image.height * kBlocks + x * kBlocks / image.width)];
+            double deviation = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                block.sum += image.at(x, y, get_channel(image, colors[c])) / 3;
+                deviation += std::sqrt(image.at(x, y, get_channel(image, variances[c]))) / 3;
+            }
+            block.variance += deviation * deviation;
+            block.pixels += 1;
+        }
+    return blocks;
+}
+
+/// What is changed about the settings, and how it is called.
+struct Setting {
+    std::string name;
+    std::function<void(RenderSettings&)> apply;
+};
+
+std::vector<Setting> list_settings() {
+    std::vector<Setting> settings = {{"auto", [](RenderSettings&) {}}};
+    for (int level = 3; level <= 6; ++level)
+        settings.push_back({fmt::format("level {}", level), [level](RenderSettings& s) { s.level = level; }});
+    settings.push_back({"box leaves", [](RenderSettings& s) { s.leaf = LeafKind::box; }});
+    settings.push_back({"level a ray", [](RenderSettings& s) { s.lod = LodRule::ray; }});
+    settings.push_back({"no cache", [](RenderSettings& s) { s.bottom_cache_bytes = 0; }});
+    settings.push_back({"small cache", [](RenderSettings& s) { s.bottom_cache_bytes = size_t(1) << 20; }});
+    settings.push_back({"tessellated", [](RenderSettings& s) { s.surface = SurfaceMode::tessellated; }});
+    return settings;
+}
+
+class Parity {
+  public:
+    Parity(const ParityOptions& options, const bench::Report& report) : options_(options), report_(report) {}
+
+    Json run() {
+        using Sample = std::pair<const char*, Instancing>;
+        std::vector<Sample> samples = {{"ear", Instancing::none}};
+        if (!options_.is_quick)
+            samples.insert(samples.end(), {{"pumpkin", Instancing::none},
+                                           {"bark", Instancing::none},
+                                           {"barks", Instancing::shared},
+                                           {"party", Instancing::none}});
+        for (const auto& [name, instancing] : samples) {
+            report_(fmt::format("making the scene {}", name));
+            check_scene(name, make_sample_scene(name, instancing));
+        }
+        return {{"cases", std::move(cases_)}, {"passed", passed_}, {"failed", failed_}};
+    }
+
+  private:
+    void check_scene(const std::string& scene_name, const Scene& scene) {
+        for (const Setting& setting : list_settings()) check_setting(scene_name, scene, setting);
+        add_case("same bits twice, " + scene_name, [&](Json&) { return check_repeat(scene); });
+        add_case("means, " + scene_name, [&](Json& entry) { return check_means(scene, entry); });
+    }
+
+    /// Both forms of the bottom kernel, where it is used, against one picture of the CPU engine.
+    void check_setting(const std::string& scene_name, const Scene& scene, const Setting& setting) {
+        RenderSettings settings = options_.settings;
+        settings.spp = 1, settings.bounces = 0;
+        settings.layers = {"depth", "id"};
+        setting.apply(settings);
+        const std::string name = fmt::format("hits, {}, {}", scene_name, setting.name);
+        std::optional<Image> expected;
+        const auto add_form = [&](const std::string& case_name, BottomForm form) {
+            settings.bottom = form;
+            add_case(case_name, [&](Json& entry) {
+                if (!expected) expected = render_cpu(scene, settings).image;
+                return check_hits(scene, settings, *expected, entry);
+            });
+        };
+        if (settings.surface == SurfaceMode::tessellated) return add_form(name, BottomForm::automatic);
+        add_form(name + ", split", BottomForm::split);
+        add_form(name + ", fused", BottomForm::fused);
+    }
+
+    /// Runs a check that fills in what it found and tells whether that is good.
+    void add_case(const std::string& name, const std::function<bool(Json&)>& check) {
+        report_(name);
+        Json entry = {{"name", name}, {"outcome", ""}};
+        try {
+            entry["outcome"] = check(entry) ? "passed" : "failed";
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::device_missing) throw;
+            // A scene that one machine cannot hold tells nothing about the engine.
+            entry["outcome"] = error.kind() == ErrorKind::out_of_memory ? "refused" : "failed";
+            entry["message"] = error.what();
+        }
+        passed_ += entry["outcome"] == "passed";
+        failed_ += entry["outcome"] == "failed";
+        cases_.push_back(std::move(entry));
+    }
+
+    static bool check_hits(const Scene& scene, const RenderSettings& settings, const Image& expected,
+                           Json& entry) {
+        const RenderResult found = render_vulkan(scene, settings);
+        const HitDifference d = compare_hits(found.image, expected);
+        const Statistics& s = found.statistics;
+        entry.update(Json{{"pixels", d.pixels},
+                          {"one_only", d.one_only},
+                          {"other_depth", d.other_depth},
+                          {"other_id", d.other_id},
+                          {"largest_depth_difference", d.largest_depth_difference},
+                          {"render_s", s.render_s},
+                          {"pairs", s.pairs_emitted},
+                          {"bottom_built", s.bottom_built}});
+        return d.share() <= kLargestShare;
+    }
+
+    bool check_repeat(const Scene& scene) const {
+        RenderSettings settings = options_.settings;
+        settings.spp = 2, settings.bounces = 3;
+        const auto same_bits = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+        const Image first = render_vulkan(scene, settings).image;
+        const Image second = render_vulkan(scene, settings).image;
+        return std::equal(first.pixels.begin(), first.pixels.end(), second.pixels.begin(),
+                          second.pixels.end(), same_bits);
+    }
+
+    bool check_means(const Scene& scene, Json& entry) const {
+        RenderSettings settings = options_.settings;
+        settings.width = std::max(1, settings.width / 4), settings.height = std::max(1, settings.height / 4);
+        settings.spp = options_.noise_samples, settings.bounces = 4;
+        settings.layers = {"variance"};
+        const Image found = render_vulkan(scene, settings).image;
+        settings.seed += 1; // other samples, so that their noise is independent
+        const double z = compute_largest_z(found, render_cpu(scene, settings).image);
+        entry["largest_z"] = z;
+        return z <= kLargestZ;
+    }
+
+    static RenderResult render_vulkan(const Scene& scene, RenderSettings settings) {
+        settings.engine = EngineKind::vulkan;
+        RenderResult result = render(scene, settings);
+        if (result.statistics.engine != "vulkan")
+            throw Error(ErrorKind::failed,
+                        {"asked for the Vulkan engine, got " + result.statistics.engine, "", ""});
+        return result;
+    }
+
+    static RenderResult render_cpu(const Scene& scene, RenderSettings settings) {
+        settings.engine = EngineKind::cpu;
+        settings.device = -1, settings.bottom = BottomForm::automatic;
+        settings.bottom_cache_bytes = RenderSettings{}.bottom_cache_bytes; // changes no bit, only the time
+        return render(scene, settings);
+    }
+
+    const ParityOptions& options_;
+    const bench::Report& report_;
+    Json cases_ = Json::array();
+    int passed_ = 0, failed_ = 0;
+};
+
+} // namespace
+
+HitDifference compare_hits(const Image& a, const Image& b) {
+    HitDifference difference;
+    const size_t depth_a = get_channel(a, "depth.Z"), depth_b = get_channel(b, "depth.Z");
+    const size_t id_a = get_channel(a, "id.I"), id_b = get_channel(b, "id.I");
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) {
+            ++difference.pixels;
+            const double za = a.at(x, y, depth_a), zb = b.at(x, y, depth_b);
+            if (std::isfinite(za) != std::isfinite(zb)) {
+                ++difference.one_only;
+                continue;
+            }
+            if (!std::isfinite(za)) continue;
+            const double relative = std::fabs(za - zb) / std::max(std::fabs(za), std::fabs(zb));
+            if (!(relative <= kLargestDepthDifference))
+                ++difference.other_depth;
+            else if (a.at(x, y, id_a) != b.at(x, y, id_b))
+                ++difference.other_id;
+            else
+                difference.largest_depth_difference = std::max(difference.largest_depth_difference, relative);
+        }
+    return difference;
+}
+
+double compute_largest_z(const Image& a, const Image& b) {
+    /// Of a mean: what rounding may do.
+    constexpr double kRelativeFloor = 1e-4;
+    const std::vector<Block> blocks_a = sum_blocks(a), blocks_b = sum_blocks(b);
+    double largest = 0;
+    for (size_t k = 0; k < blocks_a.size(); ++k) {
+        if (blocks_a[k].pixels == 0) continue;
+        const double error =
+            std::sqrt(blocks_a[k].variance + blocks_b[k].variance) + kRelativeFloor * blocks_a[k].sum;
+        const double difference = std::fabs(blocks_a[k].sum - blocks_b[k].sum);
+        if (difference > 0) largest = std::max(largest, difference / error);
+    }
+    return largest;
+}
+
+Json run_parity(const ParityOptions& options, const bench::Report& report) {
+    return Parity(options, report).run();
+}
+
+} // namespace relief::gpu

@@ -1,0 +1,96 @@
+#!/bin/sh
+# Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and nothing else.
+#   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick]
+# RESULT.json (default relief-gpu.json here) tells each part's outcome; logs and charts lie in a folder beside it.
+# Exit code: 0 when every part asked for passed, 1 otherwise, 2 for wrong usage.
+set -u
+
+here=$(cd "$(dirname "$0")" && pwd)
+result=relief-gpu.json
+parts=tests,parity,bench
+device=
+quick=
+while [ $# -gt 0 ]; do
+    case $1 in
+    -o) result=${2:?-o needs a file} && shift 2 ;;
+    --parts) parts=${2:?--parts needs a list} && shift 2 ;;
+    --device) device="--device ${2:?--device needs a number}" && shift 2 ;;
+    --quick) quick=--quick && shift ;;
+    *) sed -n '2,5s/^# *//p' "$0" >&2 && exit 2 ;;
+    esac
+done
+for part in $(echo "$parts" | tr , ' '); do
+    case $part in
+    tests | parity | bench) ;;
+    *) echo "run.sh: unknown part '$part': tests, parity, bench" >&2 && exit 2 ;;
+    esac
+done
+
+case $result in /*) ;; *) result=$PWD/$result ;; esac
+logs=${result%.json}-files
+rm -rf "$logs"
+mkdir -p "$logs/lib" || exit 1
+
+# The machine's own libraries come first: its driver was made for them.
+known=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null)
+for library in "$here"/fallback/*; do
+    case $known in
+    *"$(basename "$library") "*) ;;
+    *) ln -s "$library" "$logs/lib/" ;;
+    esac
+done
+export LD_LIBRARY_PATH="$here/lib:$logs/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+export VK_LAYER_PATH="$here/layers"
+
+# Containers keep the driver's manifest in places that the loader does not know.
+if [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] &&
+    ! ls /etc/vulkan/icd.d/*.json /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json 2>/dev/null |
+        grep -q .; then
+    for manifest in /usr/local/nvidia/share/vulkan/icd.d/*.json /opt/*/share/vulkan/icd.d/*.json; do
+        [ -f "$manifest" ] && export VK_DRIVER_FILES="$manifest" VK_ICD_FILENAMES="$manifest" && break
+    done
+fi
+
+all_passed=true
+entries=
+
+# run_part NAME RESULT_OF_PART COMMAND...
+run_part() {
+    name=$1 file=$2 && shift 2
+    echo "== $name" >&2
+    begin=$(date +%s)
+    "$@" >"$logs/$name.log" 2>&1
+    code=$?
+    seconds=$(($(date +%s) - begin))
+    outcome=passed
+    [ $code -eq 0 ] || { outcome=failed && all_passed=false; }
+    tail -n 3 "$logs/$name.log" | sed 's/^/   /' >&2
+    echo "   $outcome after $seconds s, log: $logs/$name.log" >&2
+    entries="$entries${entries:+,}
+  \"$name\": {\"outcome\": \"$outcome\", \"exit_code\": $code, \"seconds\": $seconds, \"result\":
+$(if [ -s "$file" ]; then cat "$file"; else echo null; fi)}"
+}
+
+cd "$logs" || exit 1
+"$here/relief-gpu" devices >devices.json 2>devices.log
+for part in $(echo "$parts" | tr , ' '); do
+    # $device and $quick are words of their own, or nothing.
+    case $part in
+    tests) run_part tests tests.json "$here/vulkan_tests" --gtest_output=json:tests.json ;;
+    parity) run_part parity parity.json "$here/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
+        $device $quick ;;
+    bench) run_part bench paper1/paper1.json "$here/relief-gpu" bench -o paper1 --pipeline-cache pipelines \
+        $device $quick ;;
+    esac
+done
+rm -rf "$logs/lib"
+
+{
+    echo "{\"commit\": \"$(cat "$here/commit")\", \"all_passed\": $all_passed, \"date\": \"$(date -u +%Y-%m-%dT%H:%MZ)\","
+    echo " \"devices\":"
+    if [ -s devices.json ]; then cat devices.json; else echo null; fi
+    echo " ,\"parts\": {$entries"
+    echo "}}"
+} >"$result"
+echo "The result is $result" >&2
+$all_passed

@@ -1,0 +1,155 @@
+// The Vulkan engine: passes over the picture, batch by batch; rays for other programs.
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "base/timer.h"
+#include "engine/engine.h"
+#include "engine/vulkan/path_tracer.h"
+#include "engine/vulkan/ray_batch.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace vulkan {
+
+namespace {
+
+constexpr uint32_t kMostPaths = 1u << 20;
+constexpr uint32_t kLeastPaths = 1u << 12; ///< below it a device has no room for a picture
+constexpr uint32_t kRaysOfABatch = 1u << 17;
+constexpr uint32_t kSlots = 4;
+
+/// What casts rays, cut to what the device has room for: fewer rays at once take longer, but change nothing.
+template <class Worker> struct Station {
+    std::unique_ptr<Tracer> tracer;
+    std::unique_ptr<Worker> worker;
+};
+
+class VulkanEngine final : public Engine {
+  public:
+    VulkanEngine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
+        : scene_(std::move(scene)),
+          settings_(settings),
+          device_({.index = settings.device, .pipeline_cache = settings.pipeline_cache}),
+          device_scene_(device_, *scene_) {}
+
+    bool render(Film& film, RenderObserver* observer) override;
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override;
+    void add_statistics(Statistics& statistics) const override;
+
+  private:
+    template <class Make> auto make_station(uint32_t rays, uint32_t least, Make make_worker) const;
+    Station<RayBatch>& batches() const;
+    bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
+
+    std::shared_ptr<const PreparedScene> scene_;
+    RenderSettings settings_;
+    Device device_;
+    DeviceScene device_scene_;
+    Station<PathTracer> paths_;
+    mutable std::mutex mutex_;
+    mutable Station<RayBatch> batches_;
+    Progress progress_;
+    uint64_t done_ = 0; ///< pixel samples
+    Timer timer_;
+    double first_image_s_ = 0;
+};
+
+template <class Make>
+auto VulkanEngine::make_station(uint32_t rays, uint32_t least, Make make_worker) const {
+    for (;; rays /= 2) {
+        try {
+            TracerConfig config;
+            config.ray_capacity = rays;
+            config.slots = kSlots;
+            config.pair_capacity = std::max(rays, least) * kSlots;
+            auto tracer = std::make_unique<Tracer>(device_, *scene_, device_scene_, settings_, config);
+            auto worker = make_worker(*tracer);
+            return Station<typename decltype(worker)::element_type>{std::move(tracer), std::move(worker)};
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::out_of_memory || rays / 2 < least) throw;
+        }
+    }
+}
+
+bool VulkanEngine::render(Film& film, RenderObserver* observer) {
+    const Window& window = film.window();
+    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
+    timer_ = {};
+    // Every path has a ray and a shadow ray.
+    paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
+                          2 * uint32_t(std::min<uint64_t>(pixels, kLeastPaths)), [&](Tracer& tracer) {
+                              return std::make_unique<PathTracer>(tracer, settings_);
+                          });
+    progress_ = {};
+    progress_.samples_total = settings_.spp;
+    done_ = 0;
+    int done = 0;
+    for (int length = 1; done < settings_.spp; length = std::min(2 * length, PathTracer::kSamplesPerLaunch)) {
+        const int count = std::min(length, settings_.spp - done);
+        if (!render_pass(film, {settings_.first_sample + done, count}, observer)) return false;
+        done += count;
+        progress_.samples_done = done;
+        if (first_image_s_ == 0) first_image_s_ = timer_.seconds();
+    }
+    if (observer) observer->on_progress(progress_);
+    return true;
+}
+
+/// False after a cancellation.
+bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* observer) {
+    const Window& window = film.window();
+    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
+    for (uint64_t first = 0; first < pixels; first += paths_.worker->capacity()) {
+        if (observer && observer->is_cancelled()) return false;
+        const uint64_t count = std::min<uint64_t>(paths_.worker->capacity(), pixels - first);
+        paths_.worker->trace_samples(film, {first, count}, samples);
+        done_ += count * uint64_t(samples.count);
+        progress_.fraction = double(done_) / (double(pixels) * settings_.spp);
+        progress_.rays = paths_.worker->ray_count();
+        progress_.elapsed_s = timer_.seconds();
+        if (observer) observer->on_progress(progress_);
+    }
+    return true;
+}
+
+Station<RayBatch>& VulkanEngine::batches() const {
+    if (!batches_.worker)
+        batches_ = make_station(kRaysOfABatch, kLeastPaths,
+                                [](Tracer& tracer) { return std::make_unique<RayBatch>(tracer); });
+    return batches_;
+}
+
+void VulkanEngine::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const {
+    const std::lock_guard lock(mutex_);
+    batches().worker->closest_hits(rays, hits);
+}
+
+void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const {
+    const std::lock_guard lock(mutex_);
+    batches().worker->any_hits(rays, hits);
+}
+
+void VulkanEngine::add_statistics(Statistics& statistics) const {
+    statistics.engine = "vulkan";
+    statistics.device = device_.description().name;
+    statistics.isa = device_.description().driver;
+    statistics.first_image_s += first_image_s_;
+    if (paths_.tracer) paths_.tracer->add_statistics(statistics);
+    if (paths_.worker) paths_.worker->add_statistics(statistics);
+}
+
+} // namespace
+
+} // namespace vulkan
+
+std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
+                                           const RenderSettings& settings) {
+    return std::make_unique<vulkan::VulkanEngine>(std::move(scene), settings);
+}
+
+} // namespace relief

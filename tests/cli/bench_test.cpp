@@ -1,0 +1,55 @@
+// What the suites of measurements write.
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "support/xml.h"
+
+namespace relief::cli {
+namespace {
+
+using nlohmann::json;
+
+class Bench : public CommandTest {};
+
+TEST_F(Bench, paper1_writes_the_table_and_every_figure) {
+    const CommandResult result = run({"bench", "paper1", "--quick", "--scenes", "bark", "-o", "a/b"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("a/b/paper1.json"));
+    for (const char* key :
+         {"/build/commit", "/machine/processor", "/device/engine", "/settings/runs", "/comparable/0",
+          "/paper_says/0/text", "/table1_1/0/direct/bytes_a_patch",
+          "/table1_1/0/tessellated_estimate/2/total_bytes", "/table1_1/0/paper/direct_bytes",
+          "/figure1_7/0/variants/2/stage_s/bottom_build/median", "/figure1_7/0/variants/2/frame_s/highest",
+          "/figure1_9/0/variants/1/casts/1/stage_s/sort", "/figure1_10/0/variants/0/casts/2/total_s/median",
+          "/goals/0/name", "/goals/0/goal", "/goals/0/reached", "/goals/0/unit", "/goals/0/met"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    EXPECT_EQ(s["suite"], "paper1");
+    EXPECT_EQ(s["table1_1"][0]["patches"], 3120);
+    for (const json& variant : s["figure1_7"][0]["variants"]) EXPECT_EQ(variant["outcome"], "measured");
+    EXPECT_EQ(read("a/b/paper1.csv").rfind("part,scene,variant,", 0), 0u);
+    for (const char* chart : {"table1", "figure1_7", "figure1_9", "figure1_10"})
+        EXPECT_EQ(test::find_xml_fault(read(std::string("a/b/paper1_") + chart + ".svg")), "") << chart;
+}
+
+TEST_F(Bench, a_pre_tessellated_scene_above_the_limit_is_shown_with_its_bytes) {
+    const CommandResult result =
+        run({"bench", "--quick", "--scenes", "pumpkin", "--tessellated-limit", "0", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    const json variant = json::parse(read("paper1/paper1.json"))["figure1_7"][0]["variants"][2];
+    EXPECT_EQ(variant["outcome"], "refused");
+    EXPECT_NE(variant["reason"].get<std::string>().find("bytes"), std::string::npos);
+    EXPECT_NE(read("paper1/paper1_figure1_7.svg").find("not made"), std::string::npos);
+}
+
+TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
+    const CommandResult suite = run({"bench", "paper7"});
+    EXPECT_EQ(suite.exit_code, 2);
+    EXPECT_NE(suite.errors.find("paper1"), std::string::npos);
+    EXPECT_EQ(run({"bench", "--scenes", "pumpkim"}).exit_code, 2);
+    EXPECT_EQ(run({"bench", "--scenes", ""}).exit_code, 2);
+    EXPECT_EQ(run({"bench", "--runs", "0"}).exit_code, 2);
+}
+
+} // namespace
+} // namespace relief::cli

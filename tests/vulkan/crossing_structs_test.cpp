@@ -1,0 +1,69 @@
+// Structs that cross between host and device have the same fields in the same places.
+#include <bit>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/vulkan/commands.h"
+#include "math/scalar.h"
+#include "vulkan/gpu_fixture.h"
+#include "vulkan/test_shaders.h"
+
+namespace relief::scalar {
+#include "vulkan/shaders/device_fields-inl.h"
+} // namespace relief::scalar
+
+namespace relief::vulkan::tests {
+namespace {
+
+static_assert(sizeof(scalar::InstanceData) == 31 * 4);
+static_assert(sizeof(scalar::SurfaceData) == 10 * 4);
+static_assert(sizeof(scalar::MapData) == 17 * 4);
+static_assert(sizeof(scalar::TextureData) == 5 * 4);
+static_assert(sizeof(scalar::MaterialData) == 11 * 4);
+static_assert(sizeof(scalar::TileRecord) == 5 * 4);
+static_assert(sizeof(scalar::RayData) == 9 * 4);
+static_assert(sizeof(scalar::HitData) == 7 * 4);
+static_assert(sizeof(scalar::CastPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
+
+/// Distinct numbers; as floats normal, because devices may flush others.
+class Numbers {
+  public:
+    void put(uint32_t& field) { field = add(); }
+    void put(float& field) { field = std::bit_cast<float>(add()); }
+    const std::vector<uint32_t>& all() const { return all_; }
+
+  private:
+    uint32_t add() {
+        all_.push_back(0x3f800000u + uint32_t(all_.size()) * 3);
+        return all_.back();
+    }
+    std::vector<uint32_t> all_;
+};
+
+class CrossingStructs : public GpuTest {};
+
+TEST_F(CrossingStructs, have_the_same_fields_on_the_device) {
+    std::vector<scalar::AllStructs> structs(2);
+    Numbers numbers;
+#define FIELD(path) numbers.put(path);
+    ALL_FIELDS(structs[1])
+#undef FIELD
+    ASSERT_EQ(numbers.all().size() * sizeof(uint32_t), sizeof(scalar::AllStructs)) << "a field is not listed";
+    Buffer from(device(), {.name = "structs", .bytes = structs.size() * sizeof(structs[0])});
+    const Buffer words(device(), {.name = "words", .bytes = sizeof(scalar::AllStructs)});
+    from.upload(structs);
+    BindingTable bindings(device());
+    bindings.bind(scalar::kBindRays, from);
+    bindings.bind(scalar::kBindFilm, words);
+    const Kernel kernel = make_test_kernel(device(), "read_fields");
+    vulkan::Commands commands(device(), bindings);
+    commands.dispatch(kernel, 1, 0u);
+    commands.run();
+    EXPECT_EQ(words.download<uint32_t>(numbers.all().size()), numbers.all());
+}
+
+} // namespace
+} // namespace relief::vulkan::tests

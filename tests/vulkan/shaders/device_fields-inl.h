@@ -1,0 +1,132 @@
+// Every field of the structs that cross between host and device, in one list for both languages: FIELD(path).
+struct AllStructs {
+    InstanceData instance;
+    SurfaceData surface;
+    MapData map;
+    TextureData texture;
+    MaterialData material;
+    TileRecord tile;
+    RayData ray;
+    HitData hit;
+    CursorData cursor;
+    CandidateData candidate;
+    CounterData counter;
+    RequestData request;
+    DirectoryData directory;
+    TreeRecord tree;
+    CastPush cast_push;
+    ArgumentsPush arguments_push;
+    PathData path;
+    SurfacePointData point;
+    FilmSumsData film;
+    EmitterData emitter;
+    LightSourceData light;
+    CameraPush camera_push;
+    PathPush path_push;
+    SortPush sort_push;
+};
+
+// clang-format off
+#define FIELD2(path) FIELD(path.x) FIELD(path.y)
+#define FIELD3(path) FIELD(path.x) FIELD(path.y) FIELD(path.z)
+#define FIELDS_INSTANCE(s) \
+    FIELD3(s.object_from_world.x) FIELD3(s.object_from_world.y) FIELD3(s.object_from_world.z) \
+    FIELD3(s.object_from_world.t) FIELD3(s.world_from_object.x) FIELD3(s.world_from_object.y) \
+    FIELD3(s.world_from_object.z) FIELD3(s.world_from_object.t) FIELD(s.surface) FIELD(s.material) \
+    FIELD(s.root) FIELD(s.first_level) FIELD(s.levels) FIELD(s.is_mirrored) FIELD(s.first_emitter)
+#define FIELDS_SURFACE(s) \
+    FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
+    FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
+    FIELD(s.first_override_word) FIELD(s.map)
+#define FIELDS_MAP(s) \
+    FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
+    FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count)
+#define FIELDS_TEXTURE(s) \
+    FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
+#define FIELDS_MATERIAL(s) \
+    FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
+    FIELD(s.color_texture) FIELD(s.roughness_texture)
+#define FIELDS_TILE(s) \
+    FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
+#define FIELDS_RAY(s) \
+    FIELD3(s.origin) FIELD(s.t_min) FIELD3(s.direction) FIELD(s.t_max) FIELD(s.bias)
+#define FIELDS_HIT(s) \
+    FIELD(s.t) FIELD(s.instance) FIELD(s.patch_index) FIELD(s.u) FIELD(s.v) FIELD(s.cell) FIELD(s.levels)
+#define FIELDS_CURSOR(s) \
+    FIELD(s.entry) FIELD(s.instance) FIELD(s.tree)
+#define FIELDS_CANDIDATE(s) \
+    FIELD(s.instance) FIELD(s.tree) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.entry)
+#define FIELDS_COUNTER(s) \
+    FIELD(s.pair_count) FIELD(s.job_count) FIELD(s.next_active_count) FIELD(s.deferred_count) \
+    FIELD(s.request_count) FIELD(s.pool_head) FIELD(s.next_job) FIELD(s.build_count[0]) \
+    FIELD(s.build_count[1]) FIELD(s.build_count[2]) FIELD(s.pairs_done) FIELD(s.jobs_done) \
+    FIELD(s.pairs_with_hit) FIELD(s.reused) FIELD(s.built[0]) FIELD(s.built[1]) FIELD(s.built[2]) \
+    FIELD(s.built[3]) FIELD(s.built[4]) FIELD(s.built[5]) FIELD(s.path_count) FIELD(s.shadow_count)
+#define FIELDS_REQUEST(s) \
+    FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels)
+#define FIELDS_DIRECTORY(s) \
+    FIELD(s.patch_number) FIELD(s.levels) FIELD(s.root)
+#define FIELDS_TREE(s) \
+    FIELD(s.begin) FIELD(s.end) FIELD(s.need) FIELD(s.coverage) FIELD(s.address) FIELD(s.ready_wave) \
+    FIELD(s.build_wave)
+#define FIELDS_CAST_PUSH(s) \
+    FIELD(s.first) FIELD(s.count) FIELD(s.round) FIELD(s.is_any) FIELD(s.wave) FIELD(s.pool_start) \
+    FIELD(s.pool_budget) FIELD(s.pool_capacity) FIELD(s.is_cached) FIELD(s.root) FIELD(s.patch_count) \
+    FIELD(s.directory_mask) FIELD(s.request_limit) FIELD(s.is_ray_lod) FIELD(s.pixel_angle) \
+    FIELD(s.builds_stride)
+#define FIELDS_ARGUMENTS_PUSH(s) \
+    FIELD(s.group_size) FIELD(s.builds_per_group[0]) FIELD(s.builds_per_group[1]) \
+    FIELD(s.builds_per_group[2])
+#define FIELDS_PATH(s) \
+    FIELD3(s.throughput) FIELD(s.bsdf_pdf) FIELD3(s.previous) FIELD(s.pixel_seed) FIELD3(s.radiance) \
+    FIELD(s.cost) FIELD3(s.contribution)
+#define FIELDS_POINT(s) \
+    FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
+    FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.is_flipped)
+#define FIELDS_FILM(s) \
+    FIELD3(s.radiance) FIELD3(s.squares) FIELD(s.cost) FIELD(s.hit_count) FIELD3(s.shading_normal) \
+    FIELD3(s.geometric_normal) FIELD3(s.position) FIELD3(s.albedo) FIELD2(s.uv) FIELD(s.depth) FIELD(s.id)
+#define FIELDS_EMITTER(s) \
+    FIELD(s.end) FIELD(s.probability)
+#define FIELDS_LIGHT(s) \
+    FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
+    FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone)
+#define FIELDS_CAMERA_PUSH(s) \
+    FIELD3(s.camera.origin) FIELD3(s.camera.right) FIELD3(s.camera.up) FIELD3(s.camera.forward) \
+    FIELD3(s.camera.corner) FIELD3(s.camera.step_x) FIELD3(s.camera.step_y) \
+    FIELD(s.camera.aperture_radius) FIELD(s.camera.focus_distance) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) \
+    FIELD(s.first_pixel) FIELD(s.count) FIELD(s.sample_index) FIELD(s.seed)
+#define FIELDS_PATH_PUSH(s) \
+    FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.sample_index) \
+    FIELD(s.source_count) FIELD(s.emitter_count) FIELD(s.emitter_range_count) FIELD(s.has_auto_levels) \
+    FIELD(s.has_environment) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
+    FIELD(s.environment.cos_turn) FIELD(s.environment.cells_x) FIELD(s.environment.cells_y) \
+    FIELD(s.environment.texture_index)
+#define FIELDS_SORT_PUSH(s) \
+    FIELD(s.counter_word) FIELD(s.capacity) FIELD(s.shift) FIELD(s.mask) FIELD(s.is_back)
+#define ALL_FIELDS(s) \
+    FIELDS_INSTANCE(s.instance) \
+    FIELDS_SURFACE(s.surface) \
+    FIELDS_MAP(s.map) \
+    FIELDS_TEXTURE(s.texture) \
+    FIELDS_MATERIAL(s.material) \
+    FIELDS_TILE(s.tile) \
+    FIELDS_RAY(s.ray) \
+    FIELDS_HIT(s.hit) \
+    FIELDS_CURSOR(s.cursor) \
+    FIELDS_CANDIDATE(s.candidate) \
+    FIELDS_COUNTER(s.counter) \
+    FIELDS_REQUEST(s.request) \
+    FIELDS_DIRECTORY(s.directory) \
+    FIELDS_TREE(s.tree) \
+    FIELDS_CAST_PUSH(s.cast_push) \
+    FIELDS_ARGUMENTS_PUSH(s.arguments_push) \
+    FIELDS_PATH(s.path) \
+    FIELDS_POINT(s.point) \
+    FIELDS_FILM(s.film) \
+    FIELDS_EMITTER(s.emitter) \
+    FIELDS_LIGHT(s.light) \
+    FIELDS_CAMERA_PUSH(s.camera_push) \
+    FIELDS_PATH_PUSH(s.path_push) \
+    FIELDS_SORT_PUSH(s.sort_push)
+// clang-format on
