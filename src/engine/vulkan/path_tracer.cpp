@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/check.h"
 #include "engine/camera_frame.h"
 
 namespace relief::vulkan {
@@ -48,6 +49,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       camera_(make_camera_frame(tracer.scene())),
       capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
       lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
+    DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
     background_ = make_kernel(device, "background");
