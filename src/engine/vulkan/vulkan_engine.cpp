@@ -59,8 +59,7 @@ class VulkanEngine final : public Engine {
     double first_image_s_ = 0;
 };
 
-template <class Make>
-auto VulkanEngine::make_station(uint32_t rays, uint32_t least, Make make_worker) const {
+template <class Make> auto VulkanEngine::make_station(uint32_t rays, uint32_t least, Make make_worker) const {
     for (;; rays /= 2) {
         try {
             TracerConfig config;
@@ -82,9 +81,8 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     timer_ = {};
     // Every path has a ray and a shadow ray.
     paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
-                          2 * uint32_t(std::min<uint64_t>(pixels, kLeastPaths)), [&](Tracer& tracer) {
-                              return std::make_unique<PathTracer>(tracer, settings_);
-                          });
+                          2 * uint32_t(std::min<uint64_t>(pixels, kLeastPaths)),
+                          [&](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); });
     progress_ = {};
     progress_.samples_total = settings_.spp;
     done_ = 0;
