@@ -12,13 +12,12 @@ struct AffineData {
 
 struct InstanceData {
     AffineData object_from_world, world_from_object;
-    uint surface;       ///< index into surfaces
-    uint material;      ///< index into materials
-    uint root;          ///< node of the surface's tree; kNone: the surface is empty
-    uint first_level;   ///< index into levels; kNone: all patches have `levels`
-    uint levels;        ///< packed
-    uint is_mirrored;   ///< winding turned
-    uint first_emitter; ///< index into the emitters' table; kNone: gives no light
+    uint surface;     ///< index into surfaces
+    uint material;    ///< index into materials
+    uint root;        ///< node of the surface's tree; kNone: the surface is empty
+    uint first_level; ///< index into levels; kNone: all patches have `levels`
+    uint levels;      ///< packed
+    uint is_mirrored; ///< winding turned
 };
 
 /// First entries in the texel buffers; kNone where the surface has no such data.

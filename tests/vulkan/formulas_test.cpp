@@ -27,7 +27,7 @@ using scalar::FormulaInput;
 using scalar::FormulaOutput;
 
 constexpr uint32_t kCount = 1u << 14;
-constexpr uint32_t kPartCount = 6;
+constexpr uint32_t kPartCount = 8;
 
 std::vector<FormulaInput> make_inputs() {
     std::mt19937 random(1);
@@ -60,8 +60,9 @@ std::vector<FormulaOutput> run_on_device(const Device& device, const std::vector
 }
 
 FormulaOutput run_in_cpp(const FormulaInput& input) {
-    return {scalar::run_exact(input),   scalar::run_warp(input),  scalar::run_camera(input),
-            scalar::run_shading(input), scalar::run_light(input), scalar::run_tone(input)};
+    return {scalar::run_exact(input),   scalar::run_warp(input),   scalar::run_camera(input),
+            scalar::run_shading(input), scalar::run_light(input),  scalar::run_tone(input),
+            scalar::run_source(input),  scalar::run_surface(input)};
 }
 
 /// Largest |device - cpp| / (1 + |cpp|) over the floats of one part.
@@ -110,6 +111,9 @@ TEST_F(Formulas, of_the_camera_are_close) { expect_close(&FormulaOutput::camera,
 TEST_F(Formulas, of_the_bsdf_are_close) { expect_close(&FormulaOutput::shading, 2e-4f); }
 TEST_F(Formulas, of_lights_are_close) { expect_close(&FormulaOutput::light, 1e-4f); }
 TEST_F(Formulas, of_tones_are_close) { expect_close(&FormulaOutput::tone, 1e-5f); }
+
+TEST_F(Formulas, of_light_sources_are_close) { expect_close(&FormulaOutput::source, 1e-3f); }
+TEST_F(Formulas, of_surface_points_are_close) { expect_close(&FormulaOutput::surface, 1e-3f); }
 
 } // namespace
 } // namespace relief::vulkan::tests

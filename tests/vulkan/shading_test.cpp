@@ -40,6 +40,7 @@ class ShadingKernels : public GpuTest {
     static void make_points(uint32_t depth) {
         bench_->upload(cases_);
         bench_->run("surface_point", bench_->make_push(depth));
+        bench_->run("shading_normal", bench_->make_push(depth));
     }
     static Vec2f draw_pair(const ShadingCase& c, const scalar::PathPush& push, uint32_t kind) {
         return scalar::draw_bounce_pair(c.path.pixel_seed, push.sample_index, push.depth, kind);

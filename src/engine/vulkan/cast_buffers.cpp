@@ -26,8 +26,8 @@ CastBuffers::CastBuffers(const Device& device, const TracerConfig& config, uint6
     candidates = make_array<scalar::CandidateData>(device, "candidates", chunk * config.slots);
     pairs = make_array<uint64_t>(device, "pairs", config.pair_capacity);
     sorted_pairs = make_array<uint64_t>(device, "sorted pairs", config.pair_capacity);
-    histogram = make_array<uint32_t>(
-        device, "histogram", std::max<uint64_t>(histogram_words, scalar::kRequestBits / 32));
+    histogram = make_array<uint32_t>(device, "histogram",
+                                     std::max<uint64_t>(histogram_words, scalar::kRequestBits / 32));
     nearest = make_array<uint64_t>(device, "nearest", chunk);
     counters = make_array<scalar::CounterData>(device, "counters", 1);
     BufferConfig on_host{"counters on the host", sizeof(scalar::CounterData), Purpose::staging};

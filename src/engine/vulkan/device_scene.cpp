@@ -170,7 +170,6 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         data.material = instance.material;
         data.root = arrays.surface_roots[instance.surface];
         data.is_mirrored = instance.is_mirrored;
-        data.first_emitter = kNone;
         data.first_level = kNone;
         if (instance.levels->is_uniform()) {
             data.levels = surface.patch_count() > 0 ? pack_levels(instance.levels->at(0)) : 0;

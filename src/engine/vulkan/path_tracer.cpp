@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/check.h"
 #include "engine/camera_frame.h"
 
 namespace relief::vulkan {
@@ -48,10 +49,12 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       camera_(make_camera_frame(tracer.scene())),
       capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
       lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
+    DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
     background_ = make_kernel(device, "background");
     surface_point_ = make_kernel(device, "surface_point");
+    shading_normal_ = make_kernel(device, "shading_normal");
     light_sample_ = make_kernel(device, "light_sample");
     bounce_ = make_kernel(device, "bounce");
     shadow_light_ = make_kernel(device, "shadow_light");
@@ -135,6 +138,7 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
                   0);
     commands.dispatch(background_, push.count, push);
     commands.dispatch(surface_point_, push.count, push);
+    commands.dispatch(shading_normal_, push.count, push);
     commands.dispatch(light_sample_, push.count, push);
     if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
     const scalar::CounterData& counters = tracer_.read_counters();

@@ -61,7 +61,8 @@ class PathTracer {
     scalar::CameraFrame camera_;
     uint32_t capacity_;
     DeviceLights lights_;
-    Kernel camera_kernel_, background_, surface_point_, light_sample_, bounce_, shadow_light_, film_;
+    Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_,
+        shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
     std::vector<CastStatistics> casts_, shadow_casts_; ///< by depth
 };

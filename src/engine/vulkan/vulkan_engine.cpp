@@ -42,7 +42,8 @@ class VulkanEngine final : public Engine {
     void add_statistics(Statistics& statistics) const override;
 
   private:
-    template <class Make> auto make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const;
+    template <class Make>
+    auto make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const;
     Station<RayBatch>& batches() const;
     bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
 
@@ -83,9 +84,8 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     timer_ = {};
     // Every path has a ray and a shadow ray.
     paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
-                          2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths)), 2, [&](Tracer& tracer) {
-                              return std::make_unique<PathTracer>(tracer, settings_);
-                          });
+                          2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths)), 2,
+                          [&](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); });
     progress_ = {};
     progress_.samples_total = settings_.spp;
     done_ = 0;

@@ -50,6 +50,21 @@ struct ToneResults {
     float encoded, decoded;
 };
 
+struct SourceResults {
+    LightDraw sun, lamp, emitter;
+    float irradiance;
+    LightSeen seen;
+    Vec3 into, out_of;
+    float density, position;
+};
+
+struct SurfaceResults {
+    Vec3 position, normal;
+    float area_per_uv, error;
+    Vec2 patch_uv, polygon_uv;
+    Vec3 origin, oriented, plain, displaced;
+};
+
 struct FormulaOutput {
     ExactResults exact;
     WarpResults warp;
@@ -57,6 +72,8 @@ struct FormulaOutput {
     ShadingResults shading;
     LightResults light;
     ToneResults tone;
+    SourceResults source;
+    SurfaceResults surface;
 };
 
 FN ExactResults run_exact(FormulaInput from) {
@@ -159,5 +176,68 @@ FN ToneResults run_tone(FormulaInput from) {
     r.shown = tone_map_filmic(make_triple(10.0f * from.u[0], from.u[1], from.u[2] - 0.2f));
     r.encoded = encode_srgb(from.u[3]);
     r.decoded = decode_srgb(from.u[4]);
+    return r;
+}
+
+FN LightSourceData make_test_source(FormulaInput from, uint kind) {
+    LightSourceData source;
+    source.kind = kind;
+    source.power = 1.0f + from.u[0];
+    source.color = make_triple(from.u[1], from.u[2], 1.0f);
+    source.strength = 2.0f;
+    source.center = make_triple(3.0f, from.u[3], from.u[4]);
+    source.radius = 0.2f + 0.5f * from.u[5];
+    source.radius2 = source.radius * source.radius;
+    source.basis = make_basis(square_to_sphere(make_pair(from.u[6], from.u[7])));
+    source.cone = 0.01f + 0.1f * from.u[8];
+    return source;
+}
+
+FN SourceResults run_source(FormulaInput from) {
+    Vec2 u = make_pair(from.u[10], from.u[11]);
+    Vec3 position = make_triple(-from.u[9], from.u[8], from.u[7]);
+    LightSourceData lamp = make_test_source(from, kSourcePoint);
+    Vec3 to = make_triple(1.0f + from.u[0], from.u[1], from.u[2]);
+    EnvironmentData e = {to, 0.6f, 0.8f, 64u, 32u, kNone};
+    SourceResults r;
+    r.sun = draw_sun(make_test_source(from, kSourceSun), u);
+    r.sun.distance = 0.0f; // infinite, which no difference can be taken of
+    r.lamp = draw_point_light(lamp, position, u);
+    float pdf = emitter_density(0.1f + from.u[3], 0.5f + from.u[4], r.sun.direction, to);
+    r.emitter = draw_emitter(to, to, max(pdf, 0.1f));
+    r.irradiance = estimate_irradiance(lamp, position) +
+                   estimate_irradiance(make_test_source(from, kSourceEmitters), position);
+    r.seen = meet_light(lamp, position, normalize(lamp.center - position), 100.0f);
+    r.into = turn_into_environment(e, to);
+    r.out_of = turn_out_of_environment(e, to);
+    r.density = environment_cell_density(e, from.u[5], normalize(to));
+    r.position = locate_in_interval(from.u[6], 0.0f, 1.0f);
+    return r;
+}
+
+FN SurfaceResults run_surface(FormulaInput from) {
+    Vec2 at = make_pair(from.u[0], from.u[1]);
+    Vec3 a = make_triple(from.u[2], from.u[3], from.u[4]);
+    Vec3 b = make_triple(1.0f + from.u[5], from.u[6], 0.0f);
+    Vec3 c = make_triple(from.u[7], 1.0f + from.u[8], 0.0f);
+    CellPlace place = locate_cell(false, 4u, at.x, at.y);
+    Vec3 inside = blend_facet(a, b, c, weigh_facet_corners(place, 4.0f));
+    Facet facet = make_facet(inside, b - a, c - a, -1.0f, facet_uv_area(false, 4.0f));
+    Vec3 wild = make_triple(from.u[9] - 0.5f, from.u[10] - 0.5f, from.u[11] + 0.1f);
+    Basis frame = make_basis(normalize(wild));
+    SurfaceDerivative along_u = {b, frame, wild * 0.1f};
+    SurfaceDerivative along_v = {c, frame, wild * 0.2f};
+    SurfaceResults r;
+    r.position = facet.position;
+    r.normal = facet.normal;
+    r.area_per_uv = facet.area_per_uv;
+    r.error = bound_position_error(largest_coordinate(b), sum_magnitudes(c), 1.0f, 2.0f);
+    r.patch_uv = blend_patch_uv(at, at * 2.0f, at * 3.0f, at * 5.0f, at);
+    r.polygon_uv = blend_polygon_uv(at, at * 2.0f, at * 3.0f, at * 5.0f, at);
+    r.origin = offset_origin(inside, facet.normal, 0.25f, frame.n);
+    r.oriented = orient_shading_normal(interpolate_quad(a, b, c, wild, at), facet.normal);
+    r.plain = make_plain_normal(interpolate_triangle(a, b, c, at), facet.normal);
+    r.displaced = make_displaced_normal(displace_derivative_through(along_u, frame, a * 0.1f, frame.n),
+                                        displace_derivative(along_v, frame.n), frame.n);
     return r;
 }

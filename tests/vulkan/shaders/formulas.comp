@@ -20,4 +20,6 @@ void main() {
     if (kPart == 3u) outputs[i].shading = run_shading(from);
     if (kPart == 4u) outputs[i].light = run_light(from);
     if (kPart == 5u) outputs[i].tone = run_tone(from);
+    if (kPart == 6u) outputs[i].source = run_source(from);
+    if (kPart == 7u) outputs[i].surface = run_surface(from);
 }

@@ -22,7 +22,8 @@ RayData start_bounce_ray(HitData hit, SurfacePointData point, uint bias, vec3 di
     return ray;
 }
 
-void continue_path(uint path_index, HitData hit) {
+/// Sets the next ray; false where the path ends.
+bool continue_path(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
     RayData ray = rays[path_index];
@@ -32,17 +33,17 @@ void continue_path(uint path_index, HitData hit) {
     Scattering scattering = make_scattering(point, materials[instances[hit.instance].material], -ray.direction);
     BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, pick.y, u);
     vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
-    if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return;
+    if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return false;
     vec3 throughput = path.throughput * drawn.weight;
     float probability = survival_probability(push.depth, throughput);
-    if (!is_finite(throughput) || last.x >= probability) return;
+    if (!is_finite(throughput) || last.x >= probability) return false;
     paths[path_index].throughput = throughput * (1.0 / probability);
     paths[path_index].previous = point.position;
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
     rays[path_index] =
         start_bounce_ray(hit, point, ray.bias, direction, is_wide_bounce(drawn.is_specular, point.roughness));
-    next_path_list[atomicAdd(counters.path_count, 1u)] = path_index;
+    return true;
 }
 
 void main() {
@@ -50,5 +51,8 @@ void main() {
     if (index >= push.count) return;
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
-    if (is_hit(hit)) continue_path(path_index, hit);
+    uint count = is_hit(hit) && continue_path(path_index, hit) ? 1u : 0u;
+    uint place;
+    RESERVE(counters.path_count, count, place)
+    if (count > 0u) next_path_list[place] = path_index;
 }

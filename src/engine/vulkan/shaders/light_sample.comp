@@ -94,24 +94,34 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint bias) {
     return ray;
 }
 
-/// The last vertex has no bounce ray that could find the light as well: full weight there.
-void sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+/// Sets the shadow ray and what it brings; false where it would bring nothing. The last vertex has no bounce ray
+/// that could find the light as well: full weight there.
+bool sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
     DrawnLight drawn = draw_light(point, ray.bias, vec2(pick.x, last.y), u);
-    if (!(drawn.light.pdf > 0.0)) return;
+    if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
     BsdfValue bsdf = evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
     float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
-    if (contribution == vec3(0.0) || !is_finite(contribution)) return;
+    if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
     paths[path_index].contribution = contribution;
     paths[path_index].cost = path.cost + 1.0;
     rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.bias);
-    shadow_list[atomicAdd(counters.shadow_count, 1u)] = push.capacity + path_index;
+    return true;
+}
+
+/// True where there is a shadow ray.
+bool light_vertex(uint path_index, HitData hit) {
+    PathData path = paths[path_index];
+    SurfacePointData point = points[path_index];
+    MaterialData material = materials[instances[hit.instance].material];
+    paths[path_index].radiance = path.radiance + find_emission(path, hit, point, material.emission);
+    return push.source_count > 0u && sample_light(path_index, path, point, material);
 }
 
 void main() {
@@ -119,10 +129,8 @@ void main() {
     if (index >= push.count) return;
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
-    if (!is_hit(hit)) return;
-    PathData path = paths[path_index];
-    SurfacePointData point = points[path_index];
-    MaterialData material = materials[instances[hit.instance].material];
-    paths[path_index].radiance = path.radiance + find_emission(path, hit, point, material.emission);
-    if (push.source_count > 0u) sample_light(path_index, path, point, material);
+    uint count = is_hit(hit) && light_vertex(path_index, hit) ? 1u : 0u;
+    uint place;
+    RESERVE(counters.shadow_count, count, place)
+    if (count > 0u) shadow_list[place] = push.capacity + path_index;
 }

@@ -54,7 +54,8 @@ vec3 compute_displaced_normal(SurfaceData s, PatchCorners c, uint patch_index, u
     along_u.displacement = (displacements[2] - displacements[1]) / (ends_u.y - ends_u.x);
     along_v.displacement = (displacements[4] - displacements[3]) / (ends_v.y - ends_v.x);
     if (map.is_tangent == 0u)
-        return make_displaced_normal(displace_derivative(along_u, normal), displace_derivative(along_v, normal), normal);
+        return make_displaced_normal(displace_derivative(along_u, normal), displace_derivative(along_v, normal),
+                                     normal);
     VertexData middle = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], at.x, at.y);
     Basis frame = {middle.t, middle.b, middle.n};
     return make_displaced_normal(displace_derivative_through(along_u, frame, displacements[0], normal),

@@ -15,9 +15,14 @@ vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
     uint right = uint(wrap_texel(int(whole.x) + 1, width, kWrapRepeat));
     uint top = uint(wrap_texel(int(whole.y), height, wrap_y));
     uint bottom = uint(wrap_texel(int(whole.y) + 1, height, wrap_y));
-    vec4 upper = mix(load_texel(source, left, top), load_texel(source, right, top), fraction.x);
-    vec4 lower = mix(load_texel(source, left, bottom), load_texel(source, right, bottom), fraction.x);
-    return make_texture_color(source.channel_count, mix(upper, lower, fraction.y).xyz);
+    vec4 t00 = load_texel(source, left, top);
+    vec4 t10 = load_texel(source, right, top);
+    vec4 t01 = load_texel(source, left, bottom);
+    vec4 t11 = load_texel(source, right, bottom);
+    vec3 value = vec3(filter_texels(t00.x, t10.x, t01.x, t11.x, fraction.x, fraction.y),
+                      filter_texels(t00.y, t10.y, t01.y, t11.y, fraction.x, fraction.y),
+                      filter_texels(t00.z, t10.z, t01.z, t11.z, fraction.x, fraction.y));
+    return make_texture_color(source.channel_count, value);
 }
 
 /// Repeated in both directions; row 0 is v = 1. A uv that is not finite gives texel (0, 0).

@@ -1,0 +1,165 @@
+// Whole paths on the device: the same samples as the CPU engine's, however the picture is cut.
+#include <cmath>
+
+#include "engine/engine.h"
+#include "engine/vulkan/path_tracer.h"
+#include "vulkan/shading_fixture.h"
+
+namespace relief::vulkan::tests {
+namespace {
+
+const std::vector<std::string> kLayers{"depth", "N",  "Ng",      "P",        "albedo",
+                                       "uv",    "id", "samples", "variance", "cost"};
+
+RenderSettings make_settings() {
+    RenderSettings settings;
+    settings.width = 32, settings.height = 24;
+    settings.spp = 4, settings.bounces = 4, settings.pixel_error = 4;
+    settings.first_sample = 2, settings.seed = 8;
+    settings.crop = {3, 2, 30, 23};
+    settings.threads = 2;
+    return settings;
+}
+
+/// A change to the scene and settings that all tests begin with.
+struct Variant {
+    const char* name;
+    void (*change)(Scene& scene, RenderSettings& settings);
+};
+
+void use_constant_environment(Scene& scene, RenderSettings&) {
+    scene.lights.clear();
+    scene.environment->texture = nullptr;
+    for (Material& material : scene.materials) material.emission = {};
+}
+
+void use_emitters_alone(Scene& scene, RenderSettings& settings) {
+    scene.lights.clear();
+    scene.environment.reset();
+    settings.level = 2;
+}
+
+void use_nothing_to_draw(Scene& scene, RenderSettings& settings) {
+    use_emitters_alone(scene, settings);
+    for (Material& material : scene.materials) material.emission = {};
+    scene.environment.emplace().strength = 0;
+}
+
+void use_direct_light_alone(Scene&, RenderSettings& settings) { settings.bounces = 0; }
+
+void use_long_paths(Scene& scene, RenderSettings& settings) {
+    settings.bounces = 12;
+    for (Material& material : scene.materials) material.roughness = 0.1f, material.metallic = 1;
+}
+
+class PathTracerTest : public GpuTest {
+  protected:
+    explicit PathTracerTest(const Variant& variant = {"", [](Scene&, RenderSettings&) {}}) {
+        Scene scene = make_shading_scene();
+        variant.change(scene, settings_);
+        prepared_ = prepare_scene(std::move(scene), settings_);
+    }
+
+    struct Picture {
+        Image image;
+        Statistics statistics;
+    };
+
+    Film make_film() const { return {settings_.width, settings_.height, settings_.crop, kLayers}; }
+
+    Picture trace_on_device(uint32_t ray_capacity, int samples_a_call) const {
+        const DeviceScene device_scene(device(), *prepared_);
+        Tracer tracer(device(), *prepared_, device_scene, settings_,
+                      {.ray_capacity = ray_capacity, .pair_capacity = 1u << 16});
+        PathTracer path_tracer(tracer, settings_);
+        Film film = make_film();
+        const uint64_t pixels = 27 * 21;
+        for (int k = 0; k < settings_.spp; k += samples_a_call) {
+            path_tracer.trace_samples(film, {0, 100}, {settings_.first_sample + k, samples_a_call});
+            path_tracer.trace_samples(film, {100, pixels - 100},
+                                      {settings_.first_sample + k, samples_a_call});
+        }
+        Picture picture{film.resolve(), {}};
+        path_tracer.add_statistics(picture.statistics);
+        return picture;
+    }
+
+    Picture trace_on_cpu() const {
+        Film film = make_film();
+        const std::unique_ptr<Engine> engine = make_cpu_engine(prepared_, settings_);
+        engine->render(film, nullptr);
+        Picture picture{film.resolve(), {}};
+        engine->add_statistics(picture.statistics);
+        return picture;
+    }
+
+    RenderSettings settings_ = make_settings();
+    std::shared_ptr<const PreparedScene> prepared_;
+};
+
+class PathTracerVariants : public PathTracerTest, public testing::WithParamInterface<Variant> {
+  protected:
+    PathTracerVariants() : PathTracerTest(GetParam()) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
+                         testing::Values(Variant{"with_everything", [](Scene&, RenderSettings&) {}},
+                                         Variant{"in_a_constant_environment", use_constant_environment},
+                                         Variant{"with_emitters_alone", use_emitters_alone},
+                                         Variant{"in_the_dark", use_nothing_to_draw},
+                                         Variant{"with_direct_light_alone", use_direct_light_alone},
+                                         Variant{"with_long_paths", use_long_paths}),
+                         [](const auto& info) { return info.param.name; });
+
+TEST_P(PathTracerVariants, takes_the_samples_of_the_cpu_engine) {
+    const Picture device = trace_on_device(4096, 4), cpu = trace_on_cpu();
+    ASSERT_EQ(device.image.channels, cpu.image.channels);
+    const size_t channels = cpu.image.channels.size();
+    for (size_t c = 0; c < channels; ++c) {
+        size_t in_channel = 0;
+        for (size_t k = c; k < cpu.image.pixels.size(); k += channels) {
+            const float a = device.image.pixels[k], b = cpu.image.pixels[k];
+            in_channel += !(a == b || std::fabs(a - b) <= 0.01f * std::max(1.0f, std::fabs(b)));
+        }
+        // A ray that grazes an edge may go the other way, and its path with it.
+        EXPECT_LE(in_channel, 12u) << cpu.image.channels[c];
+    }
+    EXPECT_EQ(device.statistics.camera_rays, cpu.statistics.camera_rays);
+    const auto expect_close = [](uint64_t a, uint64_t b) {
+        EXPECT_NEAR(double(a), double(b), 0.01 * double(b));
+    };
+    expect_close(device.statistics.bounce_rays, cpu.statistics.bounce_rays);
+    expect_close(device.statistics.shadow_rays, cpu.statistics.shadow_rays);
+}
+
+TEST_F(PathTracerTest, gives_the_same_picture_however_it_is_cut) {
+    const Picture whole = trace_on_device(2048, 4), cut = trace_on_device(300, 4);
+    EXPECT_EQ(whole.image.pixels, cut.image.pixels);
+    EXPECT_EQ(whole.statistics.shadow_rays, cut.statistics.shadow_rays);
+    // Other sums in single precision.
+    const Picture by_sample = trace_on_device(2048, 1);
+    ASSERT_EQ(by_sample.image.pixels.size(), whole.image.pixels.size());
+    for (size_t k = 0; k < whole.image.pixels.size(); ++k) {
+        const float a = by_sample.image.pixels[k], b = whole.image.pixels[k];
+        ASSERT_TRUE(a == b || std::fabs(a - b) <= 2e-5f * std::max(1.0f, std::fabs(b))) << k;
+    }
+}
+
+TEST_F(PathTracerTest, counts_rays_by_kind_and_depth) {
+    const Picture picture = trace_on_device(4096, 4);
+    const Statistics& statistics = picture.statistics;
+    uint64_t camera = 0, bounce = 0, shadow = 0;
+    for (const CastStatistics& cast : statistics.casts) {
+        EXPECT_LE(cast.depth, settings_.bounces);
+        (cast.is_shadow ? shadow : cast.depth == 0 ? camera : bounce) += cast.rays;
+    }
+    EXPECT_EQ(camera, uint64_t(27 * 21 * settings_.spp));
+    EXPECT_EQ(camera, statistics.camera_rays);
+    EXPECT_EQ(bounce, statistics.bounce_rays);
+    EXPECT_EQ(shadow, statistics.shadow_rays);
+    EXPECT_GT(bounce, 0u);
+    EXPECT_GT(shadow, 0u);
+}
+
+} // namespace
+} // namespace relief::vulkan::tests
