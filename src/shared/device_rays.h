@@ -69,6 +69,7 @@ struct CastPush {
     uint first, count;   ///< part of the active rays that is worked on
     uint round;          ///< 0: rays start afresh
     uint is_any;         ///< anything in the way ends the ray
+    uint is_repeated;    ///< only rays that wait for tiles
     uint wave;           ///< number of this wave of jobs
     uint pool_start;     ///< pool_head when the wave began
     uint pool_budget;    ///< units that the wave may fill

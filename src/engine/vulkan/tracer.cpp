@@ -147,6 +147,8 @@ uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
 }
 
 void Tracer::Implementation::trace_chunk() {
+    push.is_repeated = 0;
+    clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
     do traverse_scene();
     while (directories.is_needed() && build_directories());
     sort_pairs();
@@ -157,7 +159,6 @@ void Tracer::Implementation::trace_chunk() {
 
 void Tracer::Implementation::traverse_scene() {
     commands.begin_stage(Stage::top_traversal);
-    clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
     clear(offsetof(CounterData, request_count), sizeof(uint32_t));
     if (directories.is_needed()) commands.fill(buffers.histogram, 0, scalar::kRequestBits / 8, 0);
     commands.dispatch(kernels.scene_traversal, push.count, push);
@@ -170,6 +171,7 @@ bool Tracer::Implementation::build_directories() {
     const uint32_t asked = std::min(counters.request_count, kRequestCapacity);
     directories.build(buffers.requests.download<scalar::RequestData>(asked), commands, bindings);
     reserve_trees();
+    push.is_repeated = 1;
     return true;
 }
 

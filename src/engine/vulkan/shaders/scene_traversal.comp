@@ -1,6 +1,6 @@
 // One ray through the two upper levels, nearest first: polygons are hit at once, displaced patches are offered to
 // the bottom level, the nearest few of those that come after the ray's cursor (Harada 2015, section 1.5.3, in
-// rounds). A round may be run again, so it changes nothing but hits, which only come nearer.
+// rounds). Rays that wait for tiles run the round again: it changes nothing but hits, which only come nearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engine/vulkan/shaders/kernel.glsl"
@@ -27,8 +27,12 @@ uint instance_index; ///< kNone: in world space
 HitData best;
 CursorData cursor;
 
-CandidateData slots[kMostSlots];
+// The nearest candidates so far, in order.
+float slot_entry[kMostSlots];
+uint slot_instance[kMostSlots];
+uint slot_tree[kMostSlots];
 uint slot_count = 0u;
+bool is_blocked = false; ///< tiles are missing that the host has still to make
 
 uint stack_node[kStackSize];
 float stack_entry[kStackSize];
@@ -42,38 +46,47 @@ void push_node(uint node, float entry) {
 
 /// Distance beyond which nothing matters to this round.
 float find_limit() {
-    float limit = slot_count == kSlots ? min(best.t, slots[kSlots - 1u].entry) : best.t;
+    float limit = slot_count == kSlots ? min(best.t, slot_entry[kSlots - 1u]) : best.t;
     return limit * kBoxSlack;
 }
 
-bool is_after(CandidateData a, float entry, uint at_instance, uint tree) {
-    if (a.entry != entry) return a.entry > entry;
-    if (a.instance != at_instance) return a.instance > at_instance;
-    return a.tree > tree;
+bool is_after(float entry, uint at_instance, uint tree, CursorData mark) {
+    if (entry != mark.entry) return entry > mark.entry;
+    if (at_instance != mark.instance) return at_instance > mark.instance;
+    return tree > mark.tree;
 }
 
-/// Keeps the candidate if it comes after the cursor and is among the nearest so far.
-void offer_candidate(CandidateData candidate) {
-    if (push.round > 0u && !is_after(candidate, cursor.entry, cursor.instance, cursor.tree)) return;
-    if (slot_count == kSlots && !is_after(slots[kSlots - 1u], candidate.entry, candidate.instance, candidate.tree))
-        return;
+bool is_slot_after(uint place, CursorData mark) {
+    return is_after(slot_entry[place], slot_instance[place], slot_tree[place], mark);
+}
+
+/// Keeps a tree of this instance if it comes after the cursor and is among the nearest so far.
+void offer_candidate(uint tree, float entry) {
+    if (push.round > 0u && !is_after(entry, instance_index, tree, cursor)) return;
+    CursorData own = CursorData(entry, instance_index, tree);
+    if (slot_count == kSlots && !is_slot_after(kSlots - 1u, own)) return;
     uint place = slot_count < kSlots ? slot_count : kSlots - 1u;
     slot_count = min(slot_count + 1u, kSlots);
-    for (; place > 0u && is_after(slots[place - 1u], candidate.entry, candidate.instance, candidate.tree); --place)
-        slots[place] = slots[place - 1u];
-    slots[place] = candidate;
+    for (; place > 0u && is_slot_after(place - 1u, own); --place) {
+        slot_entry[place] = slot_entry[place - 1u];
+        slot_instance[place] = slot_instance[place - 1u];
+        slot_tree[place] = slot_tree[place - 1u];
+    }
+    slot_entry[place] = entry;
+    slot_instance[place] = instance_index;
+    slot_tree[place] = tree;
 }
 
 /// Levels that this ray sees a patch at, packed.
-uint choose_levels(uint patch_index, float entry) {
-    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.bias);
+uint choose_levels(InstanceData of, uint patch_index, float entry) {
+    uint levels = lower_packed_levels(find_levels(of, patch_index), world.bias);
     if (push.is_ray_lod == 0u) return levels;
-    SurfaceData s = surfaces[instance.surface];
+    SurfaceData s = surfaces[of.surface];
     uvec4 quad = load_quad(s, patch_index);
     float longest = 0.0;
     for (uint k = 0u; k < 4u; ++k) {
         vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - load_position(s, quad[k]);
-        longest = max(longest, length(transform_vector(instance.world_from_object, edge)));
+        longest = max(longest, length(transform_vector(of.world_from_object, edge)));
     }
     return pack_uniform_level(choose_ray_level(longest, entry * length(world.direction), push.pixel_angle,
                                                packed_patch_level(levels)));
@@ -95,16 +108,17 @@ uint find_directory(uint patch_number, uint levels) {
 void request_tiles(uint patch_number, RequestData request) {
     uint bit = hash_directory(patch_number, request.levels) & (kRequestBits - 1u);
     uint mask = 1u << (bit & 31u);
+    is_blocked = true;
     if ((atomicOr(request_bits[bit >> 5u], mask) & mask) != 0u) return;
     uint place = atomicAdd(counters.request_count, 1u);
     if (place < push.request_limit) requests[place] = request;
 }
 
 void enter_patch(uint patch_index, float entry) {
-    uint levels = choose_levels(patch_index, entry);
+    uint levels = choose_levels(instance, patch_index, entry);
     uint patch_number = surfaces[instance.surface].first_quad + patch_index;
     if (packed_patch_level(levels) <= kTreeLevels) {
-        offer_candidate(CandidateData(instance_index, patch_number, patch_index, levels, entry));
+        offer_candidate(patch_number, entry);
         return;
     }
     uint root = find_directory(patch_number, levels);
@@ -113,11 +127,6 @@ void enter_patch(uint patch_index, float entry) {
         return;
     }
     request_tiles(patch_number, RequestData(instance_index, patch_index, levels));
-}
-
-void enter_tile(uint tree, float entry) {
-    TileRecord tile = tile_records[tree - push.patch_count];
-    offer_candidate(CandidateData(instance_index, tree, tile.patch_index, tile.levels, entry));
 }
 
 bool is_before_best(float t, uint patch_index, uint cell) {
@@ -210,7 +219,7 @@ void walk() {
         } else if (kind == kNodePatch)
             enter_patch(first, entry);
         else if (kind == kNodeTile)
-            enter_tile(first, entry);
+            offer_candidate(first, entry);
         else {
             intersect_polygons(first, kind_and_count & ((1u << kNodeKindShift) - 1u));
             if (push.is_any != 0u && best.instance != kNone) return;
@@ -218,9 +227,41 @@ void walk() {
     }
 }
 
+CandidateData make_candidate(uint k) {
+    uint tree = slot_tree[k];
+    if (tree >= push.patch_count) {
+        TileRecord tile = tile_records[tree - push.patch_count];
+        return CandidateData(slot_instance[k], tree, tile.patch_index, tile.levels, slot_entry[k]);
+    }
+    InstanceData of = instances[slot_instance[k]];
+    uint patch_index = tree - surfaces[of.surface].first_quad;
+    return CandidateData(slot_instance[k], tree, patch_index, choose_levels(of, patch_index, slot_entry[k]),
+                         slot_entry[k]);
+}
+
+/// Hands the candidates on; a ray that waits for tiles hands on nothing and comes again.
+void emit_candidates(uint place) {
+    if (is_blocked) slot_count = 0u;
+    uint first_pair;
+    RESERVE(counters.pair_count, slot_count, first_pair)
+    for (uint k = 0u; k < kSlots; ++k) {
+        uint candidate = place * kSlots + k;
+        candidates[candidate].instance = kNone;
+        if (k < slot_count) {
+            candidates[candidate] = make_candidate(k);
+            pairs[first_pair + k] = uvec2(slot_tree[k], candidate);
+        }
+    }
+    if (is_blocked) candidates[place * kSlots].tree = kNone;
+}
+
+bool is_waiting(uint place) {
+    return candidates[place * kSlots].instance == kNone && candidates[place * kSlots].tree == kNone;
+}
+
 void main() {
     uint place = invocation_index();
-    if (place >= push.count) return;
+    if (place >= push.count || (push.is_repeated != 0u && !is_waiting(place))) return;
     uint ray_index = active_rays[push.first + place];
     world = rays[ray_index];
     best = HitData(world.t_max, kNone, kNone, 0.0, 0.0, 0u, 0u);
@@ -236,15 +277,5 @@ void main() {
         hits[ray_index] = result;
     }
     nearest[place] = make_nearest(best.t, 0xffffffffu);
-    uint first_pair;
-    RESERVE(counters.pair_count, slot_count, first_pair)
-    for (uint k = 0u; k < kSlots; ++k) {
-        uint candidate = place * kSlots + k;
-        if (k < slot_count) {
-            candidates[candidate] = slots[k];
-            pairs[first_pair + k] = uvec2(slots[k].tree, candidate);
-        } else {
-            candidates[candidate].instance = kNone;
-        }
-    }
+    emit_candidates(place);
 }
