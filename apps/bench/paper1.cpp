@@ -1,6 +1,7 @@
 #include "bench/paper1.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -107,6 +108,30 @@ Json make_figure1_7(const std::string& name, const std::vector<Variant>& variant
     return scene;
 }
 
+constexpr std::pair<BottomForm, const char*> kBottomForms[] = {{BottomForm::split, "split"},
+                                                               {BottomForm::fused, "fused"}};
+
+/// The direct variants in both forms of the Vulkan engine's bottom level.
+void add_bottom_forms(RenderSettings cached, std::vector<Variant>& variants) {
+    for (const auto& [form, name] : kBottomForms) {
+        cached.bottom = form;
+        variants.push_back({fmt::format("{}, no cache", name), make_uncached(cached), {}, {}});
+        variants.push_back({name, cached, {}, {}});
+    }
+}
+
+/// What the engine refused is left out.
+Json make_bottom_forms(const std::string& name, std::span<const Variant> variants) {
+    Json entry = {{"scene", name}, {"variants", Json::array()}};
+    for (const Variant& variant : variants) {
+        if (variant.runs.empty()) continue;
+        Json measured = {{"name", variant.name}};
+        measured.update(describe_frames(variant.runs));
+        entry["variants"].push_back(std::move(measured));
+    }
+    return entry;
+}
+
 Json make_casts(const std::string& name, const std::vector<Variant>& variants) {
     Json entry = {{"scene", name}, {"variants", Json::array()}};
     for (const Variant& variant : variants)
@@ -154,7 +179,14 @@ class Paper1 {
         std::vector<Variant> variants = {{"direct, no cache", make_uncached(cached), {}, {}},
                                          {"direct", cached, {}, {}},
                                          make_tessellated(options_, cached, peak_bytes)};
+        const size_t figure_variants = variants.size();
+        if (cached.engine == EngineKind::vulkan) add_bottom_forms(cached, variants);
         measure_in_turn(scene, options_.runs, variants, report);
+        if (variants.size() > figure_variants) {
+            const std::span<const Variant> forms = std::span(variants).subspan(figure_variants);
+            result_["bottom_forms"].push_back(make_bottom_forms(name, forms));
+            variants.resize(figure_variants);
+        }
         result_["figure1_7"].push_back(make_figure1_7(name, variants, peak_bytes));
         result_["figure1_9"].push_back(make_casts(name, variants));
         if (name == "bark") measure_depths(scene, cached, report);

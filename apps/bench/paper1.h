@@ -37,7 +37,8 @@ struct ReportFile {
     std::string name, text;
 };
 
-/// paper1.json, paper1.csv and a chart for the table and each figure.
+/// paper1.json, paper1.csv and a chart for the table, each figure and, of the Vulkan engine, the forms of its
+/// bottom level.
 std::vector<ReportFile> make_paper1_files(const nlohmann::ordered_json& result);
 
 } // namespace relief::bench

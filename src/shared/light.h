@@ -45,7 +45,7 @@ FN float sphere_distance(Vec3 center, float radius, Vec3 d) {
 }
 
 /// Shading normal turned just so far that the mirror image of `wo` stays above the geometric surface: no
-/// black pixels at grazing facets. Both normals on the side of `wo`; unit vectors.
+/// black pixels at grazing triangles. Both normals on the side of `wo`; unit vectors.
 FN Vec3 bend_normal(Vec3 shading, Vec3 geometric, Vec3 wo) {
     Vec3 mirrored = shading * (2.0f * dot(wo, shading)) - wo;
     float lowest = min(0.9f * dot(wo, geometric), 0.01f);

@@ -17,11 +17,11 @@ FN Vec3 interpolate_triangle(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
 
 /// Normal of an undisplaced polygon from its vertices' normals, blended, and the cross product of the edges
 /// of the triangle that the point is in.
-FN Vec3 make_plain_normal(Vec3 blended, Vec3 facet) {
+FN Vec3 make_plain_normal(Vec3 blended, Vec3 plane) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     Vec3 normal = make_unit(blended);
-    if (normal == zero) return make_unit(facet);
-    return select(dot(normal, facet) < 0.0f, -normal, normal);
+    if (normal == zero) return make_unit(plane);
+    return select(dot(normal, plane) < 0.0f, -normal, normal);
 }
 
 /// Derivative of what makes up a displaced point, along u or along v.

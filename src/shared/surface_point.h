@@ -12,12 +12,12 @@ struct CellPlace {
 };
 
 /// Barycentric weights of corners 1 and 2 of a micro-triangle.
-struct FacetWeights {
+struct CornerWeights {
     float b, c;
 };
 
 /// Point of a micro-triangle, world space.
-struct Facet {
+struct TrianglePoint {
     Vec3 position;
     Vec3 normal;       ///< unit length, side of the winding; zero for a triangle that has vanished
     float area_per_uv; ///< world area over its share of the patch's (u, v)
@@ -40,26 +40,26 @@ FN CellPlace locate_cell(bool is_triangle, uint side, float u, float v) {
 }
 
 /// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01.
-FN FacetWeights weigh_facet_corners(CellPlace place, float side) {
+FN CornerWeights weigh_corners(CellPlace place, float side) {
     float x = clamp(place.u * side - float(place.i), 0.0f, 1.0f);
     float y = clamp(place.v * side - float(place.j), 0.0f, 1.0f);
-    FacetWeights weights = {place.is_upper ? x : max(x - y, 0.0f), place.is_upper ? max(y - x, 0.0f) : y};
+    CornerWeights weights = {place.is_upper ? x : max(x - y, 0.0f), place.is_upper ? max(y - x, 0.0f) : y};
     return weights;
 }
 
 /// Share of the patch's (u, v) that one micro-triangle has.
-FN float facet_uv_area(bool is_triangle, float side) { return is_triangle ? 1.0f : 0.5f / (side * side); }
+FN float triangle_uv_area(bool is_triangle, float side) { return is_triangle ? 1.0f : 0.5f / (side * side); }
 
-FN Vec3 blend_facet(Vec3 a, Vec3 b, Vec3 c, FacetWeights weights) {
+FN Vec3 blend_corners(Vec3 a, Vec3 b, Vec3 c, CornerWeights weights) {
     return a * (1.0f - weights.b - weights.c) + b * weights.b + c * weights.c;
 }
 
 /// `edge_b`, `edge_c`: from corner 0 to corners 1 and 2, world space; `turn`: -1 where the instance mirrors,
 /// else 1.
-FN Facet make_facet(Vec3 position, Vec3 edge_b, Vec3 edge_c, float turn, float uv_area) {
+FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, float turn, float uv_area) {
     Vec3 area = cross(edge_b, edge_c) * turn;
-    Facet facet = {position, make_unit(area), 0.5f * length(area) / uv_area};
-    return facet;
+    TrianglePoint point = {position, make_unit(area), 0.5f * length(area) / uv_area};
+    return point;
 }
 
 FN float largest_coordinate(Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
@@ -87,11 +87,11 @@ FN Vec2 blend_polygon_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
 }
 
 /// World-space shading normal from that of the surface, `interpolated`, made unit length and put on the side
-/// of the facet.
-FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 facet_normal) {
+/// of `geometric_normal`.
+FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 geometric_normal) {
     Vec3 normal = make_unit(interpolated);
-    if (dot(normal, normal) == 0.0f) normal = facet_normal;
-    return select(dot(normal, facet_normal) < 0.0f, -normal, normal);
+    if (dot(normal, normal) == 0.0f) normal = geometric_normal;
+    return select(dot(normal, geometric_normal) < 0.0f, -normal, normal);
 }
 
 /// Origin for a ray that leaves a point into `direction`: moved off the surface by the point's error, along

@@ -28,9 +28,9 @@ TEST(SurfacePoints, are_the_same_by_way_of_a_cache_of_any_size) {
             const cpu::SurfacePoint point = tracer.make_surface_point(hit, *cache);
             ASSERT_EQ(point.position, expected.position) << k;
             ASSERT_EQ(point.shading_normal, expected.shading_normal) << k;
-            const cpu::SurfacePoint facet = tracer.evaluate_point(0, hit.patch, {hit.u, hit.v}, 0, *cache);
-            ASSERT_EQ(facet.position, expected.position) << k;
-            ASSERT_EQ(facet.geometric_normal, expected.geometric_normal) << k;
+            const cpu::SurfacePoint found = tracer.evaluate_point(0, hit.patch, {hit.u, hit.v}, 0, *cache);
+            ASSERT_EQ(found.position, expected.position) << k;
+            ASSERT_EQ(found.geometric_normal, expected.geometric_normal) << k;
         }
     }
 }

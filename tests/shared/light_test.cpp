@@ -45,7 +45,7 @@ TEST(SphereLight, is_hit_by_every_direction_of_its_cone_and_no_other) {
     EXPECT_NEAR(scalar::sphere_cone_height(1, 1e6f), 5e-13, 1e-15);
 }
 
-TEST(BendNormal, keeps_the_mirror_image_above_the_facet) {
+TEST(BendNormal, keeps_the_mirror_image_above_the_surface) {
     Random random(2);
     const Vec3f geometric{0, 0, 1};
     for (int k = 0; k < 20000; ++k) {

@@ -85,28 +85,28 @@ const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit
     return surface.has_displacement ? &patches.get(surface, hit.patch) : nullptr;
 }
 
-/// Position, facet and area; `samples` is null on a surface without displacement.
-SurfacePoint make_facet_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
+/// Position, geometric normal and area; `samples` is null on a surface without displacement.
+SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
     const PatchLevels levels = unpack_levels(hit.levels);
     const Corners corners = make_corners(surface, samples, levels, hit);
     const auto& [a, b, c] = corners;
     const float side = float(1u << levels.patch);
-    const scalar::FacetWeights weights =
-        scalar::weigh_facet_corners({hit.u, hit.v, hit.i, hit.j, hit.is_upper != 0}, side);
+    const scalar::CornerWeights weights =
+        scalar::weigh_corners({hit.u, hit.v, hit.i, hit.j, hit.is_upper != 0}, side);
 
     SurfacePoint point;
     point.instance = hit.instance, point.patch = hit.patch;
     const Affine& world_from_object = instance.world_from_object;
-    const scalar::Facet facet =
-        scalar::make_facet(transform_point(world_from_object, scalar::blend_facet(a, b, c, weights)),
-                           transform_vector(world_from_object, b - a),
-                           transform_vector(world_from_object, c - a), instance.is_mirrored ? -1.0f : 1.0f,
-                           scalar::facet_uv_area(surface.quads[hit.patch].is_triangle(), side));
-    point.position = facet.position;
-    point.geometric_normal = facet.normal;
-    point.area_per_uv = facet.area_per_uv;
+    const scalar::TrianglePoint triangle = scalar::make_triangle_point(
+        transform_point(world_from_object, scalar::blend_corners(a, b, c, weights)),
+        transform_vector(world_from_object, b - a), transform_vector(world_from_object, c - a),
+        instance.is_mirrored ? -1.0f : 1.0f,
+        scalar::triangle_uv_area(surface.quads[hit.patch].is_triangle(), side));
+    point.position = triangle.position;
+    point.geometric_normal = triangle.normal;
+    point.area_per_uv = triangle.area_per_uv;
     point.position_error = bound_position_error(world_from_object, corners, point.position);
     return point;
 }
@@ -116,7 +116,7 @@ SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const P
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
     const int level = unpack_levels(hit.levels).patch;
-    SurfacePoint point = make_facet_point(scene, hit, samples);
+    SurfacePoint point = make_cell_point(scene, hit, samples);
     const Vec3f smooth = samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
                                  : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
     point.shading_normal = scalar::orient_shading_normal(transform_normal(instance.object_from_world, smooth),
@@ -226,13 +226,13 @@ SurfacePoint Tracer::make_surface_point(const TraceHit& hit, PatchSamplesCache& 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
     const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
     const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
-    return make_facet_point(*scene_, hit, samples ? &*samples : nullptr);
+    return make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
                                     PatchSamplesCache& patches) const {
     const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
-    return make_facet_point(*scene_, hit, find_samples(*scene_, hit, patches));
+    return make_cell_point(*scene_, hit, find_samples(*scene_, hit, patches));
 }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {

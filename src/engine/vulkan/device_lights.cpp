@@ -13,10 +13,10 @@ namespace {
 
 /// `values` as a buffer that kernels read.
 template <class T>
-Buffer make_table(const Device& device, const char* name, TexelFormat format, const std::vector<T>& values) {
-    Buffer buffer(
-        device,
-        {.name = name, .bytes = values.size() * sizeof(T), .purpose = Purpose::geometry, .format = format});
+Buffer make_table(const Device& device, const char* name, TexelFormat format, const std::vector<T>& values,
+                  Purpose purpose = Purpose::geometry) {
+    Buffer buffer(device,
+                  {.name = name, .bytes = values.size() * sizeof(T), .purpose = purpose, .format = format});
     if (!values.empty()) buffer.upload(values);
     return buffer;
 }
@@ -54,7 +54,9 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     }
     std::vector<float> cumulative = std::move(distribution.rows);
     cumulative.insert(cumulative.end(), distribution.columns.begin(), distribution.columns.end());
-    environment_ = make_table(device, "environment", TexelFormat::r32_float, cumulative);
+    // As large as the image that it is of, and counted with it: no geometry.
+    environment_ =
+        make_table(device, "environment", TexelFormat::r32_float, cumulative, Purpose::displacement);
 
     const EmitterTable emitters = make_emitter_table(scene);
     description_.emitter_count = emitters.size();

@@ -25,7 +25,7 @@ RayHit make_ray_hit(const scalar::HitData& found, const scalar::SurfacePointData
 RayBatch::RayBatch(Tracer& tracer)
     : tracer_(tracer),
       capacity_(tracer.config().ray_capacity),
-      facet_normal_(tracer.device(), {.shader = "facet_normal", .constants = {kGroupSize}}),
+      geometric_normal_(tracer.device(), {.shader = "geometric_normal", .constants = {kGroupSize}}),
       list_(tracer.device(), {.name = "ray list", .bytes = uint64_t(capacity_) * sizeof(uint32_t)}),
       points_(tracer.device(),
               {.name = "points of rays", .bytes = uint64_t(capacity_) * sizeof(scalar::SurfacePointData)}) {
@@ -49,7 +49,7 @@ void RayBatch::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) {
         tracer_.closest_hits(list_, count);
         Commands& commands = tracer_.commands();
         commands.begin_stage(Stage::shade);
-        commands.dispatch(facet_normal_, count, count);
+        commands.dispatch(geometric_normal_, count, count);
         commands.run();
         const auto found = tracer_.hits().download<scalar::HitData>(count);
         const auto points = points_.download<scalar::SurfacePointData>(count);

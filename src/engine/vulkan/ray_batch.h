@@ -24,7 +24,7 @@ class RayBatch {
 
     Tracer& tracer_;
     uint32_t capacity_;
-    Kernel facet_normal_;
+    Kernel geometric_normal_;
     Buffer list_, points_;
 };
 

@@ -11,10 +11,10 @@ layout(scalar, push_constant) uniform Push { PathPush push; };
 RayData start_bounce_ray(HitData hit, SurfacePointData point, uint bias, vec3 direction, bool is_wide) {
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
     if (is_wide && push.has_auto_levels != 0u && bias < kLargestBias) {
-        FacetPoint coarse = evaluate_point(instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v), bias + 1u);
-        float side = dot(coarse.facet.normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
+        CellPoint coarse = evaluate_point(instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v), bias + 1u);
+        float side = dot(coarse.triangle.normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
         if (side > 0.0) {
-            origin = offset_origin(coarse.facet.position, coarse.facet.normal, coarse.position_error, direction);
+            origin = offset_origin(coarse.triangle.position, coarse.triangle.normal, coarse.position_error, direction);
             bias += 1u;
         }
     }

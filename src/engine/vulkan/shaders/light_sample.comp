@@ -33,12 +33,13 @@ DrawnLight draw_from_emitters(vec3 position, uint bias, float u_emitter, vec2 u)
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
     bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
-    FacetPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, bias);
-    vec3 to = point.facet.position - position;
-    float pdf = emitter_density(load_emitter_probability(emitter), point.facet.area_per_uv, point.facet.normal, to);
+    CellPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, bias);
+    vec3 to = point.triangle.position - position;
+    float pdf =
+        emitter_density(load_emitter_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
     DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0)};
     result.end =
-        offset_origin(point.facet.position, point.facet.normal, point.position_error, -result.light.direction);
+        offset_origin(point.triangle.position, point.triangle.normal, point.position_error, -result.light.direction);
     return result;
 }
 

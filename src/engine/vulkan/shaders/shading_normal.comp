@@ -39,14 +39,14 @@ void apply_material(MaterialData material, inout Appearance appearance) {
     appearance.roughness = clamp(material.roughness * roughness, 0.0, 1.0);
 }
 
-Appearance find_appearance(HitData hit, vec3 facet_normal, bool is_flipped) {
+Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
     InstanceData instance = instances[hit.instance];
     SurfaceData s = surfaces[instance.surface];
     PatchCorners corners = load_corners(s, hit.patch_index);
     vec2 at = vec2(hit.u, hit.v);
     uint level = packed_patch_level(hit.levels);
     vec3 interpolated = compute_shading_normal(s, corners, hit.patch_index, level, at);
-    vec3 normal = orient_shading_normal(transform_normal(instance.object_from_world, interpolated), facet_normal);
+    vec3 normal = orient_shading_normal(transform_normal(instance.object_from_world, interpolated), geometric_normal);
     Appearance appearance;
     appearance.shading_normal = is_flipped ? -normal : normal;
     appearance.uv = interpolate_uv(s, corners, at);

@@ -11,12 +11,12 @@ void make_point(uint path_index, HitData hit) {
     InstanceData instance = instances[hit.instance];
     PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    FacetPoint found = evaluate_facet(instance, corners, hit.patch_index, hit.levels, place);
-    bool is_flipped = dot(found.facet.normal, rays[path_index].direction) > 0.0;
-    points[path_index].position = found.facet.position;
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    bool is_flipped = dot(found.triangle.normal, rays[path_index].direction) > 0.0;
+    points[path_index].position = found.triangle.position;
     points[path_index].position_error = found.position_error;
-    points[path_index].geometric_normal = is_flipped ? -found.facet.normal : found.facet.normal;
-    points[path_index].area_per_uv = found.facet.area_per_uv;
+    points[path_index].geometric_normal = is_flipped ? -found.triangle.normal : found.triangle.normal;
+    points[path_index].area_per_uv = found.triangle.area_per_uv;
     points[path_index].is_flipped = is_flipped ? 1u : 0u;
 }
 

@@ -9,8 +9,8 @@
 #include "shared/device_rays.h"
 
 /// Micro-triangle of a patch at packed levels, and the point on it.
-struct FacetPoint {
-    Facet facet;
+struct CellPoint {
+    TrianglePoint triangle;
     float position_error;
 };
 
@@ -21,8 +21,8 @@ float bound_error(AffineData world_from_object, vec3 a, vec3 b, vec3 c, vec3 pos
     return bound_position_error(corner, row, largest_coordinate(world_from_object.t), largest_coordinate(position));
 }
 
-FacetPoint evaluate_facet(InstanceData instance, PatchCorners corners, uint patch_index, uint packed_levels,
-                          CellPlace place) {
+CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_index, uint packed_levels,
+                        CellPlace place) {
     SurfaceData s = surfaces[instance.surface];
     vec3 corner[3];
     // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper one. A loop keeps one copy of the evaluation.
@@ -38,22 +38,23 @@ FacetPoint evaluate_facet(InstanceData instance, PatchCorners corners, uint patc
     }
     float side = float(1u << packed_patch_level(packed_levels));
     AffineData m = instance.world_from_object;
-    vec3 local = blend_facet(corner[0], corner[1], corner[2], weigh_facet_corners(place, side));
-    FacetPoint point;
-    point.facet = make_facet(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
-                             transform_vector(m, corner[2] - corner[0]), instance.is_mirrored != 0u ? -1.0 : 1.0,
-                             facet_uv_area(is_triangle(corners.quad), side));
-    point.position_error = bound_error(m, corner[0], corner[1], corner[2], point.facet.position);
+    vec3 local = blend_corners(corner[0], corner[1], corner[2], weigh_corners(place, side));
+    CellPoint point;
+    point.triangle =
+        make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
+                            transform_vector(m, corner[2] - corner[0]), instance.is_mirrored != 0u ? -1.0 : 1.0,
+                            triangle_uv_area(is_triangle(corners.quad), side));
+    point.position_error = bound_error(m, corner[0], corner[1], corner[2], point.triangle.position);
     return point;
 }
 
 /// Point (u, v) of a patch on surface M_bias.
-FacetPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint bias) {
+CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint bias) {
     uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), bias);
     PatchCorners corners = load_corners(surfaces[instance.surface], patch_index);
     uint side = 1u << packed_patch_level(packed_levels);
     CellPlace place = locate_cell(is_triangle(corners.quad), side, uv.x, uv.y);
-    return evaluate_facet(instance, corners, patch_index, packed_levels, place);
+    return evaluate_cell(instance, corners, patch_index, packed_levels, place);
 }
 
 #endif

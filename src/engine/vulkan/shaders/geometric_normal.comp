@@ -15,5 +15,6 @@ void main() {
     InstanceData instance = instances[hit.instance];
     PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    points[index].geometric_normal = evaluate_facet(instance, corners, hit.patch_index, hit.levels, place).facet.normal;
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    points[index].geometric_normal = found.triangle.normal;
 }
