@@ -33,6 +33,13 @@ FN uint find_sample_edge(uint i, uint j, uint level) {
     return j == 0u ? 0u : i == n ? 1u : j == n ? 2u : 3u;
 }
 
+/// Number of sample (i, j) of edge `edge`, counted from the start of its line.
+FN uint find_line_sample(uint i, uint j, uint level, uint edge, bool is_reversed) {
+    uint n = 1u << level;
+    uint k = edge == 0u ? i : edge == 1u ? j : edge == 2u ? n - i : n - j;
+    return is_reversed ? n - k : k;
+}
+
 struct GridSample {
     uint i, j;
 };
@@ -41,10 +48,8 @@ struct GridSample {
 /// `reversed` has a bit for each edge whose line runs against the patch's own direction.
 FN GridSample move_boundary_sample(uint i, uint j, uint level, uint edge, uint shift, uint reversed) {
     uint n = 1u << level;
-    uint k = edge == 0u ? i : edge == 1u ? j : edge == 2u ? n - i : n - j;
     bool is_reversed = ((reversed >> edge) & 1u) != 0u;
-    if (is_reversed) k = n - k;
-    k = move_line_sample(k, shift);
+    uint k = move_line_sample(find_line_sample(i, j, level, edge, is_reversed), shift);
     if (is_reversed) k = n - k;
     GridSample result = {i, j};
     if (edge == 0u) result.i = k;

@@ -152,10 +152,9 @@ Vec3f evaluate_vertex(const PatchSamples& samples, const PatchLevels& levels, ui
     if (!is_on_u_edge && !is_on_v_edge) return samples.interior(float(i) * step, float(j) * step);
     if (is_on_u_edge && is_on_v_edge) return samples.corner(j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2));
 
-    const int edge = j == 0 ? 0 : i == n ? 1 : j == n ? 2 : 3;
-    uint32_t k = edge == 0 ? i : edge == 1 ? j : edge == 2 ? n - i : n - j;
-    if (samples.is_line_reversed(edge)) k = n - k;
-    k = move_edge_sample(k, levels.patch, levels.edge[edge]);
+    const int edge = int(scalar::find_sample_edge(i, j, levels.patch));
+    uint32_t k = scalar::find_line_sample(i, j, levels.patch, uint32_t(edge), samples.is_line_reversed(edge));
+    k = move_edge_sample(k, levels.patch, levels.edge[size_t(edge)]);
     if (k == 0) return samples.corner(samples.line_start(edge));
     if (k == n) return samples.corner(samples.line_end(edge));
     return samples.edge(edge, float(k) * step);

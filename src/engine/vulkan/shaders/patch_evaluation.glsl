@@ -182,9 +182,8 @@ LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint pack
     uint n = 1u << level;
     uint edge = i_j_edge.z;
     EdgeLine line = find_edge_line(s, quad, patch_index, edge);
-    uint k = edge == 0u ? i_j_edge.x : edge == 1u ? i_j_edge.y : edge == 2u ? n - i_j_edge.x : n - i_j_edge.y;
-    if (line.is_reversed) k = n - k;
-    k = move_line_sample(k, level - packed_edge_level(packed_levels, edge));
+    uint k = move_line_sample(find_line_sample(i_j_edge.x, i_j_edge.y, level, edge, line.is_reversed),
+                              level - packed_edge_level(packed_levels, edge));
     if (k == 0u || k == n) return find_corner(s, quad, (k == 0u) == line.is_reversed ? (edge + 1u) & 3u : edge);
     return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)));
 }
