@@ -64,10 +64,14 @@ FN uint hash_directory(uint patch_number, uint levels) {
     return hash_combine(hash_uint(patch_number), levels);
 }
 
+/// Patches that a ray may offer in one round.
+const uint kMostSlots = 8u;
+
 /// What the kernels of a cast are told.
 struct CastPush {
     uint first, count;   ///< part of the active rays that is worked on
     uint round;          ///< 0: rays start afresh
+    uint slots;          ///< nearest patches that a ray offers, at most kMostSlots
     uint is_any;         ///< anything in the way ends the ray
     uint is_repeated;    ///< only rays that wait for tiles
     uint wave;           ///< number of this wave of jobs

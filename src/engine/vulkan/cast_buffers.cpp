@@ -18,14 +18,15 @@ template <class T> Buffer make_array(const Device& device, const char* name, uin
 CastBuffers::CastBuffers(const Device& device, const TracerConfig& config, uint64_t histogram_words)
     : pair_capacity_(config.pair_capacity) {
     const uint64_t chunk = config.pair_capacity / config.slots;
+    const uint64_t places = std::max(config.pair_capacity, scalar::kMostSlots);
     rays = make_array<scalar::RayData>(device, "rays", config.ray_capacity);
     hits = make_array<scalar::HitData>(device, "hits", config.ray_capacity);
     active = make_array<uint32_t>(device, "active rays", config.ray_capacity);
     next_active = make_array<uint32_t>(device, "next active rays", config.ray_capacity);
     cursors = make_array<scalar::CursorData>(device, "cursors", config.ray_capacity);
-    candidates = make_array<scalar::CandidateData>(device, "candidates", chunk * config.slots);
-    pairs = make_array<uint64_t>(device, "pairs", config.pair_capacity);
-    sorted_pairs = make_array<uint64_t>(device, "sorted pairs", config.pair_capacity);
+    candidates = make_array<scalar::CandidateData>(device, "candidates", places);
+    pairs = make_array<uint64_t>(device, "pairs", places);
+    sorted_pairs = make_array<uint64_t>(device, "sorted pairs", places);
     histogram = make_array<uint32_t>(device, "histogram",
                                      std::max<uint64_t>(histogram_words, scalar::kRequestBits / 32));
     nearest = make_array<uint64_t>(device, "nearest", chunk);

@@ -29,11 +29,11 @@ CastKernels::CastKernels(const Device& device, const RenderSettings& settings, c
     const uint32_t is_box = settings.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.bottom == BottomForm::fused;
-    scene_traversal = Kernel(device, {"scene_traversal", {kGroup, config.slots, stack_size}});
+    scene_traversal = Kernel(device, {"scene_traversal", {kGroup, stack_size}});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
-    commit_round = Kernel(device, {"commit_round", {kGroup, config.slots}});
+    commit_round = Kernel(device, {"commit_round", {kGroup}});
     finish_hits = Kernel(device, {"finish_hits", {kGroup, is_box}});
 
     constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
@@ -45,7 +45,7 @@ CastKernels::CastKernels(const Device& device, const RenderSettings& settings, c
         arguments_push.builds_per_group[bin] = build_group / lanes[bin];
     }
     if (!is_fused) {
-        patch_traversal = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, config.slots, is_box, 0}});
+        patch_traversal = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, 0}});
         return;
     }
     const uint32_t most_pairs = is_cpu ? kGroup * kSafePairsPerLane : kAll;
@@ -54,11 +54,11 @@ CastKernels::CastKernels(const Device& device, const RenderSettings& settings, c
                         : is_cpu                     ? kAll
                                                      : device.resident_group_count() * 256 / kGroup;
     bottom_fused = Kernel(device, {"bottom_fused",
-                                   {kGroup, kGroup, scalar::kTreeLevels, 0, config.slots, is_box, most_pairs,
+                                   {kGroup, kGroup, scalar::kTreeLevels, 0, is_box, most_pairs,
                                     fused_jobs_per_group}});
     has_leftover = most_pairs != kAll;
     if (has_leftover)
-        leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, config.slots, is_box, most_pairs}});
+        leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, most_pairs}});
 }
 
 } // namespace relief::vulkan

@@ -136,7 +136,9 @@ CastStatistics Tracer::Implementation::cast(const Buffer& list, uint32_t count) 
 
 /// One round of all active rays; returns how many stay active.
 uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
-    const uint32_t chunk = config.pair_capacity / config.slots;
+    // Few rays need a second round, and some of them many: those offer more at a time.
+    push.slots = push.round == 0 ? config.slots : std::min(2 * config.slots, scalar::kMostSlots);
+    const uint32_t chunk = std::max(1u, config.pair_capacity / push.slots);
     clear(offsetof(CounterData, next_active_count), sizeof(uint32_t));
     for (push.first = 0; push.first < active_count; push.first += chunk) {
         push.count = std::min(chunk, active_count - push.first);
@@ -178,7 +180,7 @@ bool Tracer::Implementation::build_directories() {
 void Tracer::Implementation::sort_pairs() {
     commands.begin_stage(Stage::sort);
     clear(offsetof(CounterData, job_count), sizeof(uint32_t));
-    const uint64_t most_pairs = uint64_t(push.count) * config.slots;
+    const uint64_t most_pairs = uint64_t(push.count) * push.slots;
     sort.record(commands, most_pairs, uint32_t(std::bit_width(tree_count())), kPairCountWord);
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
     commands.dispatch_indirect(kernels.find_jobs, buffers.arguments, 16 * scalar::kArgumentsPairs, push);

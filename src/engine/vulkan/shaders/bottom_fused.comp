@@ -6,8 +6,8 @@
 #include "engine/vulkan/shaders/bottom_build.glsl"
 #include "engine/vulkan/shaders/patch_traversal.glsl"
 
-layout(constant_id = 6) const uint kMostPairs = 0xffffffffu; ///< that a group traces of one tree
-layout(constant_id = 7) const uint kMostJobs = 0xffffffffu;  ///< that a group takes
+layout(constant_id = 5) const uint kMostPairs = 0xffffffffu; ///< that a group traces of one tree
+layout(constant_id = 6) const uint kMostJobs = 0xffffffffu;  ///< that a group takes
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 

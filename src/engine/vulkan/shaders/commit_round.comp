@@ -6,24 +6,22 @@
 #include "engine/vulkan/shaders/rays.glsl"
 #include "shared/bottom_tree.h"
 
-layout(constant_id = 1) const uint kSlots = 4;
-
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
 /// The candidate of rank `rank` by (instance, patch).
 CandidateData find_ranked(uint place, uint rank) {
-    for (uint k = 0u; k < kSlots; ++k) {
-        CandidateData candidate = candidates[place * kSlots + k];
+    for (uint k = 0u; k < push.slots; ++k) {
+        CandidateData candidate = candidates[place * push.slots + k];
         uint before = 0u;
-        for (uint other = 0u; other < kSlots; ++other) {
-            CandidateData o = candidates[place * kSlots + other];
+        for (uint other = 0u; other < push.slots; ++other) {
+            CandidateData o = candidates[place * push.slots + other];
             if (o.instance != kNone && (o.instance < candidate.instance ||
                                         (o.instance == candidate.instance && o.patch_index < candidate.patch_index)))
                 ++before;
         }
         if (candidate.instance != kNone && before == rank) return candidate;
     }
-    return candidates[place * kSlots];
+    return candidates[place * push.slots];
 }
 
 /// Ties go to the lower instance, then the lower patch, then the lower cell.
@@ -53,7 +51,7 @@ void main() {
     if (place >= push.count || counters.deferred_count > 0u) return;
     uint ray_index = active_rays[push.first + place];
     take_hit(ray_index, place);
-    CandidateData last = candidates[place * kSlots + kSlots - 1u];
+    CandidateData last = candidates[place * push.slots + push.slots - 1u];
     if (last.instance == kNone) return; // all patches were offered
     HitData best = hits[ray_index];
     if (best.instance != kNone && (push.is_any != 0u || last.entry > best.t * kBoxSlack)) return;

@@ -5,7 +5,7 @@
 #include "engine/vulkan/shaders/kernel.glsl"
 #include "engine/vulkan/shaders/patch_traversal.glsl"
 
-layout(constant_id = 6) const uint kFirstPair = 0; ///< of each tree: those before are traced already
+layout(constant_id = 5) const uint kFirstPair = 0; ///< of each tree: those before are traced already
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 

@@ -12,8 +12,7 @@
 layout(scalar, set = 0, binding = kBindPool) readonly buffer Pool { uint pool[]; };
 #endif
 
-layout(constant_id = 4) const uint kSlots = 4;      ///< patches that a ray offers in a round
-layout(constant_id = 5) const uint kIsBoxLeaf = 0; ///< a micro-quad is hit where the ray enters its box
+layout(constant_id = 4) const uint kIsBoxLeaf = 0; ///< a micro-quad is hit where the ray enters its box
 
 /// A tree with a ray inside.
 struct PatchVisit {
@@ -124,11 +123,11 @@ void walk_tree(inout PatchVisit visit, bool is_any) {
 }
 
 /// Rank among the patches that the ray offers in this round: by (instance, patch), tiles of one patch alike.
-uint find_slot_rank(uint candidate_index) {
+uint find_slot_rank(uint candidate_index, uint slots) {
     CandidateData own = candidates[candidate_index];
-    uint first = candidate_index / kSlots * kSlots;
+    uint first = candidate_index / slots * slots;
     uint rank = 0u;
-    for (uint k = first; k < first + kSlots; ++k) {
+    for (uint k = first; k < first + slots; ++k) {
         uint instance = candidates[k].instance;
         if (instance != kNone && (instance < own.instance ||
                                   (instance == own.instance && candidates[k].patch_index < own.patch_index)))
@@ -166,7 +165,7 @@ PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint pa
 
 /// Traces one pair, whose tree is in the pool.
 void trace_pair(uvec2 pair, CastPush push) {
-    uint place = pair.y / kSlots;
+    uint place = pair.y / push.slots;
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];
     COUNT(counters.pairs_done)
@@ -178,7 +177,7 @@ void trace_pair(uvec2 pair, CastPush push) {
     if (!visit.has_hit) return;
     COUNT(counters.pairs_with_hit)
     uint64_t found = push.is_any != 0u ? uint64_t(0)
-                                       : make_nearest(visit.t, find_slot_rank(pair.y) << kCellBits | visit.cell);
+                                       : make_nearest(visit.t, find_slot_rank(pair.y, push.slots) << kCellBits | visit.cell);
     atomicMin(nearest[place], found);
 }
 

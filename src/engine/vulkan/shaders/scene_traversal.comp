@@ -8,9 +8,7 @@
 #include "shared/bottom_tree.h"
 #include "shared/lod.h"
 
-layout(constant_id = 1) const uint kSlots = 4;
-layout(constant_id = 2) const uint kStackSize = 128;
-const uint kMostSlots = 8u;
+layout(constant_id = 1) const uint kStackSize = 128;
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 layout(set = 0, binding = kBindNodes) uniform usamplerBuffer nodes;
@@ -46,7 +44,7 @@ void push_node(uint node, float entry) {
 
 /// Distance beyond which nothing matters to this round.
 float find_limit() {
-    float limit = slot_count == kSlots ? min(best.t, slot_entry[kSlots - 1u]) : best.t;
+    float limit = slot_count == push.slots ? min(best.t, slot_entry[push.slots - 1u]) : best.t;
     return limit * kBoxSlack;
 }
 
@@ -64,9 +62,9 @@ bool is_slot_after(uint place, CursorData mark) {
 void offer_candidate(uint tree, float entry) {
     if (push.round > 0u && !is_after(entry, instance_index, tree, cursor)) return;
     CursorData own = CursorData(entry, instance_index, tree);
-    if (slot_count == kSlots && !is_slot_after(kSlots - 1u, own)) return;
-    uint place = slot_count < kSlots ? slot_count : kSlots - 1u;
-    slot_count = min(slot_count + 1u, kSlots);
+    if (slot_count == push.slots && !is_slot_after(push.slots - 1u, own)) return;
+    uint place = slot_count < push.slots ? slot_count : push.slots - 1u;
+    slot_count = min(slot_count + 1u, push.slots);
     for (; place > 0u && is_slot_after(place - 1u, own); --place) {
         slot_entry[place] = slot_entry[place - 1u];
         slot_instance[place] = slot_instance[place - 1u];
@@ -244,19 +242,19 @@ void emit_candidates(uint place) {
     if (is_blocked) slot_count = 0u;
     uint first_pair;
     RESERVE(counters.pair_count, slot_count, first_pair)
-    for (uint k = 0u; k < kSlots; ++k) {
-        uint candidate = place * kSlots + k;
+    for (uint k = 0u; k < push.slots; ++k) {
+        uint candidate = place * push.slots + k;
         candidates[candidate].instance = kNone;
         if (k < slot_count) {
             candidates[candidate] = make_candidate(k);
             pairs[first_pair + k] = uvec2(slot_tree[k], candidate);
         }
     }
-    if (is_blocked) candidates[place * kSlots].tree = kNone;
+    if (is_blocked) candidates[place * push.slots].tree = kNone;
 }
 
 bool is_waiting(uint place) {
-    return candidates[place * kSlots].instance == kNone && candidates[place * kSlots].tree == kNone;
+    return candidates[place * push.slots].instance == kNone && candidates[place * push.slots].tree == kNone;
 }
 
 void main() {
