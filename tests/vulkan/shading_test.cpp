@@ -52,12 +52,13 @@ class ShadingKernels : public GpuTest {
 };
 
 TEST_F(ShadingKernels, start_the_camera_rays_of_a_window) {
-    scalar::CameraPush push{make_camera_frame(*bench().prepared), 7, 3, 19, 5, 512, 9, 4};
+    scalar::CameraPush push{make_camera_frame(*bench().prepared), 7, 3, 19, 40, 5, 512, 9, 4};
     bench().run("camera", push);
     const auto rays = bench().rays.download<scalar::RayData>(push.count);
     const auto paths = bench().paths.download<scalar::PathData>(push.count);
     for (uint32_t k = 0; k < push.count; ++k) {
-        const uint32_t x = 7 + (5 + k) % 19, y = 3 + (5 + k) / 19;
+        const scalar::PixelPlace place = scalar::place_pixel(5 + k, 19, 40);
+        const uint32_t x = 7 + place.x, y = 3 + place.y;
         const uint32_t seed = scalar::make_pixel_seed(4, x, y);
         ASSERT_EQ(paths[k].pixel_seed, seed);
         const scalar::CameraRay ray =

@@ -53,12 +53,11 @@ CastKernels::CastKernels(const Device& device, const RenderSettings& settings, c
     fused_group_count = config.fused_group_count > 0 ? config.fused_group_count
                         : is_cpu                     ? kAll
                                                      : device.resident_group_count() * 256 / kGroup;
-    bottom_fused = Kernel(device, {"bottom_fused",
-                                   {kGroup, kGroup, scalar::kTreeLevels, 0, is_box, most_pairs,
-                                    fused_jobs_per_group}});
+    bottom_fused =
+        Kernel(device, {"bottom_fused",
+                        {kGroup, kGroup, scalar::kTreeLevels, 0, is_box, most_pairs, fused_jobs_per_group}});
     has_leftover = most_pairs != kAll;
-    if (has_leftover)
-        leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, most_pairs}});
+    if (has_leftover) leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, most_pairs}});
 }
 
 } // namespace relief::vulkan

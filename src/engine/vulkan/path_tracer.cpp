@@ -109,6 +109,7 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
                                     uint32_t(window.x0),
                                     uint32_t(window.y0),
                                     uint32_t(window.x1 - window.x0),
+                                    uint32_t(window.y1 - window.y0),
                                     uint32_t(pixels.first),
                                     uint32_t(pixels.count),
                                     sample_index,
@@ -160,11 +161,10 @@ void PathTracer::add_to_film(Film& film, PixelRange pixels, int sample_count) co
     const std::vector<scalar::FilmSumsData> sums =
         film_sums_.download<scalar::FilmSumsData>(size_t(pixels.count));
     const Window& window = film.window();
-    const uint64_t width = uint64_t(window.x1 - window.x0);
+    const uint32_t width = uint32_t(window.x1 - window.x0), height = uint32_t(window.y1 - window.y0);
     for (size_t k = 0; k < sums.size(); ++k) {
-        const uint64_t pixel = pixels.first + k;
-        film.add_sums(window.x0 + int(pixel % width), window.y0 + int(pixel / width),
-                      make_sums(sums[k], sample_count));
+        const scalar::PixelPlace pixel = scalar::place_pixel(uint32_t(pixels.first + k), width, height);
+        film.add_sums(window.x0 + int(pixel.x), window.y0 + int(pixel.y), make_sums(sums[k], sample_count));
     }
 }
 

@@ -12,7 +12,7 @@
 
 namespace relief::vulkan {
 
-/// Pixels [first, first + count) of the film's window, row by row.
+/// Pixels [first, first + count) of the film's window, in the order of scalar::place_pixel.
 struct PixelRange {
     uint64_t first = 0, count = 0;
 };

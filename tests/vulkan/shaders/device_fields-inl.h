@@ -42,7 +42,7 @@ struct AllStructs {
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
     FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count)
 #define FIELDS_TEXTURE(s) \
-    FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
+    FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture)
@@ -94,7 +94,7 @@ struct AllStructs {
 #define FIELDS_CAMERA_PUSH(s) \
     FIELD3(s.camera.origin) FIELD3(s.camera.right) FIELD3(s.camera.up) FIELD3(s.camera.forward) \
     FIELD3(s.camera.corner) FIELD3(s.camera.step_x) FIELD3(s.camera.step_y) \
-    FIELD(s.camera.aperture_radius) FIELD(s.camera.focus_distance) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) \
+    FIELD(s.camera.aperture_radius) FIELD(s.camera.focus_distance) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) FIELD(s.height) \
     FIELD(s.first_pixel) FIELD(s.count) FIELD(s.sample_index) FIELD(s.seed)
 #define FIELDS_PATH_PUSH(s) \
     FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.sample_index) \

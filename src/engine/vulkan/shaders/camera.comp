@@ -9,9 +9,9 @@ layout(scalar, push_constant) uniform Push { CameraPush push; };
 void main() {
     uint index = invocation_index();
     if (index >= push.count) return;
-    uint pixel = push.first_pixel + index;
-    uint x = push.x0 + pixel % push.width;
-    uint y = push.y0 + pixel / push.width;
+    PixelPlace pixel = place_pixel(push.first_pixel + index, push.width, push.height);
+    uint x = push.x0 + pixel.x;
+    uint y = push.y0 + pixel.y;
     PathData path;
     path.throughput = vec3(1.0);
     path.bsdf_pdf = 0.0;
