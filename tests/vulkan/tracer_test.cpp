@@ -1,12 +1,8 @@
 // Casts on the device against the CPU engine, ray for ray: levels, biases, spaces, leaves, forms of the
 // bottom level, with and without cache, cut into chunks, rounds and waves as small as they go.
-#include <cmath>
 #include <ostream>
-#include <random>
 
 #include "cast_fixture.h"
-#include "math/affine.h"
-#include "support/bodies.h"
 
 namespace relief::vulkan::tests {
 
@@ -24,57 +20,6 @@ struct Case {
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
-
-std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<float> normal;
-    std::vector<cpu::TraceRay> rays;
-    for (uint32_t k = 0; k < count; ++k) {
-        cpu::TraceRay ray;
-        ray.origin =
-            normalize(Vec3f{normal(random), normal(random), normal(random)}) * (k % 3 == 0 ? 0.3f : 4.0f);
-        ray.direction = Vec3f{normal(random), normal(random), normal(random)} * 0.7f - ray.origin;
-        if (k % 7 == 0) ray.direction.x = 0;
-        if (k % 5 == 0) ray.t_max = 0.9f;
-        ray.bias = k % 4;
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
-/// A displaced sphere, its mirrored instance, and a plain one.
-Scene make_scene(DisplacementSpace space) {
-    Scene scene = test::make_body_scene(
-        test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), space));
-    Object second = scene.objects[0];
-    second.world_from_object = compose(make_translation({1.4f, 0.2f, 0}), make_scale({-0.5f, 0.7f, 0.6f}));
-    Object plain = scene.objects[0];
-    plain.displacement = kNoIndex;
-    plain.world_from_object = compose(make_translation({-1.2f, 0.5f, 0.3f}), make_scale({0.6f, 0.6f, 0.6f}));
-    scene.objects.push_back(second);
-    scene.objects.push_back(plain);
-    scene.camera.from = {2.5f, 0.4f, 0.6f};
-    scene.camera.to = {0, 0, 0};
-    return scene;
-}
-
-void expect_same(const CastAnswers& device, const CpuAnswers& cpu, const std::vector<cpu::TraceRay>& rays) {
-    size_t hit_count = 0;
-    for (size_t k = 0; k < rays.size(); ++k) {
-        const cpu::TraceHit& expected = cpu.closest[k];
-        const scalar::HitData& found = device.closest[k];
-        EXPECT_EQ(device.occluded[k], cpu.occluded[k]) << "ray " << k;
-        ASSERT_EQ(found.instance, expected.instance)
-            << "ray " << k << " t " << found.t << " not " << expected.t;
-        if (!expected.is_hit()) continue;
-        ++hit_count;
-        EXPECT_NEAR(found.t, expected.t, 1e-6f * expected.t) << "ray " << k;
-        EXPECT_EQ(found.patch_index, expected.patch) << "ray " << k;
-        EXPECT_NEAR(found.u, expected.u, 1e-4f) << "ray " << k;
-        EXPECT_NEAR(found.v, expected.v, 1e-4f) << "ray " << k;
-    }
-    EXPECT_GT(hit_count, rays.size() / 3);
-}
 
 class VulkanTracerTest : public GpuTest, public testing::WithParamInterface<Case> {};
 
