@@ -17,6 +17,7 @@ struct Case {
     size_t cache_bytes = size_t(64) << 20;
     uint32_t pair_capacity = 1u << 16;
     uint32_t slots = 4;
+    LodRule lod = LodRule::field;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -30,6 +31,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     settings.height = 60;
     settings.leaf = c.leaf;
     settings.bottom = c.bottom;
+    settings.lod = c.lod;
     settings.bottom_cache_bytes = c.cache_bytes;
     const std::shared_ptr<const PreparedScene> scene = prepare_scene(make_scene(c.space), settings);
     const std::vector<cpu::TraceRay> rays = make_rays(1500, 7);
@@ -59,6 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
              .cache_bytes = 0},
         Case{.name = "one_patch_a_round", .pair_capacity = 64, .slots = 1},
         Case{.name = "many_chunks", .level = 3, .pair_capacity = 512, .slots = 8},
+        Case{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
         Case{.name = "many_waves", .level = 6, .cache_bytes = 1}),
     [](const auto& info) { return std::string(info.param.name); });
 
