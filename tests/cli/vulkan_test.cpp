@@ -41,6 +41,18 @@ class Vulkan : public CommandTest {
     Environment cache_;
 };
 
+/// The same keys, all the way down; of arrays the first elements.
+void expect_same_keys(const json& a, const json& b, const std::string& path) {
+    EXPECT_EQ(a.type_name(), std::string(b.type_name())) << path;
+    if (a.is_array() && !a.empty() && !b.empty()) expect_same_keys(a[0], b[0], path + "[0]");
+    if (!a.is_object() || !b.is_object()) return;
+    for (const auto& [key, value] : a.items()) {
+        ASSERT_TRUE(b.contains(key)) << path << "." << key;
+        expect_same_keys(value, b[key], path + "." + key);
+    }
+    EXPECT_EQ(a.size(), b.size()) << path;
+}
+
 #ifdef RELIEF_VULKAN
 
 TEST_F(Vulkan, makes_the_picture_that_the_cpu_engine_makes) {
@@ -63,7 +75,7 @@ TEST_F(Vulkan, makes_the_picture_that_the_cpu_engine_makes) {
 
 TEST_F(Vulkan, keeps_compiled_kernels_between_runs) {
     const Environment cache("XDG_CACHE_HOME", (folder_ / "cache").string());
-    ASSERT_EQ(render_bump("a.exr", {"--engine", "vulkan", "--spp", "1", "--bounces", "0"}).exit_code, 0);
+    ASSERT_EQ(render_bump("a.exr", {"--engine", "vulkan", "--spp", "1"}).exit_code, 0);
     ASSERT_TRUE(exists("cache/relief"));
     size_t bytes = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder_ / "cache/relief"))
@@ -82,6 +94,85 @@ TEST_F(Vulkan, without_a_driver_the_way_out_is_named) {
     const CommandResult result = render_bump("a.exr", {"--engine", "vulkan"});
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_NE(result.errors.find("--engine cpu"), std::string::npos) << result.errors;
+}
+
+TEST_F(Vulkan, fills_the_statistics_that_the_cpu_engine_fills) {
+    const std::vector<std::string> options{"--spp", "2", "--size", "320x180", "--level", "4", "--stats"};
+    const auto render_with = [&](const char* engine) {
+        std::vector<std::string> all = options;
+        all.insert(all.end(), {std::string(engine) + ".json", "--engine", engine});
+        EXPECT_EQ(render_bump("a.exr", all).exit_code, 0);
+        return json::parse(read(std::string(engine) + ".json"));
+    };
+    const json cpu = render_with("cpu"), vulkan = render_with("vulkan");
+    expect_same_keys(cpu, vulkan, "");
+    EXPECT_EQ(vulkan["rays"]["camera"], 2 * 320 * 180);
+    EXPECT_EQ(vulkan["rays"]["camera"], cpu["rays"]["camera"]);
+    EXPECT_NEAR(vulkan["rays"]["shadow"].get<double>(), cpu["rays"]["shadow"].get<double>(),
+                0.01 * cpu["rays"]["shadow"].get<double>());
+    EXPECT_EQ(vulkan["casts"].size(), cpu["casts"].size());
+    uint64_t pairs = 0, built = 0;
+    for (const json& cast : vulkan["casts"]) pairs += cast["pairs"].get<uint64_t>();
+    EXPECT_EQ(vulkan["pairs"]["emitted"], pairs);
+    EXPECT_GT(vulkan["pairs"]["with_hit"], 0);
+    for (const json& count : vulkan["bottom"]["levels"]) built += count.get<uint64_t>();
+    EXPECT_EQ(vulkan["bottom"]["built"], built);
+    EXPECT_EQ(vulkan["bottom"]["levels"][4], 1) << "one patch, one tree, kept";
+    double stages = 0;
+    for (const json& seconds : vulkan["stage_s"]) stages += seconds.get<double>();
+    EXPECT_NEAR(stages, vulkan["time_s"]["render"].get<double>(),
+                0.1 * vulkan["time_s"]["render"].get<double>());
+}
+
+/// Under the layer that makes a sound device fail; see tests/vulkan/fault_layer.
+class FaultyVulkan : public Vulkan {
+  protected:
+    Environment path_{"VK_ADD_LAYER_PATH", RELIEF_FAULT_LAYER};
+    Environment layer_{"VK_INSTANCE_LAYERS", "VK_LAYER_RELIEF_fault"};
+};
+
+TEST_F(FaultyVulkan, a_lacking_feature_is_named_with_the_way_out) {
+    const Environment fault("RELIEF_FAULT_FEATURE", "shaderInt64");
+    const CommandResult result = render_bump("a.exr", {"--engine", "vulkan"});
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_NE(result.errors.find("lacks shaderInt64"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("--engine cpu"), std::string::npos) << result.errors;
+    const CommandResult list = run({"devices"});
+    EXPECT_EQ(list.exit_code, 0);
+    EXPECT_NE(list.output.find("lacks shaderInt64"), std::string::npos) << list.output;
+    EXPECT_EQ(render_bump("a.exr", {"--engine", "cpu"}).exit_code, 0);
+}
+
+TEST_F(FaultyVulkan, a_lost_device_is_told_with_the_way_out) {
+    const Environment fault("RELIEF_FAULT_LOST_SUBMIT", "20");
+    const CommandResult result = render_bump("a.exr", {"--engine", "vulkan"});
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_NE(result.errors.find("lost"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("--engine cpu"), std::string::npos) << result.errors;
+    EXPECT_FALSE(exists("a.exr"));
+}
+
+TEST_F(FaultyVulkan, a_memory_too_small_for_the_scene_is_refused_in_bytes) {
+    const Environment fault("RELIEF_FAULT_HEAP_BYTES", "1000000");
+    const CommandResult result = render_bump("a.exr", {"--engine", "vulkan"});
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_NE(result.errors.find("of 1000000 bytes"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("--engine cpu"), std::string::npos) << result.errors;
+}
+
+TEST_F(FaultyVulkan, a_small_memory_takes_more_batches_to_the_same_picture) {
+    const auto render_within = [&](const char* heap_bytes, const std::string& output) {
+        const Environment fault("RELIEF_FAULT_HEAP_BYTES", heap_bytes);
+        const CommandResult result =
+            render_bump(output, {"--engine", "vulkan", "--size", "160x90", "--layers", "depth,N", "--spp",
+                                 "2", "--stats", "s.json"});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return json::parse(read("s.json"))["memory_bytes"]["ray_buffers"].get<uint64_t>();
+    };
+    EXPECT_LT(render_within("8000000", "small.exr"), render_within("2000000000", "large.exr"));
+    for (const char* layer : {"depth", "N"})
+        EXPECT_EQ(run({"compare", "small.exr", "large.exr", "--layer", layer}).exit_code, 0) << layer;
+    EXPECT_EQ(run({"compare", "small.exr", "large.exr"}).exit_code, 0);
 }
 
 #else

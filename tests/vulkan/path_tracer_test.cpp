@@ -67,10 +67,11 @@ class PathTracerTest : public GpuTest {
 
     Film make_film() const { return {settings_.width, settings_.height, settings_.crop, kLayers}; }
 
-    Picture trace_on_device(uint32_t ray_capacity, int samples_a_call) const {
+    Picture trace_on_device(uint32_t ray_capacity, int samples_a_call,
+                            uint32_t pair_capacity = 1u << 16) const {
         const DeviceScene device_scene(device(), *prepared_);
         Tracer tracer(device(), *prepared_, device_scene, settings_,
-                      {.ray_capacity = ray_capacity, .pair_capacity = 1u << 16});
+                      {.ray_capacity = ray_capacity, .pair_capacity = pair_capacity});
         PathTracer path_tracer(tracer, settings_);
         Film film = make_film();
         const uint64_t pixels = 27 * 21;
@@ -143,6 +144,18 @@ TEST_F(PathTracerTest, gives_the_same_picture_however_it_is_cut) {
         const float a = by_sample.image.pixels[k], b = whole.image.pixels[k];
         ASSERT_TRUE(a == b || std::fabs(a - b) <= 2e-5f * std::max(1.0f, std::fabs(b))) << k;
     }
+}
+
+TEST_F(PathTracerTest, gives_the_same_bits_again_and_in_any_form) {
+    const Picture expected = trace_on_device(4096, 4);
+    EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels);
+    EXPECT_EQ(trace_on_device(4096, 4, 400).image.pixels, expected.image.pixels) << "many chunks";
+    settings_.bottom_cache_bytes = 0;
+    EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "no cache";
+    settings_.bottom = BottomForm::fused;
+    EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "fused, no cache";
+    settings_.bottom_cache_bytes = 1;
+    EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "fused, small cache";
 }
 
 TEST_F(PathTracerTest, counts_rays_by_kind_and_depth) {

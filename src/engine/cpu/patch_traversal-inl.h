@@ -33,19 +33,22 @@ HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext
     return visit;
 }
 
-/// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone where it
-/// enters.
-HWY_INLINE void choose_ray_level(PatchVisit& visit, float entry, float direction_length) {
+/// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
+HWY_INLINE void choose_ray_level(PatchVisit& visit, const cpu::TraceRay& world) {
     const Instance& placed = visit.scene->instances[visit.instance];
     const Quad& quad = visit.surface->quads[visit.patch];
     float longest = 0;
+    Vec3f sum{};
     for (size_t k = 0; k < 4; ++k) {
-        const Vec3f edge =
-            visit.surface->positions[quad.vertex[(k + 1) % 4]] - visit.surface->positions[quad.vertex[k]];
+        const Vec3f& from = visit.surface->positions[quad.vertex[k]];
+        const Vec3f edge = visit.surface->positions[quad.vertex[(k + 1) % 4]] - from;
         longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
+        sum = sum + from;
     }
-    const uint8_t level = uint8_t(scalar::choose_ray_level(longest, entry * direction_length,
-                                                           visit.scene->pixel_angle, visit.levels.patch));
+    const Vec3f middle = transform_point(placed.world_from_object, sum * 0.25f);
+    const float distance = scalar::find_passing_distance(world.origin, world.direction, world.t_min, middle);
+    const uint8_t level =
+        uint8_t(scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.levels.patch));
     visit.levels.patch = level;
     visit.levels.edge = {level, level, level, level};
     visit.cell_size = 1.0f / float(1u << level);

@@ -95,11 +95,11 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
 HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
-                                const cpu::TraceRay& world, uint32_t patch, float entry, RayState& ray) {
+                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
     const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
     if (!surface.has_displacement) return trace_polygon<kQuery>(surface, patch, ray);
     PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
-    if (scene.lod == LodRule::ray) choose_ray_level(visit, entry, length(world.direction));
+    if (scene.lod == LodRule::ray) choose_ray_level(visit, world);
     if (!context.is_timed) return trace_patch<kQuery>(visit, ray);
     const Timer timer;
     const double built_before = context.counters.bottom_build_s;
@@ -113,8 +113,8 @@ template <Query kQuery>
 bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                     uint32_t root, RayState& ray) {
     const WideBvh& tree = scene.surface_trees[scene.instances[ray.instance].surface];
-    return walk_tree(tree, root, ray, [&](uint32_t patch, float entry) {
-        const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, entry, ray);
+    return walk_tree(tree, root, ray, [&](uint32_t patch, float) {
+        const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
     });
 }

@@ -1,4 +1,6 @@
 // The Vulkan engine: passes over the picture, batch by batch; rays for other programs.
+#include "engine/vulkan/vulkan_engine.h"
+
 #include <algorithm>
 #include <memory>
 #include <mutex>
@@ -6,7 +8,6 @@
 #include <utility>
 
 #include "base/timer.h"
-#include "engine/engine.h"
 #include "engine/vulkan/path_tracer.h"
 #include "engine/vulkan/ray_batch.h"
 #include "relief/error.h"
@@ -30,11 +31,12 @@ template <class Worker> struct Station {
 
 class VulkanEngine final : public Engine {
   public:
-    VulkanEngine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
+    VulkanEngine(std::unique_ptr<Device> device, std::shared_ptr<const PreparedScene> scene,
+                 const RenderSettings& settings)
         : scene_(std::move(scene)),
           settings_(settings),
-          device_({.index = settings.device, .pipeline_cache = settings.pipeline_cache}),
-          device_scene_(device_, *scene_) {}
+          device_(std::move(device)),
+          device_scene_(*device_, *scene_) {}
 
     bool render(Film& film, RenderObserver* observer) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
@@ -49,7 +51,7 @@ class VulkanEngine final : public Engine {
 
     std::shared_ptr<const PreparedScene> scene_;
     RenderSettings settings_;
-    Device device_;
+    std::unique_ptr<Device> device_;
     DeviceScene device_scene_;
     Station<PathTracer> paths_;
     mutable std::mutex mutex_;
@@ -57,7 +59,7 @@ class VulkanEngine final : public Engine {
     Progress progress_;
     uint64_t done_ = 0; ///< pixel samples
     Timer timer_;
-    double first_image_s_ = 0;
+    double set_up_s_ = 0, first_image_s_ = 0;
 };
 
 /// `rays` places, of which one in `share` are cast at a time; halved, but not below `least`, until it fits.
@@ -69,7 +71,7 @@ auto VulkanEngine::make_station(uint32_t rays, uint32_t least, uint32_t share, M
             config.ray_capacity = rays;
             config.slots = kSlots;
             config.pair_capacity = rays / share * kSlots;
-            auto tracer = std::make_unique<Tracer>(device_, *scene_, device_scene_, settings_, config);
+            auto tracer = std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
             auto worker = make_worker(*tracer);
             return Station<typename decltype(worker)::element_type>{std::move(tracer), std::move(worker)};
         } catch (const Error& error) {
@@ -81,11 +83,13 @@ auto VulkanEngine::make_station(uint32_t rays, uint32_t least, uint32_t share, M
 bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     const Window& window = film.window();
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
-    timer_ = {};
+    const Timer set_up;
     // Every path has a ray and a shadow ray.
     paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
                           2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths)), 2,
                           [&](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); });
+    set_up_s_ += set_up.seconds();
+    timer_ = {};
     progress_ = {};
     progress_.samples_total = settings_.spp;
     done_ = 0;
@@ -137,8 +141,11 @@ void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) 
 
 void VulkanEngine::add_statistics(Statistics& statistics) const {
     statistics.engine = "vulkan";
-    statistics.device = device_.description().name;
-    statistics.isa = device_.description().driver;
+    statistics.device = device_->description().name;
+    statistics.isa = device_->description().driver;
+    // Making kernels and buffers is no part of a frame.
+    statistics.prepare_s += set_up_s_;
+    statistics.render_s -= set_up_s_;
     statistics.first_image_s += first_image_s_;
     if (paths_.tracer) paths_.tracer->add_statistics(statistics);
     if (paths_.worker) paths_.worker->add_statistics(statistics);
@@ -146,11 +153,18 @@ void VulkanEngine::add_statistics(Statistics& statistics) const {
 
 } // namespace
 
+std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
+                                       std::shared_ptr<const PreparedScene> scene,
+                                       const RenderSettings& settings) {
+    return std::make_unique<VulkanEngine>(std::move(device), std::move(scene), settings);
+}
+
 } // namespace vulkan
 
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings) {
-    return std::make_unique<vulkan::VulkanEngine>(std::move(scene), settings);
+    const vulkan::Device::Config config{.index = settings.device, .pipeline_cache = settings.pipeline_cache};
+    return vulkan::make_engine_on(std::make_unique<vulkan::Device>(config), std::move(scene), settings);
 }
 
 } // namespace relief

@@ -76,18 +76,22 @@ void offer_candidate(uint tree, float entry) {
 }
 
 /// Levels that this ray sees a patch at, packed.
-uint choose_levels(InstanceData of, uint patch_index, float entry) {
+uint choose_levels(InstanceData of, uint patch_index) {
     uint levels = lower_packed_levels(find_levels(of, patch_index), world.bias);
     if (push.is_ray_lod == 0u) return levels;
     SurfaceData s = surfaces[of.surface];
     uvec4 quad = load_quad(s, patch_index);
     float longest = 0.0;
+    vec3 sum = vec3(0.0);
     for (uint k = 0u; k < 4u; ++k) {
-        vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - load_position(s, quad[k]);
+        vec3 from = load_position(s, quad[k]);
+        vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - from;
         longest = max(longest, length(transform_vector(of.world_from_object, edge)));
+        sum += from;
     }
-    return pack_uniform_level(choose_ray_level(longest, entry * length(world.direction), push.pixel_angle,
-                                               packed_patch_level(levels)));
+    vec3 middle = transform_point(of.world_from_object, sum * 0.25);
+    float distance_there = find_passing_distance(world.origin, world.direction, world.t_min, middle);
+    return pack_uniform_level(choose_ray_level(longest, distance_there, push.pixel_angle, packed_patch_level(levels)));
 }
 
 /// Node of the tree over the tiles of a patch; kNone where the host has still to make it.
@@ -113,7 +117,7 @@ void request_tiles(uint patch_number, RequestData request) {
 }
 
 void enter_patch(uint patch_index, float entry) {
-    uint levels = choose_levels(instance, patch_index, entry);
+    uint levels = choose_levels(instance, patch_index);
     uint patch_number = surfaces[instance.surface].first_quad + patch_index;
     if (packed_patch_level(levels) <= kTreeLevels) {
         offer_candidate(patch_number, entry);
@@ -233,7 +237,7 @@ CandidateData make_candidate(uint k) {
     }
     InstanceData of = instances[slot_instance[k]];
     uint patch_index = tree - surfaces[of.surface].first_quad;
-    return CandidateData(slot_instance[k], tree, patch_index, choose_levels(of, patch_index, slot_entry[k]),
+    return CandidateData(slot_instance[k], tree, patch_index, choose_levels(of, patch_index),
                          slot_entry[k]);
 }
 

@@ -1,0 +1,124 @@
+// The whole engine on a validated device: pictures, cancellation, rays of other programs, from several
+// threads; and what it finds is what the CPU engine finds.
+#include <thread>
+
+#include "cast_fixture.h"
+#include "engine/vulkan/vulkan_engine.h"
+
+namespace relief::vulkan::tests {
+namespace {
+
+/// Cancels when it is asked for the n-th time.
+class Canceller final : public RenderObserver {
+  public:
+    explicit Canceller(int count) : count_(count) {}
+    void on_progress(const Progress& progress) override { progress_ = progress; }
+    bool is_cancelled() const override { return --count_ < 0; }
+    const Progress& progress() const { return progress_; }
+
+  private:
+    mutable int count_;
+    Progress progress_;
+};
+
+class EngineTest : public testing::Test {
+  protected:
+    EngineTest() {
+        settings_.width = 48, settings_.height = 32;
+        settings_.spp = 3, settings_.bounces = 2;
+        settings_.layers = {"depth", "id", "samples"};
+    }
+
+    void prepare() {
+        prepared_ = prepare_scene(make_scene(DisplacementSpace::tangent), settings_);
+        auto device = std::make_unique<Device>(Device::Config{.is_validated = true});
+        device_ = device.get();
+        engine_ = make_engine_on(std::move(device), prepared_, settings_);
+    }
+
+    void TearDown() override {
+        if (!device_) return;
+        for (const std::string& message : device_->validation_messages()) ADD_FAILURE() << message;
+    }
+
+    Film make_film() const { return {settings_.width, settings_.height, settings_.crop, settings_.layers}; }
+
+    RenderSettings settings_;
+    std::shared_ptr<const PreparedScene> prepared_;
+    const Device* device_ = nullptr; ///< the engine's
+    std::unique_ptr<Engine> engine_;
+};
+
+void expect_close(const Image& a, const Image& b, size_t most) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    size_t other = 0;
+    for (size_t k = 0; k < a.pixels.size(); ++k) {
+        const float x = a.pixels[k], y = b.pixels[k];
+        other += !(x == y || std::fabs(x - y) <= 1e-3f * std::max(1.0f, std::fabs(y)));
+    }
+    EXPECT_LE(other, most);
+}
+
+TEST_F(EngineTest, renders_what_the_cpu_engine_renders) {
+    settings_.level = 6; // tiles
+    prepare();
+    Film film = make_film(), expected = make_film();
+    EXPECT_TRUE(engine_->render(film, nullptr));
+    make_cpu_engine(prepared_, settings_)->render(expected, nullptr);
+    expect_close(film.resolve(), expected.resolve(), 8);
+    Statistics statistics;
+    engine_->add_statistics(statistics);
+    EXPECT_EQ(statistics.engine, "vulkan");
+    EXPECT_EQ(statistics.camera_rays, 3u * 48 * 32);
+    EXPECT_GT(statistics.bottom_built, 0u);
+    EXPECT_GE(statistics.pairs_emitted, statistics.pairs_with_hit);
+}
+
+TEST_F(EngineTest, stops_when_asked_with_a_picture_of_whole_passes) {
+    prepare();
+    Film film = make_film();
+    Canceller canceller(1); // a pass of one sample, then no other
+    EXPECT_FALSE(engine_->render(film, &canceller));
+    const Image image = film.resolve();
+    const size_t samples = image.find_channel("samples.Y").value();
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) ASSERT_EQ(image.at(x, y, samples), 1) << x << "," << y;
+    EXPECT_NEAR(canceller.progress().fraction, 1 / 3.0, 1e-6);
+    EXPECT_GT(canceller.progress().rays, 0u);
+    Film again = make_film();
+    EXPECT_TRUE(engine_->render(again, nullptr));
+}
+
+TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {
+    prepare();
+    std::vector<Ray> rays;
+    for (const cpu::TraceRay& ray : make_rays(2000, 5))
+        rays.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max});
+    std::vector<RayHit> expected(rays.size());
+    std::vector<uint8_t> expected_any(rays.size());
+    const std::unique_ptr<Engine> cpu = make_cpu_engine(prepared_, settings_);
+    cpu->closest_hits(rays, expected);
+    cpu->any_hits(rays, expected_any);
+    std::vector<std::vector<RayHit>> hits(3, std::vector<RayHit>(rays.size()));
+    std::vector<std::vector<uint8_t>> any(3, std::vector<uint8_t>(rays.size()));
+    std::vector<std::thread> threads;
+    for (size_t k = 0; k < hits.size(); ++k)
+        threads.emplace_back([&, k] {
+            engine_->closest_hits(rays, hits[k]);
+            engine_->any_hits(rays, any[k]);
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (size_t k = 0; k < hits.size(); ++k) {
+        EXPECT_EQ(any[k], expected_any);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(hits[k][i].object, expected[i].object) << i;
+            if (expected[i].object == kNoIndex) continue;
+            EXPECT_NEAR(hits[k][i].t, expected[i].t, 1e-5f * expected[i].t) << i;
+            EXPECT_EQ(hits[k][i].patch, expected[i].patch) << i;
+            EXPECT_LT(length(hits[k][i].normal - expected[i].normal), 1e-3f) << i;
+        }
+    }
+}
+
+} // namespace
+} // namespace relief::vulkan::tests
