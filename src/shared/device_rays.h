@@ -105,6 +105,7 @@ struct CounterData {
     uint next_active_count;     ///< rays of the next round
     uint deferred_count;        ///< jobs that found no room in the pool and wait for the next wave
     uint request_count;         ///< patches whose tiles are asked for
+    uint rays_lost;             ///< whose walk the device ended: a proof, as those below
     uint pool_head;             ///< next free place of the pool, in units; grows for ever, modulo 2^32
     uint next_job;              ///< queue of the persistent kernel
     uint build_count[3];        ///< jobs to be built, by bin

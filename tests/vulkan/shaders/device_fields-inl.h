@@ -58,7 +58,7 @@ struct AllStructs {
     FIELD(s.instance) FIELD(s.tree) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.entry)
 #define FIELDS_COUNTER(s) \
     FIELD(s.pair_count) FIELD(s.job_count) FIELD(s.next_active_count) FIELD(s.deferred_count) \
-    FIELD(s.request_count) FIELD(s.pool_head) FIELD(s.next_job) FIELD(s.build_count[0]) \
+    FIELD(s.request_count) FIELD(s.rays_lost) FIELD(s.pool_head) FIELD(s.next_job) FIELD(s.build_count[0]) \
     FIELD(s.build_count[1]) FIELD(s.build_count[2]) FIELD(s.pairs_done) FIELD(s.jobs_done) \
     FIELD(s.pairs_with_hit) FIELD(s.reused) FIELD(s.built[0]) FIELD(s.built[1]) FIELD(s.built[2]) \
     FIELD(s.built[3]) FIELD(s.built[4]) FIELD(s.built[5]) FIELD(s.path_count) FIELD(s.shadow_count)

@@ -98,11 +98,13 @@ uint choose_order(PatchVisit visit) {
     return make_order_mask(dot(along_u, visit.ray.direction) < 0.0, dot(along_v, visit.ray.direction) < 0.0);
 }
 
-void walk_tree(inout PatchVisit visit, bool is_any) {
+/// False where a device ends the loop before all is done, as lavapipe does after 65535 rounds: no node is visited
+/// twice, so none of the ways out below is left untaken.
+bool walk_tree(inout PatchVisit visit, bool is_any) {
     uint order = choose_order(visit);
     uint level = 0u;
     uint place = 0u; // in the order of the walk, within the level
-    while (true) {
+    for (uint visited = 0u; visited < count_nodes_above(kTreeLevels + 1u); ++visited) {
         uint number = place ^ (order & ((1u << (2u * level)) - 1u));
         if (is_node_met(visit, count_nodes_above(level) + number)) {
             if (level < visit.ray_level) {
@@ -111,15 +113,16 @@ void walk_tree(inout PatchVisit visit, bool is_any) {
                 continue;
             }
             intersect_micro_quad(visit, morton_column(number), morton_row(number));
-            if (is_any && visit.has_hit) return;
+            if (is_any && visit.has_hit) return true;
         }
         // The next one on this level, or of the nearest ancestor that has one.
         ++place;
         uint up = min(uint(findLSB(place)) >> 1u, level);
         place >>= 2u * up;
         level -= up;
-        if (level == 0u) return;
+        if (level == 0u) return true;
     }
+    return false;
 }
 
 /// Rank among the patches that the ray offers in this round: by (instance, patch), tiles of one patch alike.
@@ -168,12 +171,16 @@ void trace_pair(uvec2 pair, CastPush push) {
     uint place = pair.y / push.slots;
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];
-    COUNT(counters.pairs_done)
-    if (candidate.entry > t * kBoxSlack) return;
+    if (candidate.entry > t * kBoxSlack) {
+        COUNT(counters.pairs_done)
+        return;
+    }
     RayData world = rays[active_rays[push.first + place]];
     PatchVisit visit = enter_tree(pair.x, candidate, world, push.patch_count, push.pool_capacity);
     visit.t = t;
-    walk_tree(visit, push.is_any != 0u);
+    if (walk_tree(visit, push.is_any != 0u)) {
+        COUNT(counters.pairs_done)
+    }
     if (!visit.has_hit) return;
     COUNT(counters.pairs_with_hit)
     uint64_t found = push.is_any != 0u ? uint64_t(0)

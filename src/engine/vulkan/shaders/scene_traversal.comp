@@ -198,11 +198,13 @@ void leave_instance() {
     ray = make_object_ray(world.origin, world.direction);
 }
 
-void walk() {
+/// False where a device ends the loop before the stack is empty.
+bool walk() {
     uint world_size = 0u; // entries of the stack that wait outside the instance
     push_node(push.root, world.t_min);
     leave_instance();
-    while (stack_size > 0u) {
+    for (uint popped = 0u; popped < 0xffffffffu; ++popped) {
+        if (stack_size == 0u) return true;
         --stack_size;
         if (instance_index != kNone && stack_size < world_size) leave_instance();
         float entry = stack_entry[stack_size];
@@ -224,9 +226,10 @@ void walk() {
             offer_candidate(first, entry);
         else {
             intersect_polygons(first, kind_and_count & ((1u << kNodeKindShift) - 1u));
-            if (push.is_any != 0u && best.instance != kNone) return;
+            if (push.is_any != 0u && best.instance != kNone) return true;
         }
     }
+    return false;
 }
 
 CandidateData make_candidate(uint k) {
@@ -271,7 +274,7 @@ void main() {
         cursor = cursors[ray_index];
         if (hits[ray_index].instance != kNone) best = hits[ray_index];
     }
-    if (push.root != kNone) walk();
+    if (push.root != kNone && !walk()) atomicAdd(counters.rays_lost, 1u);
     if (push.is_any != 0u && best.instance != kNone) slot_count = 0u;
     if (push.round == 0u || best.instance != kNone) {
         HitData result = best;
