@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/timer.h"
 #include "engine/camera_frame.h"
 
 namespace relief::vulkan {
@@ -89,7 +90,9 @@ void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples)
     commands.fill(film_sums_, 0, pixels.count * sizeof(scalar::FilmSumsData), 0);
     for (int k = 0; k < samples.count; ++k) trace_sample(film, pixels, uint32_t(samples.first + k));
     commands.run();
+    const Timer timer;
     add_to_film(film, pixels, samples.count);
+    film_s_ += timer.seconds();
 }
 
 scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
@@ -189,6 +192,7 @@ void PathTracer::add_statistics(Statistics& statistics) const {
     for (const CastStatistics& cast : casts_)
         (cast.depth == 0 ? statistics.camera_rays : statistics.bounce_rays) += cast.rays;
     for (const CastStatistics& cast : shadow_casts_) statistics.shadow_rays += cast.rays;
+    statistics.film_s += film_s_;
     for (size_t depth = 0; depth < casts_.size(); ++depth) {
         statistics.casts.push_back(casts_[depth]);
         if (depth < shadow_casts_.size() && shadow_casts_[depth].rays > 0)

@@ -65,6 +65,7 @@ class PathTracer {
         shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
     std::vector<CastStatistics> casts_, shadow_casts_; ///< by depth
+    double film_s_ = 0;                                ///< of the host, for sums that come back
 };
 
 } // namespace relief::vulkan

@@ -151,6 +151,7 @@ uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
 void Tracer::Implementation::trace_chunk() {
     push.is_repeated = 0;
     clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
+    clear(offsetof(CounterData, rays_lost), sizeof(uint32_t));
     do traverse_scene();
     while (directories.is_needed() && build_directories());
     sort_pairs();
@@ -240,13 +241,16 @@ void Tracer::Implementation::run_fused() {
         commands.dispatch_indirect(kernels.leftover, buffers.arguments, 16 * scalar::kArgumentsPairs, push);
 }
 
-/// Every pair traced, every job served: a device that drops work must not go unnoticed.
+/// Every ray walked to its end, every pair traced, every job served: a device that drops work must not go
+/// unnoticed.
 void Tracer::Implementation::check_nothing_lost(uint32_t pairs_done, uint32_t jobs_done) const {
-    if (pairs_done == counters.pair_count && jobs_done == counters.job_count) return;
-    throw Error(ErrorKind::failed,
-                {fmt::format("the device finished {} of {} pairs and {} of {} jobs", pairs_done,
-                             counters.pair_count, jobs_done, counters.job_count),
-                 device.description().name, "update its driver, try --bottom split, or use --engine cpu"});
+    if (pairs_done == counters.pair_count && jobs_done == counters.job_count && counters.rays_lost == 0)
+        return;
+    throw Error(
+        ErrorKind::failed,
+        {fmt::format("the device finished {} of {} pairs and {} of {} jobs, and left {} rays on their way",
+                     pairs_done, counters.pair_count, jobs_done, counters.job_count, counters.rays_lost),
+         device.description().name, "update its driver, try --bottom split, or use --engine cpu"});
 }
 
 Tracer::Tracer(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene,
