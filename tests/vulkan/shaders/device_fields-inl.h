@@ -42,7 +42,7 @@ struct AllStructs {
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
     FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count)
 #define FIELDS_TEXTURE(s) \
-    FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
+    FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture)
