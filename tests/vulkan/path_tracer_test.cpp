@@ -149,7 +149,7 @@ TEST_F(PathTracerTest, gives_the_same_picture_however_it_is_cut) {
 TEST_F(PathTracerTest, gives_the_same_bits_again_and_in_any_form) {
     const Picture expected = trace_on_device(4096, 4);
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels);
-    EXPECT_EQ(trace_on_device(4096, 4, 400).image.pixels, expected.image.pixels) << "many chunks";
+    EXPECT_EQ(trace_on_device(4096, 4, 1200).image.pixels, expected.image.pixels) << "many chunks";
     settings_.bottom_cache_bytes = 0;
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "no cache";
     settings_.bottom = BottomForm::fused;
