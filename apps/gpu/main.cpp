@@ -55,7 +55,7 @@ int run_parity_verb(const Options& options) {
     if (options.is_quick) {
         parity.settings.width = 96, parity.settings.height = 64;
         parity.noise_samples = 16;
-        parity.scenes = {"ear"};
+        if (options.scenes.empty()) parity.scenes = {"ear"};
     }
     Json result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
     result.update(run_parity(parity, report));
@@ -74,7 +74,7 @@ int run_bench_verb(const Options& options) {
     if (!options.scenes.empty()) paper1.scenes = options.scenes;
     if (options.is_quick) {
         paper1 = bench::make_quick_options(paper1);
-        paper1.scenes = {"bark"};
+        if (options.scenes.empty()) paper1.scenes = {"bark"};
     }
     const Json result = bench::run_paper1(paper1, report);
     for (const bench::ReportFile& file : bench::make_paper1_files(result))

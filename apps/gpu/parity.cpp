@@ -81,7 +81,8 @@ class Parity {
             check_scene(name,
                         make_sample_scene(name, name == "barks" ? Instancing::shared : Instancing::none));
         }
-        return {{"cases", std::move(cases_)}, {"passed", passed_}, {"failed", failed_}};
+        return {
+            {"cases", std::move(cases_)}, {"passed", passed_}, {"failed", failed_}, {"refused", refused_}};
     }
 
   private:
@@ -125,6 +126,7 @@ class Parity {
         }
         passed_ += entry["outcome"] == "passed";
         failed_ += entry["outcome"] == "failed";
+        refused_ += entry["outcome"] == "refused";
         cases_.push_back(std::move(entry));
     }
 
@@ -185,7 +187,7 @@ class Parity {
     const ParityOptions& options_;
     const bench::Report& report_;
     Json cases_ = Json::array();
-    int passed_ = 0, failed_ = 0;
+    int passed_ = 0, failed_ = 0, refused_ = 0;
 };
 
 } // namespace

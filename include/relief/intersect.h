@@ -35,7 +35,7 @@ class Intersector {
     Intersector(Intersector&&) noexcept;
     Intersector& operator=(Intersector&&) noexcept;
 
-    /// Nearest hits with t in (t_min, t_max); spans of equal length. Thread safe, uses all of
+    /// Nearest hits with t in (t_min, t_max]; spans of equal length. Thread safe, uses all of
     /// `settings.threads`.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const;
 

@@ -7,10 +7,9 @@
 #endif
 
 const uint kTreeLevels = 5u;       ///< of a tile, at most
-const uint kTreeHeaderWords = 16u; ///< origin, scale, level, coverage, reversed edges, first cell
+const uint kTreeHeaderWords = 16u; ///< origin, scale, level, reversed edges; then nothing up to a whole unit
 const uint kTreeNodeWords = 3u;
 const uint kPoolUnitWords = 16u; ///< trees start at multiples of it
-const uint kSlotBits = 3u;       ///< patches that a ray may offer in one round: at most 8
 const uint kCellBits = 25u;      ///< of make_cell_rank
 
 // Words of a tree's header.

@@ -5,8 +5,9 @@
 #define RELIEF_OBJECT_RAY_H
 #endif
 
-/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), and the same slack for a triangle's own t.
-const float kBoxSlack = 1.0000005f;
+/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), with room for divisions that err by 2.5 units in
+/// the last place, as Vulkan allows; and the same slack for a triangle's own t.
+const float kBoxSlack = 1.0000015f;
 
 /// Smaller components of a direction (2^-120) count as zero in box tests.
 const float kLeastSpeed = 7.52316384526264005e-37f;

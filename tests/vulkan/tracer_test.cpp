@@ -17,6 +17,8 @@ struct Case {
     size_t cache_bytes = size_t(64) << 20;
     uint32_t pair_capacity = 1u << 16;
     uint32_t slots = 4;
+    uint32_t rays = 1500;
+    uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
 };
 
@@ -34,10 +36,11 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     settings.lod = c.lod;
     settings.bottom_cache_bytes = c.cache_bytes;
     const std::shared_ptr<const PreparedScene> scene = prepare_scene(make_scene(c.space), settings);
-    const std::vector<cpu::TraceRay> rays = make_rays(1500, 7);
+    const std::vector<cpu::TraceRay> rays = make_rays(c.rays, 7);
     TracerConfig config;
     config.pair_capacity = c.pair_capacity;
     config.slots = c.slots;
+    config.pool_restart_units = c.restart_units;
     expect_same(cast_on_device(device(), *scene, settings, rays, config), cast_on_cpu(scene, settings, rays),
                 rays);
 }
@@ -45,6 +48,8 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
 INSTANTIATE_TEST_SUITE_P(
     everything, VulkanTracerTest,
     testing::Values(
+        Case{.name = "room_for_one_ray", .pair_capacity = 4, .rays = 24},
+        Case{.name = "places_numbered_afresh", .level = 5, .pair_capacity = 1024, .restart_units = 1},
         Case{.name = "level_0", .level = 0}, Case{.name = "level_2", .level = 2},
         Case{.name = "level_3", .level = 3}, Case{.name = "level_5", .level = 5},
         Case{.name = "tiles", .level = 6}, Case{.name = "auto_level", .level = kAutoLevel},

@@ -11,11 +11,11 @@ constexpr uint64_t kUnitBytes = scalar::kPoolUnitWords * sizeof(uint32_t);
 constexpr uint64_t kLeastBytes = uint64_t(1) << 20;    ///< a few of the largest trees
 constexpr uint64_t kWorkingBytes = uint64_t(64) << 20; ///< of a pool that keeps nothing
 constexpr uint32_t kBudgetShare = 4;                   ///< a wave may fill one part in so many
-constexpr uint32_t kLastHead = 1u << 31;               ///< then places are numbered afresh
 
 } // namespace
 
-BottomCache::BottomCache(const Device& device, uint64_t cap_bytes) : is_kept_(cap_bytes > 0) {
+BottomCache::BottomCache(const Device& device, uint64_t cap_bytes, uint32_t last_head)
+    : is_kept_(cap_bytes > 0), last_head_(last_head) {
     const uint64_t wanted = std::max(is_kept_ ? cap_bytes : kWorkingBytes, kLeastBytes);
     const uint64_t bytes =
         std::max(kLeastBytes, std::min({wanted, device.max_buffer_bytes(), device.available_bytes() / 4}));
@@ -25,14 +25,15 @@ BottomCache::BottomCache(const Device& device, uint64_t cap_bytes) : is_kept_(ca
 
 void BottomCache::bind(BindingTable& bindings) const { bindings.bind(scalar::kBindPool, pool_); }
 
-void BottomCache::begin_wave(scalar::CastPush& push, const Buffer& counters, const Buffer& trees,
-                             Commands& commands) {
+void BottomCache::begin_chunk(const Buffer& trees, Commands& commands) {
+    if (head_ < last_head_) return;
+    head_ = 0;
+    commands.fill(trees, 0, trees.byte_count(), 0);
+}
+
+void BottomCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {
     ++wave_;
     if (!is_kept_) head_ = 0;
-    if (head_ >= kLastHead) {
-        head_ = 0;
-        commands.fill(trees, 0, trees.byte_count(), 0);
-    }
     commands.fill(counters, offsetof(scalar::CounterData, pool_head), sizeof(uint32_t), head_);
     push.wave = wave_;
     push.pool_start = head_;

@@ -15,19 +15,25 @@ class BottomCache {
   public:
     /// `cap_bytes` 0: trees serve one wave of jobs only, and the pool is working memory. Throws
     /// Error{out_of_memory}.
-    BottomCache(const Device& device, uint64_t cap_bytes);
+    /// `last_head`: units after which places are numbered afresh and all trees are forgotten.
+    BottomCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
 
     void bind(BindingTable& bindings) const;
 
+    /// Before the jobs of a chunk of rays are found, whose records it may clear: `trees` are those of all
+    /// trees.
+    void begin_chunk(const Buffer& trees, Commands& commands);
+
     /// Fills in what a wave of jobs is told. Records what must be done before it; `trees` are the records of
     /// all trees.
-    void begin_wave(scalar::CastPush& push, const Buffer& counters, const Buffer& trees, Commands& commands);
+    void begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands);
     /// `pool_head` as the wave left it.
     void end_wave(const scalar::CounterData& counters);
 
   private:
     Buffer pool_;
     bool is_kept_;
+    uint32_t last_head_;
     uint32_t capacity_; ///< units
     uint32_t head_ = 0; ///< units filled so far
     uint32_t wave_ = 0;

@@ -104,7 +104,8 @@ void Commands::Implementation::read_marks() {
     static_cast<void>(result);
     for (size_t i = 0; i + 1 < marks.size(); ++i)
         if (marks[i])
-            seconds[size_t(*marks[i])] += double(ticks[i + 1] - ticks[i]) * device.timestamp_period_s;
+            seconds[size_t(*marks[i])] +=
+                double((ticks[i + 1] - ticks[i]) & device.timestamp_mask) * device.timestamp_period_s;
 }
 
 std::string Commands::Implementation::describe() const {
@@ -200,6 +201,7 @@ void Commands::copy(const Buffer& from, uint64_t from_offset, const Buffer& to, 
     });
 }
 
+void Commands::discard() { implementation_->is_recording = false; }
 void Commands::run() { implementation_->run(); }
 const std::array<double, kStageCount>& Commands::stage_seconds() const { return implementation_->seconds; }
 uint64_t Commands::dispatch_count() const { return implementation_->dispatch_count; }

@@ -46,6 +46,9 @@ class Commands {
     /// ran.
     void run();
 
+    /// Forgets what was recorded and not run, after an error on the way.
+    void discard();
+
     /// Seconds of each stage over all runs so far.
     const std::array<double, kStageCount>& stage_seconds() const;
     uint64_t dispatch_count() const;

@@ -94,8 +94,9 @@ void read_limits(Device::Implementation& d) {
     d.subgroup_size = with_11.subgroupSize;
     d.resident_group_count = count_resident_groups(d.physical, d.description.is_cpu);
     d.family = find_compute_family(d.physical).value();
-    const bool has_timestamps = d.physical.getQueueFamilyProperties()[d.family].timestampValidBits > 0;
-    d.timestamp_period_s = has_timestamps ? d.limits.timestampPeriod * 1e-9f : 0.0f;
+    const uint32_t timestamp_bits = d.physical.getQueueFamilyProperties()[d.family].timestampValidBits;
+    d.timestamp_period_s = timestamp_bits > 0 ? d.limits.timestampPeriod * 1e-9f : 0.0f;
+    d.timestamp_mask = timestamp_bits < 64 ? (uint64_t(1) << timestamp_bits) - 1 : ~uint64_t(0);
 }
 
 vk::raii::Device make_device(const Device::Implementation& d) {

@@ -47,6 +47,7 @@ struct Device::Implementation {
     uint32_t subgroup_size = 0;
     uint32_t resident_group_count = 0;
     float timestamp_period_s = 0; ///< 0: the queue has none
+    uint64_t timestamp_mask = 0;  ///< of the bits that a timestamp has
     uint32_t family = 0;
     vk::raii::Device device = nullptr;
     vk::raii::Queue queue = nullptr;

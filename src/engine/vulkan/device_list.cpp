@@ -30,17 +30,6 @@ void require_features(const vk::raii::PhysicalDevice& device, std::vector<std::s
     require(with_13.maintenance4, "maintenance4");
 }
 
-void require_subgroups(const vk::PhysicalDeviceVulkan11Properties& device,
-                       std::vector<std::string>& missing) {
-    const vk::SubgroupFeatureFlags needed = vk::SubgroupFeatureFlagBits::eBasic |
-                                            vk::SubgroupFeatureFlagBits::eBallot |
-                                            vk::SubgroupFeatureFlagBits::eArithmetic;
-    const bool is_there = (device.subgroupSupportedOperations & needed) == needed &&
-                          (device.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute);
-    if (!is_there)
-        missing.emplace_back("subgroup operations basic, ballot and arithmetic in compute shaders");
-}
-
 void require_limits(const vk::PhysicalDeviceLimits& limits, std::vector<std::string>& missing) {
     const auto require = [&](uint32_t value, uint32_t least, const char* name) {
         if (value < least) missing.push_back(fmt::format("{} {} (has {})", name, least, value));
@@ -83,9 +72,7 @@ DeviceDescription describe_device(const vk::raii::PhysicalDevice& device, uint32
         return result;
     }
     const auto chain =
-        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
-                              vk::PhysicalDeviceVulkan12Properties>();
-    require_subgroups(chain.get<vk::PhysicalDeviceVulkan11Properties>(), result.missing);
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan12Properties>();
     const auto& driver = chain.get<vk::PhysicalDeviceVulkan12Properties>();
     result.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
     if (!find_compute_family(device)) result.missing.emplace_back("a queue with VK_QUEUE_COMPUTE_BIT");

@@ -14,6 +14,7 @@ namespace {
 
 constexpr uint32_t kTileCells = 1u << scalar::kTreeLevels;
 constexpr size_t kFirstTableSize = 64;
+constexpr size_t kMostNewTiles = size_t(1) << 18; ///< made at once
 
 } // namespace
 
@@ -56,7 +57,9 @@ void TileDirectories::build(std::span<const scalar::RequestData> requests, Comma
     }
     new_nodes_.clear();
     const uint32_t first_node = node_count_;
+    const size_t most_tiles = tiles_.size() + kMostNewTiles; // what is left out asks again
     for (const auto& [key, request] : unique) {
+        if (tiles_.size() >= most_tiles) break;
         const Boxes boxes = compute_boxes(request);
         const uint32_t first_tree = device_scene_.patch_count() + tile_count();
         for (uint32_t k = 0; k < boxes.boxes.size(); ++k)

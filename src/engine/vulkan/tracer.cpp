@@ -26,6 +26,12 @@ using scalar::CounterData;
 
 constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(uint32_t);
 
+/// One ray of a later round must find room for all that it offers.
+TracerConfig with_room_for_a_ray(TracerConfig config) {
+    config.pair_capacity = std::max(config.pair_capacity, scalar::kMostSlots);
+    return config;
+}
+
 /// What was done over the whole render.
 struct Totals {
     uint64_t pairs = 0, pairs_with_hit = 0, reused = 0;
@@ -40,13 +46,13 @@ struct Tracer::Implementation {
         : device(d),
           scene(s),
           device_scene(ds),
-          config(c),
+          config(with_room_for_a_ray(c)),
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
-          cache(d, settings.bottom_cache_bytes),
+          cache(d, settings.bottom_cache_bytes, c.pool_restart_units),
           sort(d),
-          buffers(d, c, sort.histogram_words(c.pair_capacity)),
+          buffers(d, config, sort.histogram_words(config.pair_capacity)),
           kernels(d, settings, c, ds.stack_size() + directories.stack_size()) {
         device_scene.bind(bindings);
         directories.bind(bindings);
@@ -62,6 +68,7 @@ struct Tracer::Implementation {
     }
 
     CastStatistics cast(const Buffer& list, uint32_t count);
+    CastStatistics cast_or_discard(const Buffer& list, uint32_t count);
     uint32_t trace_round(uint32_t active_count);
     void trace_chunk();
     void traverse_scene();
@@ -134,6 +141,16 @@ CastStatistics Tracer::Implementation::cast(const Buffer& list, uint32_t count) 
     return result;
 }
 
+/// After an error, what was recorded must not stand in the way of the next cast.
+CastStatistics Tracer::Implementation::cast_or_discard(const Buffer& list, uint32_t count) {
+    try {
+        return cast(list, count);
+    } catch (...) {
+        commands.discard();
+        throw;
+    }
+}
+
 /// One round of all active rays; returns how many stay active.
 uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
     // Few rays need a second round, and some of them many: those offer more at a time.
@@ -150,6 +167,7 @@ uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
 
 void Tracer::Implementation::trace_chunk() {
     push.is_repeated = 0;
+    cache.begin_chunk(buffers.trees, commands);
     clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
     clear(offsetof(CounterData, rays_lost), sizeof(uint32_t));
     do traverse_scene();
@@ -210,7 +228,7 @@ void Tracer::Implementation::build_and_trace() {
     clear(offsetof(CounterData, deferred_count), sizeof(uint32_t));
     const size_t wave_counts = offsetof(CounterData, next_job);
     clear(wave_counts, offsetof(CounterData, path_count) - wave_counts);
-    cache.begin_wave(push, buffers.counters, buffers.trees, commands);
+    cache.begin_wave(push, buffers.counters, commands);
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
     commands.dispatch_indirect(kernels.bottom_cache, buffers.arguments, 16 * scalar::kArgumentsJobs, push);
     if (kernels.is_fused) return run_fused();
@@ -250,7 +268,7 @@ void Tracer::Implementation::check_nothing_lost(uint32_t pairs_done, uint32_t jo
         ErrorKind::failed,
         {fmt::format("the device finished {} of {} pairs and {} of {} jobs, and left {} rays on their way",
                      pairs_done, counters.pair_count, jobs_done, counters.job_count, counters.rays_lost),
-         device.description().name, "update its driver, try --bottom split, or use --engine cpu"});
+         device.description().name, "update its driver, or use --engine cpu"});
 }
 
 Tracer::Tracer(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene,
@@ -261,12 +279,12 @@ Tracer::~Tracer() = default;
 
 CastStatistics Tracer::closest_hits(const Buffer& list, uint32_t count) {
     implementation_->push.is_any = 0;
-    return implementation_->cast(list, count);
+    return implementation_->cast_or_discard(list, count);
 }
 
 CastStatistics Tracer::any_hits(const Buffer& list, uint32_t count) {
     implementation_->push.is_any = 1;
-    CastStatistics result = implementation_->cast(list, count);
+    CastStatistics result = implementation_->cast_or_discard(list, count);
     result.is_shadow = true;
     return result;
 }

@@ -16,8 +16,9 @@ struct TracerConfig {
     uint32_t ray_capacity = 1u << 20; ///< entries of rays and hits; lists hold as many
     uint32_t slots = 4; ///< nearest patches that a ray offers in its first round, [1, 8]; twice as many later
     uint32_t pair_capacity =
-        1u << 22;                   ///< pairs of ray and patch at once, >= slots; fewer: more chunks of rays
-    uint32_t fused_group_count = 0; ///< resident groups of the fused form; 0: what fills the device
+        1u << 22; ///< pairs of ray and patch at once, >= slots; fewer: more chunks of rays
+    uint32_t pool_restart_units = 1u << 31; ///< of trees built, after which the pool forgets all of them
+    uint32_t fused_group_count = 0;         ///< resident groups of the fused form; 0: what fills the device
     uint32_t fused_jobs_per_group =
         0; ///< trees that such a group takes in one launch; 0: as many as are safe
 };

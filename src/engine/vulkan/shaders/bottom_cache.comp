@@ -39,7 +39,7 @@ void main() {
     if (record.need == 0u) return;
     bool is_kept = is_alive(record);
     if (is_kept && does_cover(record.coverage, record.need)) {
-        COUNT(counters.reused)
+        atomicAdd(counters.reused, 1u);
     } else {
         uint coverage = record.need | (is_kept ? record.coverage : 0u);
         uint level = uint(findMSB(coverage & kLevelBits));
@@ -57,5 +57,5 @@ void main() {
     }
     trees[tree].need = 0u;
     trees[tree].ready_wave = push.wave;
-    COUNT(counters.jobs_done)
+    atomicAdd(counters.jobs_done, 1u);
 }

@@ -52,7 +52,6 @@ void main() {
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
     uint count = is_hit(hit) && continue_path(path_index, hit) ? 1u : 0u;
-    uint place;
-    RESERVE(counters.path_count, count, place)
+    uint place = atomicAdd(counters.path_count, count);
     if (count > 0u) next_path_list[place] = path_index;
 }

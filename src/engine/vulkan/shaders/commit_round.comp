@@ -56,7 +56,6 @@ void main() {
     HitData best = hits[ray_index];
     if (best.instance != kNone && (push.is_any != 0u || last.entry > best.t * kBoxSlack)) return;
     cursors[ray_index] = CursorData(last.entry, last.instance, last.tree);
-    uint next;
-    RESERVE(counters.next_active_count, 1u, next)
+    uint next = atomicAdd(counters.next_active_count, 1u);
     next_active_rays[next] = ray_index;
 }

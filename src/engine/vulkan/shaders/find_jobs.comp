@@ -22,8 +22,7 @@ void main() {
     uint tree = pairs[place].x;
     if (place == 0u || pairs[place - 1u].x != tree) {
         trees[tree].begin = place;
-        uint job;
-        RESERVE(counters.job_count, 1u, job)
+        uint job = atomicAdd(counters.job_count, 1u);
         jobs[job] = tree;
     }
     if (place + 1u == count || pairs[place + 1u].x != tree) trees[tree].end = place + 1u;

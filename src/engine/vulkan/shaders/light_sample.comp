@@ -131,7 +131,6 @@ void main() {
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
     uint count = is_hit(hit) && light_vertex(path_index, hit) ? 1u : 0u;
-    uint place;
-    RESERVE(counters.shadow_count, count, place)
+    uint place = atomicAdd(counters.shadow_count, count);
     if (count > 0u) shadow_list[place] = push.capacity + path_index;
 }

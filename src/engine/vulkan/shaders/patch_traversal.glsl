@@ -172,18 +172,18 @@ void trace_pair(uvec2 pair, CastPush push) {
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];
     if (candidate.entry > t * kBoxSlack) {
-        COUNT(counters.pairs_done)
+        atomicAdd(counters.pairs_done, 1u);
         return;
     }
     RayData world = rays[active_rays[push.first + place]];
     PatchVisit visit = enter_tree(pair.x, candidate, world, push.patch_count, push.pool_capacity);
     visit.t = t;
     if (walk_tree(visit, push.is_any != 0u)) {
-        COUNT(counters.pairs_done)
+        atomicAdd(counters.pairs_done, 1u);
     }
     if (!visit.has_hit) return;
-    COUNT(counters.pairs_with_hit)
-    uint64_t found = push.is_any != 0u ? uint64_t(0)
+    atomicAdd(counters.pairs_with_hit, 1u);
+    uint64_t found = push.is_any != 0u ? make_nearest(-kInfinity, 0u)
                                        : make_nearest(visit.t, find_slot_rank(pair.y, push.slots) << kCellBits | visit.cell);
     atomicMin(nearest[place], found);
 }

@@ -3,7 +3,6 @@
 #define RELIEF_PATHS_GLSL
 
 #include "engine/vulkan/shaders/scene.glsl"
-#include "engine/vulkan/shaders/count.glsl"
 #include "shared/sobol.h"
 #include "shared/warp.h"
 #include "shared/camera.h"

@@ -3,8 +3,8 @@
 #define RELIEF_RAYS_GLSL
 
 #include "engine/vulkan/shaders/scene.glsl"
-#include "engine/vulkan/shaders/count.glsl"
 #include "shared/object_ray.h"
+#include "shared/quantise.h"
 #include "shared/device_rays.h"
 
 layout(scalar, set = 0, binding = kBindRays) buffer Rays { RayData rays[]; };
@@ -25,7 +25,7 @@ ObjectRay enter_object(RayData ray, InstanceData instance) {
                            transform_vector(instance.object_from_world, ray.direction));
 }
 
-uint64_t make_nearest(float t, uint rank) { return uint64_t(floatBitsToUint(t)) << 32 | uint64_t(rank); }
-float nearest_distance(uint64_t packed_hit) { return uintBitsToFloat(uint(packed_hit >> 32)); }
+uint64_t make_nearest(float t, uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }
+float nearest_distance(uint64_t packed_hit) { return unorder_float(uint(packed_hit >> 32)); }
 
 #endif

@@ -29,6 +29,7 @@ CursorData cursor;
 float slot_entry[kMostSlots];
 uint slot_instance[kMostSlots];
 uint slot_tree[kMostSlots];
+uint slot_levels[kMostSlots];
 uint slot_count = 0u;
 bool is_blocked = false; ///< tiles are missing that the host has still to make
 
@@ -59,7 +60,7 @@ bool is_slot_after(uint place, CursorData mark) {
 }
 
 /// Keeps a tree of this instance if it comes after the cursor and is among the nearest so far.
-void offer_candidate(uint tree, float entry) {
+void offer_candidate(uint tree, uint levels, float entry) {
     if (push.round > 0u && !is_after(entry, instance_index, tree, cursor)) return;
     CursorData own = CursorData(entry, instance_index, tree);
     if (slot_count == push.slots && !is_slot_after(push.slots - 1u, own)) return;
@@ -69,27 +70,29 @@ void offer_candidate(uint tree, float entry) {
         slot_entry[place] = slot_entry[place - 1u];
         slot_instance[place] = slot_instance[place - 1u];
         slot_tree[place] = slot_tree[place - 1u];
+        slot_levels[place] = slot_levels[place - 1u];
     }
     slot_entry[place] = entry;
     slot_instance[place] = instance_index;
     slot_tree[place] = tree;
+    slot_levels[place] = levels;
 }
 
 /// Levels that this ray sees a patch at, packed.
-uint choose_levels(InstanceData of, uint patch_index) {
-    uint levels = lower_packed_levels(find_levels(of, patch_index), world.bias);
+uint choose_levels(uint patch_index) {
+    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.bias);
     if (push.is_ray_lod == 0u) return levels;
-    SurfaceData s = surfaces[of.surface];
+    SurfaceData s = surfaces[instance.surface];
     uvec4 quad = load_quad(s, patch_index);
     float longest = 0.0;
     vec3 sum = vec3(0.0);
     for (uint k = 0u; k < 4u; ++k) {
         vec3 from = load_position(s, quad[k]);
         vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - from;
-        longest = max(longest, length(transform_vector(of.world_from_object, edge)));
+        longest = max(longest, length(transform_vector(instance.world_from_object, edge)));
         sum += from;
     }
-    vec3 middle = transform_point(of.world_from_object, sum * 0.25);
+    vec3 middle = transform_point(instance.world_from_object, sum * 0.25);
     float distance_there = find_passing_distance(world.origin, world.direction, world.t_min, middle);
     return pack_uniform_level(choose_ray_level(longest, distance_there, push.pixel_angle, packed_patch_level(levels)));
 }
@@ -117,10 +120,10 @@ void request_tiles(uint patch_number, RequestData request) {
 }
 
 void enter_patch(uint patch_index, float entry) {
-    uint levels = choose_levels(instance, patch_index);
+    uint levels = choose_levels(patch_index);
     uint patch_number = surfaces[instance.surface].first_quad + patch_index;
     if (packed_patch_level(levels) <= kTreeLevels) {
-        offer_candidate(patch_number, entry);
+        offer_candidate(patch_number, levels, entry);
         return;
     }
     uint root = find_directory(patch_number, levels);
@@ -223,7 +226,7 @@ bool walk() {
         } else if (kind == kNodePatch)
             enter_patch(first, entry);
         else if (kind == kNodeTile)
-            offer_candidate(first, entry);
+            offer_candidate(first, tile_records[first - push.patch_count].levels, entry);
         else {
             intersect_polygons(first, kind_and_count & ((1u << kNodeKindShift) - 1u));
             if (push.is_any != 0u && best.instance != kNone) return true;
@@ -234,21 +237,16 @@ bool walk() {
 
 CandidateData make_candidate(uint k) {
     uint tree = slot_tree[k];
-    if (tree >= push.patch_count) {
-        TileRecord tile = tile_records[tree - push.patch_count];
-        return CandidateData(slot_instance[k], tree, tile.patch_index, tile.levels, slot_entry[k]);
-    }
-    InstanceData of = instances[slot_instance[k]];
-    uint patch_index = tree - surfaces[of.surface].first_quad;
-    return CandidateData(slot_instance[k], tree, patch_index, choose_levels(of, patch_index),
-                         slot_entry[k]);
+    uint patch_index = tree >= push.patch_count
+                           ? tile_records[tree - push.patch_count].patch_index
+                           : tree - surfaces[instances[slot_instance[k]].surface].first_quad;
+    return CandidateData(slot_instance[k], tree, patch_index, slot_levels[k], slot_entry[k]);
 }
 
 /// Hands the candidates on; a ray that waits for tiles hands on nothing and comes again.
 void emit_candidates(uint place) {
     if (is_blocked) slot_count = 0u;
-    uint first_pair;
-    RESERVE(counters.pair_count, slot_count, first_pair)
+    uint first_pair = atomicAdd(counters.pair_count, slot_count);
     for (uint k = 0u; k < push.slots; ++k) {
         uint candidate = place * push.slots + k;
         candidates[candidate].instance = kNone;
