@@ -34,7 +34,6 @@ TEST_F(Devices, tell_their_limits) {
     EXPECT_GE(device().max_buffer_bytes(), 1u << 27);
     EXPECT_GE(device().max_texel_count(), 1u << 24);
     EXPECT_GE(device().max_group_size(), 256u);
-    EXPECT_GE(device().subgroup_size(), 1u);
     EXPECT_GE(device().resident_group_count(), 1u);
     EXPECT_GT(device().available_bytes(), 0u);
     EXPECT_LE(device().available_bytes(), device().description().memory_bytes);

@@ -91,7 +91,6 @@ void read_limits(Device::Implementation& d) {
     d.max_allocation_bytes = std::min<uint64_t>(
         with_11.maxMemoryAllocationSize, chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
     d.max_buffer_bytes = std::min<uint64_t>(d.limits.maxStorageBufferRange, d.max_allocation_bytes);
-    d.subgroup_size = with_11.subgroupSize;
     d.resident_group_count = count_resident_groups(d.physical, d.description.is_cpu);
     d.family = find_compute_family(d.physical).value();
     const uint32_t timestamp_bits = d.physical.getQueueFamilyProperties()[d.family].timestampValidBits;
@@ -229,7 +228,6 @@ uint32_t Device::max_group_size() const {
     const vk::PhysicalDeviceLimits& limits = implementation_->limits;
     return std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
 }
-uint32_t Device::subgroup_size() const { return implementation_->subgroup_size; }
 uint32_t Device::resident_group_count() const { return implementation_->resident_group_count; }
 uint64_t Device::available_bytes() const { return implementation_->memory->available_bytes(); }
 uint64_t Device::allocated_bytes(Purpose purpose) const {

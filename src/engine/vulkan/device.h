@@ -55,7 +55,6 @@ class Device {
     /// Texels that one texel buffer may have.
     uint64_t max_texel_count() const;
     uint32_t max_group_size() const; ///< invocations
-    uint32_t subgroup_size() const;
     /// Work groups to keep the device busy with persistent kernels.
     uint32_t resident_group_count() const;
     /// Device memory that may still be allocated.

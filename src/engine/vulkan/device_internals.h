@@ -44,7 +44,6 @@ struct Device::Implementation {
     vk::PhysicalDeviceLimits limits;
     uint64_t max_buffer_bytes = 0;     ///< as a storage buffer
     uint64_t max_allocation_bytes = 0; ///< of a buffer of any kind
-    uint32_t subgroup_size = 0;
     uint32_t resident_group_count = 0;
     float timestamp_period_s = 0; ///< 0: the queue has none
     uint64_t timestamp_mask = 0;  ///< of the bits that a timestamp has
