@@ -29,6 +29,10 @@ inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
 inline float atan(float y, float x) { return std::atan2(y, x); }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
+/// Index of a bit as in GLSL: -1 where there is none.
+inline int findLSB(uint a) { return a == 0 ? -1 : std::countr_zero(a); }
+inline int findMSB(uint a) { return 31 - std::countl_zero(a); }
+inline int bitCount(uint a) { return std::popcount(a); }
 /// Unit vector along a; (0, 0, 0) for a zero or non-finite vector.
 inline Vec3 make_unit(const Vec3& a) { return relief::normalize(a); }
 using relief::cross;

@@ -1,5 +1,6 @@
 // clang-format off
 // Every formula of this folder, for C++ instances (math/scalar.h and the SIMD instances). GLSL includes single files.
+// Not traverse_*.h, which call functions of their includer (see tree.h).
 // No include guard: each instance includes it inside a namespace of its own.
 #include "shared/lang.h"
 #include "shared/displace.h"
@@ -10,6 +11,9 @@
 #include "shared/texel.h"
 #include "shared/object_ray.h"
 #include "shared/quantise.h"
+#include "shared/trail.h"
+#include "shared/morton.h"
+#include "shared/tree.h"
 #include "shared/bottom_tree.h"
 #include "shared/lod.h"
 #include "shared/sobol.h"
