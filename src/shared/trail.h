@@ -79,6 +79,15 @@ FN HeapKey highest_bit(HeapKey bits) {
     return highest;
 }
 
+/// Level of a key that is not 0: the root's is 0.
+FN uint level_of_key(uint key) { return uint(findMSB(key)); }
+FN uint level_of_key(HeapKey key) {
+    return key.high != 0u ? 32u + level_of_key(key.high) : level_of_key(key.low);
+}
+
+FN uint low_word(uint bits) { return bits; }
+FN uint low_word(HeapKey bits) { return bits.low; }
+
 /// 2 bits + bit.
 FN uint append_bit(uint bits, uint bit) { return (bits << 1u) | bit; }
 FN HeapKey append_bit(HeapKey bits, uint bit) {

@@ -87,6 +87,11 @@ struct HeapBrick {
     uint inner_low, inner_high, first_pair;
     uint deeper_low, deeper_high, first_brick;
 };
+
+struct HeapForm {
+    uint flat_levels;
+    uint flat_pairs; ///< pairs before those of the first brick
+};
 const uint kHeapBlockBytes = 12u;
 const uint kHeapBrickBytes = 24u;
 const uint kBrickLevels = 6u;

@@ -80,10 +80,16 @@ class SahBuild {
         }
     }
 
+    /// Whether sets of `count` on level `depth` can be halved down to leaves within the greatest depth.
+    bool fits(uint32_t count, int depth) const {
+        const int levels = std::min(config_.max_depth - depth, 30);
+        return count <= uint64_t(config_.max_leaf_size) << levels;
+    }
+
     /// Size of the left side, which is then at the front of the ids; 0: make a leaf.
     uint32_t split(const Subtree& tree, const SplitInput& input, double half_area) {
         const uint32_t count = tree.count();
-        if (count == 1) return 0;
+        if (count == 1 || tree.depth == config_.max_depth) return 0;
         const bool may_be_leaf = count <= config_.max_leaf_size;
         const bool is_swept = config_.method == SahBvhBuilder::Method::sweep || count <= kSmallCount;
         std::array<SweepEntry, kSmallCount> small;
@@ -95,7 +101,8 @@ class SahBuild {
         SahSplit best;
         if (tree.depth < kMaxSahDepth && half_area > 0)
             best = is_swept ? find_sweep_split(input, scratch) : find_binned_split(input, config_.bin_count);
-        if (!best.is_valid()) return may_be_leaf ? 0 : apply_median_split(input);
+        if (!best.is_valid() || !fits(best.imbalance, tree.depth + 1))
+            return may_be_leaf ? 0 : apply_median_split(input);
         const double leaf_cost = double(config_.intersection_cost) * count;
         const double split_cost = config_.traversal_cost + config_.intersection_cost * best.cost / half_area;
         if (may_be_leaf && leaf_cost <= split_cost) return 0;
@@ -136,6 +143,7 @@ Bvh SahBvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     DCHECK(config.bin_count >= 2 && config.bin_count <= kMaxBinCount);
     DCHECK(config.traversal_cost > 0 && config.intersection_cost > 0);
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= 8);
+    DCHECK(config.max_depth >= 1 && config.max_depth <= kMaxBvhDepth);
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)
         throw Error(ErrorKind::out_of_memory,

@@ -17,6 +17,10 @@ class SahBvhBuilder {
         float traversal_cost = 1.0f;    ///< of one inner node, relative, > 0
         float intersection_cost = 1.0f; ///< of one primitive, relative, > 0
         uint32_t max_leaf_size = 4;     ///< primitives, [1, 8]
+        /// Edges on the longest way down, [1, kMaxBvhDepth]. Sets are halved where they would not fit
+        /// otherwise; leaves on the last level hold all that is left, which is more than max_leaf_size only
+        /// below 30 levels.
+        int max_depth = kMaxBvhDepth;
     };
 
     /// Every box must be finite and not empty. The tree is the same for any number of threads. No boxes: an

@@ -1,0 +1,175 @@
+#include "structures/heap_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "base/check.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+using scalar::HeapBlock;
+using scalar::HeapBrick;
+using scalar::kBrickLevels;
+
+TreeNode make_heap_node(const Bvh& bvh, std::span<const uint8_t> axes, uint32_t index) {
+    TreeNode node = std::bit_cast<TreeNode>(bvh.nodes[index]);
+    // The way down follows from the key.
+    if (!bvh.nodes[index].is_leaf()) node.first = 0, node.word = scalar::make_inner_word(axes[index]);
+    return node;
+}
+
+void set_bit(uint32_t& low, uint32_t& high, uint32_t place) {
+    (place < 32 ? low : high) |= 1u << (place & 31u);
+}
+
+struct KeyedNode {
+    uint64_t key;
+    uint32_t node;
+};
+
+/// Level by level, in the order of keys: pairs get their slots in the order in which their parents come.
+class SuccinctBuild {
+  public:
+    SuccinctBuild(const Bvh& bvh, std::span<const uint8_t> axes) : bvh_(bvh), axes_(axes) {}
+
+    SuccinctHeap run() {
+        heap_.depth = compute_depth(bvh_);
+        heap_.primitive_ids = bvh_.primitive_ids;
+        const uint32_t pairs = uint32_t(bvh_.nodes.size() / 2);
+        // Four to eight bits of the flat part a pair: most nodes are found by one look into it.
+        const int levels = pairs > 0 ? std::bit_width(pairs) + 1 : 0;
+        heap_.form.flat_levels = uint32_t(std::min(levels, heap_.depth));
+        heap_.blocks.resize(((size_t(2) << heap_.form.flat_levels) + 63) / 64);
+        heap_.nodes.reserve(bvh_.nodes.size() + 1);
+        TreeNode none{};
+        none.word = scalar::kEmptySlot;
+        heap_.nodes = {none, make_heap_node(bvh_, axes_, 0)};
+        add_flat_levels();
+        for (size_t k = 0; k < brick_roots_.size(); ++k) add_brick(brick_roots_[k]);
+        rank_blocks();
+        return std::move(heap_);
+    }
+
+  private:
+    void add_pair(uint32_t node) {
+        const uint32_t first = bvh_.nodes[node].first;
+        heap_.nodes.push_back(make_heap_node(bvh_, axes_, first));
+        heap_.nodes.push_back(make_heap_node(bvh_, axes_, first + 1));
+    }
+
+    void add_children(std::vector<KeyedNode>& list, const KeyedNode& parent) const {
+        const uint32_t first = bvh_.nodes[parent.node].first;
+        list.push_back({2 * parent.key, first});
+        list.push_back({2 * parent.key + 1, first + 1});
+    }
+
+    void add_flat_levels() {
+        std::vector<KeyedNode> level{{1, 0}};
+        for (uint32_t depth = 0; depth <= heap_.form.flat_levels; ++depth) {
+            std::vector<KeyedNode> next;
+            for (const KeyedNode& node : level) {
+                if (bvh_.nodes[node.node].is_leaf()) continue;
+                HeapBlock& block = heap_.blocks[node.key / 64];
+                set_bit(block.inner_low, block.inner_high, uint32_t(node.key % 64));
+                if (depth == heap_.form.flat_levels) {
+                    brick_roots_.push_back(node.node);
+                    continue;
+                }
+                add_pair(node.node);
+                ++heap_.form.flat_pairs;
+                add_children(next, node);
+            }
+            level = std::move(next);
+        }
+    }
+
+    void add_brick(uint32_t root) {
+        HeapBrick brick{};
+        brick.first_pair = uint32_t(heap_.nodes.size() / 2 - 1);
+        brick.first_brick = uint32_t(brick_roots_.size());
+        std::vector<KeyedNode> level{{1, root}};
+        for (uint32_t depth = 0; depth <= kBrickLevels; ++depth) {
+            std::vector<KeyedNode> next;
+            for (const KeyedNode& node : level) {
+                if (bvh_.nodes[node.node].is_leaf()) continue;
+                if (depth == kBrickLevels) {
+                    set_bit(brick.deeper_low, brick.deeper_high, uint32_t(node.key - 64));
+                    brick_roots_.push_back(node.node);
+                    continue;
+                }
+                set_bit(brick.inner_low, brick.inner_high, uint32_t(node.key));
+                add_pair(node.node);
+                add_children(next, node);
+            }
+            level = std::move(next);
+        }
+        heap_.bricks.push_back(brick);
+    }
+
+    void rank_blocks() {
+        uint32_t rank = 0;
+        for (HeapBlock& block : heap_.blocks) {
+            block.rank = rank;
+            rank += uint32_t(std::popcount(block.inner_low) + std::popcount(block.inner_high));
+        }
+    }
+
+    const Bvh& bvh_;
+    std::span<const uint8_t> axes_;
+    std::vector<uint32_t> brick_roots_; ///< in the order of brick numbers
+    SuccinctHeap heap_;
+};
+
+[[noreturn]] void refuse_depth(int depth, int limit, const char* form) {
+    throw Error(ErrorKind::out_of_memory,
+                {std::string("a tree of ") + std::to_string(depth) + " levels below its root does not fit " +
+                     form + ", which has room for " + std::to_string(limit),
+                 "", "give the builder a smaller greatest depth"});
+}
+
+} // namespace
+
+DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
+    DCHECK(axes.size() == bvh.nodes.size());
+    DenseHeap heap;
+    if (bvh.nodes.empty()) return heap;
+    const int depth = compute_depth(bvh);
+    if (depth >= DenseHeap::kMaxLevels)
+        refuse_depth(depth, DenseHeap::kMaxLevels - 1, "a heap with empty slots");
+    heap.levels = depth + 1;
+    heap.primitive_ids = bvh.primitive_ids;
+    TreeNode none{};
+    none.word = scalar::kEmptySlot;
+    heap.slots.assign(size_t(1) << heap.levels, none);
+    std::vector<KeyedNode> pending{{1, 0}};
+    while (!pending.empty()) {
+        const KeyedNode node = pending.back();
+        pending.pop_back();
+        heap.slots[node.key] = make_heap_node(bvh, axes, node.node);
+        if (bvh.nodes[node.node].is_leaf()) continue;
+        const uint32_t first = bvh.nodes[node.node].first;
+        pending.push_back({2 * node.key, first});
+        pending.push_back({2 * node.key + 1, first + 1});
+    }
+    return heap;
+}
+
+SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
+    DCHECK(axes.size() == bvh.nodes.size());
+    if (bvh.nodes.empty()) return {};
+    const int depth = compute_depth(bvh);
+    const int limit = int(scalar::kTrailLevels64);
+    if (depth > limit) refuse_depth(depth, limit, "a key of 64 bits");
+    return SuccinctBuild(bvh, axes).run();
+}
+
+size_t count_used_slots(const DenseHeap& heap) {
+    return size_t(std::count_if(heap.slots.begin(), heap.slots.end(),
+                                [](const TreeNode& node) { return node.word != scalar::kEmptySlot; }));
+}
+
+} // namespace relief

@@ -1,0 +1,52 @@
+// Binary trees in heap order: the children of the node of key n have the keys 2n and 2n + 1 (shared/tree.h).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "structures/tree_links.h"
+
+namespace relief {
+
+/// Slot k is the node of key k; slot 0 is empty, as are all that the tree does not use (word kEmptySlot).
+struct DenseHeap {
+    static constexpr int kMaxLevels = 26; ///< 2 GiB
+
+    std::vector<TreeNode> slots; ///< 2^levels, none: no primitives
+    std::vector<uint32_t> primitive_ids;
+    int levels = 0; ///< of the deepest node, counting from 1
+
+    size_t byte_count() const {
+        return slots.size() * sizeof(TreeNode) + primitive_ids.size() * sizeof(uint32_t);
+    }
+};
+
+/// Only the slots in use, and a directory from keys to slots: about 66 bytes for two siblings.
+struct SuccinctHeap {
+    std::vector<TreeNode>
+        nodes; ///< slot 0 is empty, the root slot 1, siblings at 2k and 2k + 1; none: no primitives
+    std::vector<scalar::HeapBlock> blocks;
+    std::vector<scalar::HeapBrick> bricks;
+    scalar::HeapForm form{};
+    std::vector<uint32_t> primitive_ids;
+    int depth = 0; ///< edges on the longest way down
+
+    size_t directory_bytes() const {
+        return blocks.size() * sizeof(scalar::HeapBlock) + bricks.size() * sizeof(scalar::HeapBrick);
+    }
+    size_t byte_count() const {
+        return nodes.size() * sizeof(TreeNode) + directory_bytes() + primitive_ids.size() * sizeof(uint32_t);
+    }
+};
+
+/// `axes` as for make_linked_bvh. Throws Error for more than DenseHeap::kMaxLevels levels.
+DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes);
+
+/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth helps.
+SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes);
+
+/// Number of slots in use.
+size_t count_used_slots(const DenseHeap& heap);
+
+} // namespace relief

@@ -1,0 +1,45 @@
+// What walks without a stack need of a tree besides its nodes: an axis for each inner node, parents, skip
+// links.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/scalar.h"
+#include "structures/bvh.h"
+
+namespace relief {
+
+using scalar::TreeNode;
+static_assert(sizeof(TreeNode) == sizeof(BvhNode));
+
+/// A Bvh with its links. Nodes keep their numbers.
+struct LinkedBvh {
+    std::vector<TreeNode> nodes; ///< node 0 is the root; no nodes: no primitives
+    std::vector<uint32_t> primitive_ids;
+    std::vector<uint32_t> parents; ///< kNoNode for the root
+    std::vector<uint32_t> skips;   ///< the node after the subtree, left before right; kNoNode behind the last
+    int depth = 0;                 ///< edges on the longest way down
+
+    /// Of the nodes and ids; links on top: 4 bytes a node for each kind.
+    size_t byte_count() const {
+        return nodes.size() * sizeof(TreeNode) + primitive_ids.size() * sizeof(uint32_t);
+    }
+};
+
+/// Axis of each inner node, along which its left child lies below the right one by most; 0 for leaves. Rays
+/// that go backwards along it take the right child first.
+std::vector<uint8_t> compute_axes(const Bvh& bvh);
+
+/// `axes`: one a node, as a builder gives them or compute_axes.
+LinkedBvh make_linked_bvh(const Bvh& bvh, std::span<const uint8_t> axes);
+
+/// Edges on the longest way from the root to a leaf; 0 without nodes.
+int compute_depth(const Bvh& bvh);
+
+/// Every node on level `max_depth` >= 0 becomes a leaf of all primitives below it. In trees of this folder
+/// these stand next to each other.
+Bvh limit_depth(const Bvh& bvh, int max_depth);
+
+} // namespace relief

@@ -1,0 +1,273 @@
+// The walks of shared/traverse_*.h over the trees of this folder: the reference for the kernels of a device,
+// and what the CPU runs when a traversal is asked for by name. Same leaf contract as walk_stack.h:
+//   closest_hit<Traversal::trail>(walk_view(heap), ray, leaf);
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+
+#include "base/check.h"
+#include "structures/heap_tree.h"
+#include "structures/ray_box.h"
+#include "structures/sah_kdtree.h"
+#include "structures/tree_links.h"
+
+namespace relief {
+
+enum class Traversal {
+    stack,         ///< LinkedBvh
+    restart_trail, ///< LinkedBvh
+    parent_link,   ///< LinkedBvh
+    skip_link,     ///< LinkedBvh
+    trail,         ///< DenseHeap, SuccinctHeap
+    pair_trail,    ///< DenseHeap, SuccinctHeap
+    kd_restart,    ///< KdTree
+    kd_push_down,  ///< KdTree
+    kd_backtrack,  ///< KdTree with cells
+};
+
+/// What a walk did; added up over rays.
+struct WalkCounts {
+    uint64_t box_tests = 0;
+    uint64_t primitive_tests = 0;
+    uint64_t restarts = 0;
+    uint64_t bytes = 0; ///< of nodes, links and directories; not of primitives
+};
+
+/// Where nobody counts.
+struct NoCounts {};
+
+namespace scalar {
+
+/// `Width`: uint or HeapKey, for the restart trail: trees of 30 or 62 levels.
+template <class Width> struct BvhWalkView {
+    using Key = Width;
+    const LinkedBvh& tree;
+
+    bool is_empty() const { return tree.nodes.empty(); }
+    TreeNode load_node(uint node) const { return tree.nodes[node]; }
+    uint load_parent(uint node) const { return tree.parents[node]; }
+    uint load_skip(uint node) const { return tree.skips[node]; }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
+
+struct DenseWalkView {
+    using Key = uint;
+    const DenseHeap& tree;
+
+    bool is_empty() const { return tree.slots.empty(); }
+    TreeNode load_node(uint slot) const { return tree.slots[slot]; }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
+
+/// `Width`: uint or HeapKey: trees of 30 or 62 levels.
+template <class Width> struct SuccinctWalkView {
+    using Key = Width;
+    const SuccinctHeap& tree;
+
+    bool is_empty() const { return tree.nodes.empty(); }
+    TreeNode load_node(uint slot) const { return tree.nodes[slot]; }
+    HeapForm get_heap_form() const { return tree.form; }
+    HeapBlock load_heap_block(uint block) const { return tree.blocks[block]; }
+    HeapBrick load_heap_brick(uint brick) const { return tree.bricks[brick]; }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
+
+struct KdWalkView {
+    using Key = uint;
+    const KdTree& tree;
+
+    bool is_empty() const { return tree.nodes.empty(); }
+    KdNode load_kd_node(uint node) const { return tree.nodes[node]; }
+    KdBox load_kd_box(uint node) const { return tree.cells[node]; }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
+
+/// All walks in one class: their hooks are the same, and only the members that a walk uses are ever made.
+/// `Leaf` is called as leaf(primitive_id, ray), may shorten ray.t_max, and ends the walk by true.
+template <class View, class Leaf, class Counts> class Walker {
+  public:
+    using Key = typename View::Key;
+
+    Walker(const View& view, BoxRay& ray, Leaf& leaf, Counts& counts)
+        : view_(view),
+          ray_(ray),
+          leaf_(leaf),
+          counts_(counts),
+          object_ray_(make_object_ray(ray.origin, ray.direction)) {}
+
+    /// True: a leaf ended the walk. `start`: key of the node to start at, for the two trails.
+    template <Traversal kTraversal> bool run(Key start) {
+        if (view_.is_empty()) return false;
+        const bool is_complete = walk<kTraversal>(start);
+        DCHECK(is_complete);
+        static_cast<void>(is_complete);
+        return is_ended_;
+    }
+
+    /// Key of the last leaf that was visited, by a trail; `start` where none was.
+    template <Traversal kTraversal> Key last_leaf() const {
+        return kTraversal == Traversal::trail ? trail_walk.leaf : pair_walk.leaf;
+    }
+
+  private:
+    template <Traversal kTraversal> bool walk(Key start) {
+        if constexpr (kTraversal == Traversal::stack) {
+            stack_walk = make_empty_stack();
+            start_stack(0u);
+            return walk_stack();
+        } else if constexpr (kTraversal == Traversal::restart_trail) {
+            restart_walk = start_restart_trail(0u, make_root_level());
+            return walk_restart_trail();
+        } else if constexpr (kTraversal == Traversal::parent_link) {
+            parent_walk = start_parent_link(0u);
+            return walk_parent_link();
+        } else if constexpr (kTraversal == Traversal::skip_link) {
+            skip_walk = start_skip_link(0u);
+            return walk_skip_link();
+        } else if constexpr (kTraversal == Traversal::trail) {
+            trail_walk = start_trail(start);
+            return walk_trail();
+        } else if constexpr (kTraversal == Traversal::pair_trail) {
+            pair_walk = start_pair_trail(start);
+            return walk_pair_trail();
+        } else {
+            return walk_kd<kTraversal>();
+        }
+    }
+
+    template <Traversal kTraversal> bool walk_kd() {
+        const KdRay ray = make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper,
+                                      ray_.t_min, ray_.t_max);
+        if constexpr (kTraversal == Traversal::kd_restart) {
+            kd_restart_walk = start_kd_restart(0u, ray);
+            return walk_kd_restart();
+        } else if constexpr (kTraversal == Traversal::kd_push_down) {
+            kd_push_down_walk = start_kd_push_down(0u, ray);
+            return walk_kd_push_down();
+        } else {
+            DCHECK(!view_.tree.cells.empty());
+            kd_backtrack_walk = start_kd_backtrack(0u, ray);
+            return walk_kd_backtrack();
+        }
+    }
+
+    static constexpr bool kIsCounting = requires(Counts & counts) { counts.bytes; };
+    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
+
+    static Key make_root_level() {
+        if constexpr (kIsWide)
+            return make_root_level64();
+        else
+            return make_root_level32();
+    }
+
+    // The hooks of shared/tree.h.
+    TreeNode load_node(uint node) const { return view_.load_node(node); }
+    uint load_parent(uint node) const { return view_.load_parent(node); }
+    uint load_skip(uint node) const { return view_.load_skip(node); }
+    HeapForm get_heap_form() const { return view_.get_heap_form(); }
+    HeapBlock load_heap_block(uint block) const { return view_.load_heap_block(block); }
+    HeapBrick load_heap_brick(uint brick) const { return view_.load_heap_brick(brick); }
+    KdNode load_kd_node(uint node) const { return view_.load_kd_node(node); }
+    KdBox load_kd_box(uint node) const { return view_.load_kd_box(node); }
+
+    float get_limit() const { return ray_.t_max; }
+    float enter_box(const TreeNode& node) const {
+        return cross_node(object_ray_, node, ray_.t_min, ray_.t_max);
+    }
+    bool is_axis_backward(uint axis) const { return select_axis(ray_.direction, axis) < 0.0f; }
+    bool resume_walk() const { return false; }
+
+    bool visit_leaf(uint first, uint word, uint) {
+        for (uint k = 0; k < count_of_word(word); ++k) {
+            if constexpr (kIsCounting) ++counts_.primitive_tests;
+            if (leaf_(view_.primitive_ids()[first + k], ray_)) return is_ended_ = true;
+        }
+        return false;
+    }
+
+    uint find_slot(Key key) {
+        if constexpr (requires { view_.get_heap_form(); })
+            return find_succinct_slot(key);
+        else
+            return low_word(key);
+    }
+
+    void count_box_test() {
+        if constexpr (kIsCounting) ++counts_.box_tests;
+    }
+    void count_restart() {
+        if constexpr (kIsCounting) ++counts_.restarts;
+    }
+    void count_bytes(uint bytes) {
+        if constexpr (kIsCounting) counts_.bytes += bytes;
+    }
+
+#include "shared/succinct_heap.h"
+#include "shared/traverse_kd_backtrack.h"
+#include "shared/traverse_kd_push_down.h"
+#include "shared/traverse_kd_restart.h"
+#include "shared/traverse_pair_trail.h"
+#include "shared/traverse_parent_link.h"
+#include "shared/traverse_restart_trail.h"
+#include "shared/traverse_skip_link.h"
+#include "shared/traverse_stack.h"
+#include "shared/traverse_trail.h"
+
+    const View view_;
+    BoxRay& ray_;
+    Leaf& leaf_;
+    Counts& counts_;
+    const ObjectRay object_ray_;
+    bool is_ended_ = false;
+};
+
+inline uint make_root_key(uint) { return 1u; }
+inline HeapKey make_root_key(HeapKey) { return {1u, 0u}; }
+
+} // namespace scalar
+
+/// As narrow as the tree's depth allows; `wide` views for trees of more than kTrailLevels32 levels.
+inline scalar::BvhWalkView<uint32_t> walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::BvhWalkView<scalar::HeapKey> wide_walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::DenseWalkView walk_view(const DenseHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<uint32_t> walk_view(const SuccinctHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<scalar::HeapKey> wide_walk_view(const SuccinctHeap& tree) { return {tree}; }
+inline scalar::KdWalkView walk_view(const KdTree& tree) { return {tree}; }
+
+/// Calls `leaf(primitive_id, ray)` for every primitive whose box the ray may meet before ray.t_max (in a
+/// kd-tree perhaps several times); the leaf shortens ray.t_max to its hits. Where hits tie, the leaf decides.
+/// `counts`: WalkCounts to add to, or NoCounts.
+template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+void closest_hit(const View& view, BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
+    auto visit = [&](uint32_t id, BoxRay& r) {
+        leaf(id, r);
+        return false;
+    };
+    scalar::Walker walker(view, ray, visit, counts);
+    walker.template run<kTraversal>(scalar::make_root_key(typename View::Key{}));
+}
+
+/// Whether `leaf(primitive_id, ray)` was true for any primitive; stops at the first.
+template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+bool any_hit(const View& view, BoxRay ray, Leaf&& leaf, Counts&& counts = {}) {
+    scalar::Walker walker(view, ray, leaf, counts);
+    return walker.template run<kTraversal>(scalar::make_root_key(typename View::Key{}));
+}
+
+/// As any_hit, by Traversal::trail or pair_trail, but from the leaf where the ray before ended, `start`,
+/// which then becomes that of this one: rays that follow one another are often stopped by the same things. A
+/// key of the tree.
+template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+bool any_hit_from(const View& view, typename View::Key& start, BoxRay ray, Leaf&& leaf,
+                  Counts&& counts = {}) {
+    static_assert(kTraversal == Traversal::trail || kTraversal == Traversal::pair_trail);
+    scalar::Walker walker(view, ray, leaf, counts);
+    const bool is_hit = walker.template run<kTraversal>(start);
+    if (is_hit) start = walker.template last_leaf<kTraversal>();
+    return is_hit;
+}
+
+} // namespace relief
