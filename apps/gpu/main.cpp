@@ -27,6 +27,8 @@ struct Options {
     int device = -1;
     bool is_quick = false;
     std::vector<std::string> scenes; ///< empty: all
+    std::string only;                ///< part of the names of cases
+    std::vector<int> size;           ///< pixels; empty: the default
     int runs = 5;
     uint64_t tessellated_limit_mebibytes = 4096;
 };
@@ -52,6 +54,9 @@ int run_parity_verb(const Options& options) {
     ParityOptions parity;
     parity.settings = make_settings(options);
     if (!options.scenes.empty()) parity.scenes = options.scenes;
+    parity.only = options.only;
+    if (options.size.size() == 2)
+        parity.settings.width = options.size[0], parity.settings.height = options.size[1];
     if (options.is_quick) {
         parity.settings.width = 96, parity.settings.height = 64;
         parity.noise_samples = 16;
@@ -106,6 +111,11 @@ int run(int argument_count, char** arguments) {
     Options options;
     CLI::App* parity = app.add_subcommand("parity", "The Vulkan engine against the CPU engine");
     add_options(*parity, options, "JSON file");
+    parity->add_option("--only", options.only, "part of the names of the cases to run, e.g. means");
+    parity->add_option("--size", options.size, "pixels, WxH; default 1280x720. Means: a quarter of it")
+        ->delimiter('x')
+        ->expected(2)
+        ->check(CLI::Range(1, 16384));
     CLI::App* paper1 = app.add_subcommand("bench", "Table and figures of Harada 2015");
     add_options(*paper1, options, "folder for JSON, CSV and charts; default: paper1");
     paper1->add_option("--runs", options.runs, "that count, after one to warm up")

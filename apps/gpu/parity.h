@@ -36,6 +36,7 @@ struct ParityOptions {
     RenderSettings settings; ///< of the Vulkan engine: device, size, pipeline cache
     int noise_samples = 256; ///< a pixel, of the pictures whose means are compared
     std::vector<std::string> scenes = {"ear", "pumpkin", "bark", "barks", "party"};
+    std::string only; ///< part of the names of the cases to run; empty: all
 };
 
 /// {cases: [{name, outcome, ...}], passed, failed}: first hits at every level, leaf, form of the bottom

@@ -17,7 +17,10 @@ while [ $# -gt 0 ]; do
     case $1 in
     -o) result=${2:?-o needs a file} && shift 2 ;;
     --parts) parts=${2:?--parts needs a list} && shift 2 ;;
-    --device) device="--device ${2:?--device needs a number}" && shift 2 ;;
+    --device)
+        device="--device ${2:?--device needs a number}" && shift 2
+        export RELIEF_TEST_DEVICE="${device#--device }"
+        ;;
     --parity) parity_words=${2?--parity needs words} && shift 2 ;;
     --bench) bench_words=${2?--bench needs words} && shift 2 ;;
     --quick) quick=--quick && shift ;;

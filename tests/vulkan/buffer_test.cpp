@@ -34,7 +34,7 @@ TEST_F(Buffers, give_back_what_was_uploaded) {
 }
 
 TEST_F(Buffers, are_copied_through_staging_memory_in_parts) {
-    const Device staged({.is_validated = true, .is_staged = true});
+    const Device staged({.index = get_test_device_index(), .is_validated = true, .is_staged = true});
     const std::vector<uint32_t> values = make_numbers(10'000'000);
     Buffer buffer(staged, {.name = "values", .bytes = values.size() * 4});
     buffer.upload(values);

@@ -31,7 +31,8 @@ class EngineTest : public testing::Test {
 
     void prepare() {
         prepared_ = prepare_scene(make_scene(DisplacementSpace::tangent), settings_);
-        auto device = std::make_unique<Device>(Device::Config{.is_validated = true});
+        auto device =
+            std::make_unique<Device>(Device::Config{.index = get_test_device_index(), .is_validated = true});
         device_ = device.get();
         engine_ = make_engine_on(std::move(device), prepared_, settings_);
     }

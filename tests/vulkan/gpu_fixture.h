@@ -2,15 +2,23 @@
 // caused it.
 #pragma once
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "engine/vulkan/device.h"
 
 namespace relief::vulkan::tests {
 
+/// Of the device under test: RELIEF_TEST_DEVICE, or the best one.
+inline int get_test_device_index() {
+    const char* index = std::getenv("RELIEF_TEST_DEVICE");
+    return index ? std::atoi(index) : -1;
+}
+
 /// Made when first asked for: with Khronos validation and synchronisation validation.
 inline const Device& get_test_device() {
-    static const Device device({.is_validated = true});
+    static const Device device({.index = get_test_device_index(), .is_validated = true});
     return device;
 }
 

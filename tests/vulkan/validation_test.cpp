@@ -5,6 +5,7 @@
 
 #include "engine/vulkan/commands.h"
 #include "engine/vulkan/device_internals.h"
+#include "gpu_fixture.h"
 
 namespace relief::vulkan::tests {
 namespace {
@@ -16,7 +17,7 @@ bool has_message(const Device& device, std::string_view part) {
 }
 
 TEST(Validation, finds_a_missing_barrier) {
-    const Device device({.is_validated = true});
+    const Device device({.index = get_test_device_index(), .is_validated = true});
     const Buffer one(device, {.name = "one", .bytes = 64}), two(device, {.name = "two", .bytes = 64});
     const auto copy = [](const vk::raii::CommandBuffer& commands, const Buffer& from, const Buffer& to) {
         commands.copyBuffer(*from.internals().buffer, *to.internals().buffer, vk::BufferCopy(0, 0, 64));
@@ -35,7 +36,7 @@ TEST(Validation, finds_a_missing_barrier) {
 }
 
 TEST(Validation, finds_a_wrong_call_and_names_the_object) {
-    const Device device({.is_validated = true});
+    const Device device({.index = get_test_device_index(), .is_validated = true});
     const Buffer buffer(device, {.name = "the small one", .bytes = 64});
     device.internals().run_once("a fill beyond the end", [&](const vk::raii::CommandBuffer& commands) {
         commands.fillBuffer(*buffer.internals().buffer, 128, 4, 0);

@@ -57,7 +57,7 @@ HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], c
     }
     const Lanes16 entry = max(max(near[0], near[1]), max(near[2], packet.t_min));
     const Lanes16 exit = min(min(far[0], far[1]), min(far[2], Lanes16::load(packet.t_max)));
-    mask &= less_equal(entry, exit * Lanes16(kSlabSlack));
+    mask &= less_equal(entry, exit * Lanes16(kBoxSlack));
     if (mask) nearest = reduce_min(entry);
     return mask;
 }
@@ -179,7 +179,7 @@ void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf v
     while (size > 0) {
         PacketEntry top = stack[--size];
         top.mask &=
-            packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kSlabSlack));
+            packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kBoxSlack));
         if (!top.mask) continue;
         if (__builtin_popcount(top.mask) < kLeastPacket) {
             for (LaneMask left = top.mask; left; left &= left - 1)

@@ -16,17 +16,15 @@
 #include "engine/cpu/kernels.h"
 #include "math/affine.h"
 #include "math/lanes-inl.h"
+#include "math/scalar.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 enum class Query { closest, any };
 
-/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), and the same slack for a triangle's own t.
-inline constexpr float kSlabSlack = 1.0000005f;
-
-/// Smaller components of a direction count as zero in box tests.
-inline constexpr float kLeastDirection = 0x1p-120f;
+using scalar::kBoxSlack;
+using scalar::kLeastSpeed;
 
 struct RayState {
     float origin[3], direction[3], reciprocal[3];
@@ -48,9 +46,9 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
         // Along an axis that the ray does not move on, 1 / 0 would make 0 * infinity on a box's very face. A
         // finite factor, and an origin moved outward by more than rounding, let such a ray touch the box and
         // miss its neighbours.
-        const bool is_still = std::fabs(ray.direction[k]) < kLeastDirection;
+        const bool is_still = std::fabs(ray.direction[k]) < kLeastSpeed;
         const float margin = is_still ? 1e-6f * (std::fabs(ray.origin[k]) + 1e-24f) : 0.0f;
-        ray.reciprocal[k] = 1.0f / (is_still ? kLeastDirection : ray.direction[k]);
+        ray.reciprocal[k] = 1.0f / (is_still ? kLeastSpeed : ray.direction[k]);
         ray.lower_origin[k] = ray.origin[k] + margin;
         ray.upper_origin[k] = ray.origin[k] - margin;
     }
@@ -76,7 +74,7 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayState& ray, 
     }
     entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
     const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));
-    return less_equal(entry, exit * Lanes<W>(kSlabSlack));
+    return less_equal(entry, exit * Lanes<W>(kBoxSlack));
 }
 
 HWY_INLINE LaneMask test_node(const cpu::Node16& node, const RayState& ray, Lanes16& entry) {
@@ -115,7 +113,7 @@ HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RaySt
         order[slot] = child;
     }
     for (uint32_t k = 0; k < count; ++k) {
-        if (distance[order[k]] > ray.t_max * kSlabSlack) return false;
+        if (distance[order[k]] > ray.t_max * kBoxSlack) return false;
         if (visit(order[k])) return true;
     }
     return false;

@@ -38,7 +38,7 @@ HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ra
     stack[size++] = {root, ray.t_min};
     while (size > 0) {
         const StackEntry top = stack[--size];
-        if (top.entry > ray.t_max * kSlabSlack) continue;
+        if (top.entry > ray.t_max * kBoxSlack) continue;
         if (WideNode::is_leaf(top.child)) {
             const uint32_t first = WideNode::leaf_first(top.child), count = WideNode::leaf_count(top.child);
             for (uint32_t k = 0; k < count; ++k)

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/timer.h"
 #include "engine/camera_frame.h"
+#include "engine/vulkan/work_sums.h"
 
 namespace relief::vulkan {
 
@@ -86,6 +87,7 @@ void PathTracer::trace_samples(Film& film, PixelRange pixels, SampleRange sample
 
 void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples) {
     Commands& commands = tracer_.commands();
+    batch_casts_.clear();
     commands.begin_stage(Stage::film);
     commands.fill(film_sums_, 0, pixels.count * sizeof(scalar::FilmSumsData), 0);
     for (int k = 0; k < samples.count; ++k) trace_sample(film, pixels, uint32_t(samples.first + k));
@@ -93,6 +95,8 @@ void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples)
     const Timer timer;
     add_to_film(film, pixels, samples.count);
     film_s_ += timer.seconds();
+    // Not before: a batch that an error ends is traced again, and its rays count once.
+    for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
 }
 
 scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
@@ -122,7 +126,9 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     scalar::PathPush push = make_push(sample_index);
     push.count = uint32_t(pixels.count);
     for (; push.count > 0; ++push.depth) {
-        add_cast(push.depth, tracer_.closest_hits(path_list_, push.count), casts_);
+        CastStatistics cast = tracer_.closest_hits(path_list_, push.count);
+        cast.depth = int(push.depth);
+        add_cast(batch_casts_, cast);
         const NextRays next = shade_depth(push);
         trace_shadow_rays(push, next.shadow_count);
         push.count = next.path_count;
@@ -152,8 +158,8 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
 void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
     if (shadow_count == 0) return;
     CastStatistics cast = tracer_.any_hits(shadow_list_, shadow_count);
-    cast.is_shadow = true;
-    add_cast(push.depth, cast, shadow_casts_);
+    cast.depth = int(push.depth);
+    add_cast(batch_casts_, cast);
     Commands& commands = tracer_.commands();
     commands.begin_stage(Stage::shade);
     push.count = shadow_count;
@@ -171,33 +177,17 @@ void PathTracer::add_to_film(Film& film, PixelRange pixels, int sample_count) co
     }
 }
 
-void PathTracer::add_cast(uint32_t depth, const CastStatistics& cast, std::vector<CastStatistics>& casts) {
-    if (casts.size() <= depth) casts.resize(depth + 1);
-    CastStatistics& sum = casts[depth];
-    sum.depth = int(depth);
-    sum.is_shadow = cast.is_shadow;
-    sum.rays += cast.rays, sum.pairs += cast.pairs;
-    sum.top_traversal_s += cast.top_traversal_s, sum.sort_s += cast.sort_s;
-    sum.bottom_build_s += cast.bottom_build_s, sum.bottom_traversal_s += cast.bottom_traversal_s;
-}
-
-uint64_t PathTracer::ray_count() const {
-    uint64_t count = 0;
-    for (const CastStatistics& cast : casts_) count += cast.rays;
-    for (const CastStatistics& cast : shadow_casts_) count += cast.rays;
-    return count;
-}
-
 void PathTracer::add_statistics(Statistics& statistics) const {
-    for (const CastStatistics& cast : casts_)
-        (cast.depth == 0 ? statistics.camera_rays : statistics.bounce_rays) += cast.rays;
-    for (const CastStatistics& cast : shadow_casts_) statistics.shadow_rays += cast.rays;
-    statistics.film_s += film_s_;
-    for (size_t depth = 0; depth < casts_.size(); ++depth) {
-        statistics.casts.push_back(casts_[depth]);
-        if (depth < shadow_casts_.size() && shadow_casts_[depth].rays > 0)
-            statistics.casts.push_back(shadow_casts_[depth]);
+    Statistics work;
+    work.film_s = film_s_;
+    work.casts = casts_;
+    for (const CastStatistics& cast : casts_) {
+        if (cast.is_shadow)
+            work.shadow_rays += cast.rays;
+        else
+            (cast.depth == 0 ? work.camera_rays : work.bounce_rays) += cast.rays;
     }
+    add_work(statistics, work);
 }
 
 } // namespace relief::vulkan

@@ -36,9 +36,7 @@ class PathTracer {
     /// and samples; multiples of capacity() and kSamplesPerLaunch are best.
     void trace_samples(Film& film, PixelRange pixels, SampleRange samples);
 
-    /// Rays traced so far.
-    uint64_t ray_count() const;
-    /// Rays by kind, and casts by depth.
+    /// Rays by kind and casts by depth, of whole batches.
     void add_statistics(Statistics& statistics) const;
 
     /// Samples of a pixel that are summed up on the device, in single precision.
@@ -54,7 +52,6 @@ class PathTracer {
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void add_to_film(Film& film, PixelRange pixels, int sample_count) const;
     scalar::PathPush make_push(uint32_t sample_index) const;
-    void add_cast(uint32_t depth, const CastStatistics& cast, std::vector<CastStatistics>& casts);
 
     Tracer& tracer_;
     RenderSettings settings_;
@@ -64,8 +61,8 @@ class PathTracer {
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_,
         shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
-    std::vector<CastStatistics> casts_, shadow_casts_; ///< by depth
-    double film_s_ = 0;                                ///< of the host, for sums that come back
+    std::vector<CastStatistics> casts_, batch_casts_; ///< of whole batches; of the one under way
+    double film_s_ = 0;                               ///< of the host, for sums that come back
 };
 
 } // namespace relief::vulkan

@@ -57,6 +57,7 @@ void TileDirectories::build(std::span<const scalar::RequestData> requests, Comma
     }
     new_nodes_.clear();
     const uint32_t first_node = node_count_;
+    const size_t first_tile = tiles_.size();
     const size_t most_tiles = tiles_.size() + kMostNewTiles; // what is left out asks again
     for (const auto& [key, request] : unique) {
         if (tiles_.size() >= most_tiles) break;
@@ -67,7 +68,13 @@ void TileDirectories::build(std::span<const scalar::RequestData> requests, Comma
                               k % boxes.side * kTileCells, k / boxes.side * kTileCells});
         insert({key.first, key.second, append_tree(boxes, first_tree)});
     }
-    upload(first_node, commands, bindings);
+    upload_nodes(first_node, commands);
+    upload_tiles(first_tile);
+    if (table_.size() * sizeof(table_[0]) > table_buffer_.byte_count())
+        table_buffer_ =
+            Buffer(device_, {"tile directories", table_.size() * sizeof(table_[0]), Purpose::structures});
+    table_buffer_.upload(table_);
+    bind(bindings);
 }
 
 TileDirectories::Boxes TileDirectories::compute_boxes(const scalar::RequestData& request) const {
@@ -144,27 +151,27 @@ void TileDirectories::grow_table() {
     }
 }
 
-void TileDirectories::upload(uint32_t first_node, Commands& commands, BindingTable& bindings) {
+void TileDirectories::upload_nodes(uint32_t first_node, Commands& commands) {
     const uint64_t needed = uint64_t(node_count_) * sizeof(NodeTexels);
     if (needed > node_capacity_) {
-        node_capacity_ = needed + needed / 2;
-        Buffer larger(device_,
-                      {"nodes with tiles", node_capacity_, Purpose::structures, TexelFormat::rgba32_uint});
+        const uint64_t capacity = needed + needed / 2;
+        Buffer larger(device_, {"nodes with tiles", capacity, Purpose::structures, TexelFormat::rgba32_uint});
         commands.copy(nodes_ ? nodes_ : device_scene_.nodes(), 0, larger, 0,
                       uint64_t(first_node) * sizeof(NodeTexels));
         commands.run();
         nodes_ = std::move(larger);
+        node_capacity_ = capacity;
     }
     nodes_.upload(new_nodes_, uint64_t(first_node) * sizeof(NodeTexels));
-    const uint64_t tile_bytes = tiles_.size() * sizeof(tiles_[0]);
-    if (tile_bytes > tile_buffer_.byte_count())
-        tile_buffer_ = Buffer(device_, {"tile records", tile_bytes + tile_bytes / 2, Purpose::structures});
-    tile_buffer_.upload(tiles_);
-    if (table_.size() * sizeof(table_[0]) > table_buffer_.byte_count())
-        table_buffer_ =
-            Buffer(device_, {"tile directories", table_.size() * sizeof(table_[0]), Purpose::structures});
-    table_buffer_.upload(table_);
-    bind(bindings);
+}
+
+void TileDirectories::upload_tiles(size_t first_tile) {
+    const uint64_t needed = tiles_.size() * sizeof(tiles_[0]);
+    if (needed > tile_buffer_.byte_count()) {
+        tile_buffer_ = Buffer(device_, {"tile records", needed + needed / 2, Purpose::structures});
+        first_tile = 0;
+    }
+    tile_buffer_.upload(std::as_bytes(std::span(tiles_).subspan(first_tile)), first_tile * sizeof(tiles_[0]));
 }
 
 } // namespace relief::vulkan

@@ -10,7 +10,7 @@
 
 namespace relief::vulkan {
 
-/// One thread at a time. Directories are kept until the end.
+/// One thread at a time. Directories are kept as long as this lives; after an error it is of no more use.
 class TileDirectories {
   public:
     TileDirectories(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
@@ -39,7 +39,8 @@ class TileDirectories {
                      const std::array<uint32_t, 3>& square);
     void insert(const scalar::DirectoryData& directory);
     void grow_table();
-    void upload(uint32_t first_node, Commands& commands, BindingTable& bindings);
+    void upload_nodes(uint32_t first_node, Commands& commands);
+    void upload_tiles(size_t first_tile);
 
     const Device& device_;
     const PreparedScene& scene_;

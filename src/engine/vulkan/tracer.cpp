@@ -321,12 +321,6 @@ void Tracer::add_statistics(Statistics& statistics) const {
         statistics.bottom_built += self.totals.built[level];
         statistics.bottom_levels[level] += self.totals.built[level];
     }
-    statistics.geometry_bytes += self.device.peak_bytes(Purpose::geometry);
-    statistics.structures_bytes += self.device.peak_bytes(Purpose::structures);
-    statistics.displacement_bytes += self.device.peak_bytes(Purpose::displacement);
-    statistics.bottom_cache_bytes += self.device.peak_bytes(Purpose::bottom_cache);
-    statistics.ray_buffers_bytes +=
-        self.device.peak_bytes(Purpose::ray_buffers) + self.device.peak_bytes(Purpose::staging);
 }
 
 } // namespace relief::vulkan

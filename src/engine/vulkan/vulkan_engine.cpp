@@ -10,7 +10,7 @@
 #include "base/timer.h"
 #include "engine/vulkan/path_tracer.h"
 #include "engine/vulkan/ray_batch.h"
-#include "relief/error.h"
+#include "engine/vulkan/station.h"
 
 namespace relief {
 
@@ -22,12 +22,6 @@ constexpr uint32_t kMostPaths = 1u << 20;
 constexpr uint32_t kLeastPaths = 1u << 12; ///< below it a device has no room for a picture
 constexpr uint32_t kRaysOfABatch = 1u << 17;
 constexpr uint32_t kSlots = 4;
-
-/// What casts rays, cut to what the device has room for: fewer rays at once take longer, but change nothing.
-template <class Worker> struct Station {
-    std::unique_ptr<Tracer> tracer;
-    std::unique_ptr<Worker> worker;
-};
 
 class VulkanEngine final : public Engine {
   public:
@@ -44,9 +38,9 @@ class VulkanEngine final : public Engine {
     void add_statistics(Statistics& statistics) const override;
 
   private:
-    template <class Make>
-    auto make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const;
+    std::unique_ptr<Tracer> make_tracer(uint32_t rays, uint32_t share) const;
     Station<RayBatch>& batches() const;
+    uint64_t count_rays() const;
     bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
 
     std::shared_ptr<const PreparedScene> scene_;
@@ -62,22 +56,13 @@ class VulkanEngine final : public Engine {
     double set_up_s_ = 0, first_image_s_ = 0;
 };
 
-/// `rays` places, of which one in `share` are cast at a time; halved, but not below `least`, until it fits.
-template <class Make>
-auto VulkanEngine::make_station(uint32_t rays, uint32_t least, uint32_t share, Make make_worker) const {
-    for (;; rays /= 2) {
-        try {
-            TracerConfig config;
-            config.ray_capacity = rays;
-            config.slots = kSlots;
-            config.pair_capacity = rays / share * kSlots;
-            auto tracer = std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
-            auto worker = make_worker(*tracer);
-            return Station<typename decltype(worker)::element_type>{std::move(tracer), std::move(worker)};
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::out_of_memory || rays / 2 < least) throw;
-        }
-    }
+/// Of `rays` places one in `share` is cast at a time.
+std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share) const {
+    TracerConfig config;
+    config.ray_capacity = rays;
+    config.slots = kSlots;
+    config.pair_capacity = rays / share * kSlots;
+    return std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
 }
 
 bool VulkanEngine::render(Film& film, RenderObserver* observer) {
@@ -85,9 +70,11 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
     const Timer set_up;
     // Every path has a ray and a shadow ray.
-    paths_ = make_station(2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
-                          2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths)), 2,
-                          [&](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); });
+    paths_ = {}; // makes room
+    paths_ = {{2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
+               2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths))},
+              [this](uint32_t rays) { return make_tracer(rays, 2); },
+              [this](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); }};
     set_up_s_ += set_up.seconds();
     timer_ = {};
     progress_ = {};
@@ -109,34 +96,43 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
 bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* observer) {
     const Window& window = film.window();
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
-    for (uint64_t first = 0; first < pixels; first += paths_.worker->capacity()) {
+    for (uint64_t first = 0, count = 0; first < pixels; first += count) {
         if (observer && observer->is_cancelled()) return false;
-        const uint64_t count = std::min<uint64_t>(paths_.worker->capacity(), pixels - first);
-        paths_.worker->trace_samples(film, {first, count}, samples);
+        paths_.run([&](PathTracer& worker) {
+            count = std::min<uint64_t>(worker.capacity(), pixels - first);
+            worker.trace_samples(film, {first, count}, samples);
+        });
         done_ += count * uint64_t(samples.count);
         progress_.fraction = double(done_) / (double(pixels) * settings_.spp);
-        progress_.rays = paths_.worker->ray_count();
+        progress_.rays = count_rays();
         progress_.elapsed_s = timer_.seconds();
         if (observer) observer->on_progress(progress_);
     }
     return true;
 }
 
+uint64_t VulkanEngine::count_rays() const {
+    Statistics work;
+    paths_.add_statistics(work);
+    return work.camera_rays + work.shadow_rays + work.bounce_rays;
+}
+
 Station<RayBatch>& VulkanEngine::batches() const {
-    if (!batches_.worker)
-        batches_ = make_station(kRaysOfABatch, kLeastPaths, 1,
-                                [](Tracer& tracer) { return std::make_unique<RayBatch>(tracer); });
+    if (!batches_)
+        batches_ = {{kRaysOfABatch, kLeastPaths},
+                    [this](uint32_t rays) { return make_tracer(rays, 1); },
+                    [](Tracer& tracer) { return std::make_unique<RayBatch>(tracer); }};
     return batches_;
 }
 
 void VulkanEngine::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const {
     const std::lock_guard lock(mutex_);
-    batches().worker->closest_hits(rays, hits);
+    batches().run([&](RayBatch& worker) { worker.closest_hits(rays, hits); });
 }
 
 void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const {
     const std::lock_guard lock(mutex_);
-    batches().worker->any_hits(rays, hits);
+    batches().run([&](RayBatch& worker) { worker.any_hits(rays, hits); });
 }
 
 void VulkanEngine::add_statistics(Statistics& statistics) const {
@@ -147,8 +143,13 @@ void VulkanEngine::add_statistics(Statistics& statistics) const {
     statistics.prepare_s += set_up_s_;
     statistics.render_s -= set_up_s_;
     statistics.first_image_s += first_image_s_;
-    if (paths_.tracer) paths_.tracer->add_statistics(statistics);
-    if (paths_.worker) paths_.worker->add_statistics(statistics);
+    paths_.add_statistics(statistics);
+    statistics.geometry_bytes += device_->peak_bytes(Purpose::geometry);
+    statistics.structures_bytes += device_->peak_bytes(Purpose::structures);
+    statistics.displacement_bytes += device_->peak_bytes(Purpose::displacement);
+    statistics.bottom_cache_bytes += device_->peak_bytes(Purpose::bottom_cache);
+    statistics.ray_buffers_bytes +=
+        device_->peak_bytes(Purpose::ray_buffers) + device_->peak_bytes(Purpose::staging);
 }
 
 } // namespace

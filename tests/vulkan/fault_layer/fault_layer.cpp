@@ -3,9 +3,12 @@
 //   RELIEF_FAULT_HEAP_BYTES=N      its heaps of device memory report at most N bytes
 //   RELIEF_FAULT_LOST_SUBMIT=N     the N-th submission, from 1, and all later ones return
 //   VK_ERROR_DEVICE_LOST
+//   RELIEF_FAULT_MEMORY_AFTER=N    the first buffer made after N submissions finds no memory left, once;
+//                                  stderr tells when
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -32,6 +35,7 @@ struct InstanceFunctions {
 struct DeviceFunctions {
     PFN_vkGetDeviceProcAddr get_address;
     PFN_vkQueueSubmit2 submit_2;
+    PFN_vkCreateBuffer create_buffer;
 };
 
 /// By the loader's dispatch table, which physical devices share with their instance and queues with their
@@ -56,6 +60,13 @@ template <class Functions> class NextLayers {
 NextLayers<InstanceFunctions> next_of_instances;
 NextLayers<DeviceFunctions> next_of_devices;
 std::atomic<long> submission_count = 0;
+std::atomic<bool> has_refused_memory = false;
+
+/// The number that an order names; 0 without the order.
+long read_number(const char* name) {
+    const char* number = std::getenv(name);
+    return number ? std::strtol(number, nullptr, 10) : 0;
+}
 
 /// The loader's link to the next layer, of which the chain tells.
 template <class Link> Link* find_link(const void* chain, VkStructureType type) {
@@ -95,7 +106,8 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     const VkResult result = next_of_instances.find(physical).create_device(physical, info, allocator, device);
     if (result == VK_SUCCESS)
         next_of_devices.add(*device,
-                            {next, reinterpret_cast<PFN_vkQueueSubmit2>(next(*device, "vkQueueSubmit2"))});
+                            {next, reinterpret_cast<PFN_vkQueueSubmit2>(next(*device, "vkQueueSubmit2")),
+                             reinterpret_cast<PFN_vkCreateBuffer>(next(*device, "vkCreateBuffer"))});
     return result;
 }
 
@@ -153,15 +165,21 @@ VKAPI_ATTR void VKAPI_CALL get_memory_2(VkPhysicalDevice device, VkPhysicalDevic
     shrink_heaps(memory->memoryProperties);
 }
 
-bool is_lost() {
-    const char* number = std::getenv("RELIEF_FAULT_LOST_SUBMIT");
-    return number && ++submission_count >= std::strtol(number, nullptr, 10);
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL submit_2(VkQueue queue, uint32_t count, const VkSubmitInfo2* submissions,
                                         VkFence fence) {
-    if (is_lost()) return VK_ERROR_DEVICE_LOST;
+    const long number = ++submission_count, first_lost = read_number("RELIEF_FAULT_LOST_SUBMIT");
+    if (first_lost > 0 && number >= first_lost) return VK_ERROR_DEVICE_LOST;
     return next_of_devices.find(queue).submit_2(queue, count, submissions, fence);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo* info,
+                                             const VkAllocationCallbacks* allocator, VkBuffer* buffer) {
+    const long submissions = read_number("RELIEF_FAULT_MEMORY_AFTER");
+    if (submissions > 0 && submission_count >= submissions && !has_refused_memory.exchange(true)) {
+        std::fprintf(stderr, "fault layer: no memory after %ld submissions\n", submission_count.load());
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    return next_of_devices.find(device).create_buffer(device, info, allocator, buffer);
 }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_address(VkInstance instance, const char* name);
@@ -176,7 +194,8 @@ PFN_vkVoidFunction find_own(std::string_view name) {
         {"vkGetPhysicalDeviceFeatures2", PFN_vkVoidFunction(get_features)},
         {"vkGetPhysicalDeviceMemoryProperties", PFN_vkVoidFunction(get_memory)},
         {"vkGetPhysicalDeviceMemoryProperties2", PFN_vkVoidFunction(get_memory_2)},
-        {"vkQueueSubmit2", PFN_vkVoidFunction(submit_2)}};
+        {"vkQueueSubmit2", PFN_vkVoidFunction(submit_2)},
+        {"vkCreateBuffer", PFN_vkVoidFunction(create_buffer)}};
     for (const auto& [own_name, function] : own)
         if (name == own_name) return function;
     return nullptr;
@@ -188,7 +207,8 @@ PFN_vkVoidFunction VKAPI_CALL get_instance_address(VkInstance instance, const ch
 }
 
 PFN_vkVoidFunction VKAPI_CALL get_device_address(VkDevice device, const char* name) {
-    if (std::string_view(name) == "vkQueueSubmit2" || std::string_view(name) == "vkGetDeviceProcAddr")
+    const std::string_view own_names[] = {"vkQueueSubmit2", "vkCreateBuffer", "vkGetDeviceProcAddr"};
+    if (std::find(std::begin(own_names), std::end(own_names), name) != std::end(own_names))
         return find_own(name);
     return next_of_devices.find(device).get_address(device, name);
 }

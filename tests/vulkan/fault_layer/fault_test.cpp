@@ -61,7 +61,7 @@ TEST(SmallHeap, is_never_exceeded) {
 }
 
 TEST(LostDevice, is_an_error_that_names_what_ran) {
-    const Device device({});
+    const Device device({.is_validated = true});
     const BindingTable bindings(device);
     const Kernel kernel(device, {"sort_count", {scalar::kSortGroupSize}});
     Commands commands(device, bindings);
@@ -76,6 +76,7 @@ TEST(LostDevice, is_an_error_that_names_what_ran) {
     expect_text(error, "sort_count");
     expect_text(error, device.description().name);
     expect_text(error, "--engine cpu");
+    EXPECT_TRUE(device.validation_messages().empty());
 }
 
 TEST(NoDriver, is_an_empty_list_and_an_error) {

@@ -1,5 +1,5 @@
-// Sample scenes by both engines through the public door. `relief-gpu parity` compares more, at a size that
-// takes longer.
+// Sample scenes by both engines through the public door, every instance validated. `relief-gpu parity`
+// compares more, at a size that takes longer.
 #include <algorithm>
 #include <map>
 
@@ -27,14 +27,22 @@ const Variant kVariants[] = {
      .bottom = BottomForm::fused,
      .cache_bytes = 0},
     {.name = "level 3, fused", .level = 3, .bottom = BottomForm::fused},
+    {.name = "level 4, boxes", .level = 4, .leaf = LeafKind::box},
+    {.name = "level 5, no cache", .level = 5, .cache_bytes = 0},
     {.name = "level 6", .level = 6},
 };
 
-class Samples : public testing::TestWithParam<const char*> {
+/// A scene, and whether its instances share their meshes.
+struct Subject {
+    const char* scene;
+    Instancing instancing = Instancing::none;
+};
+
+class Samples : public testing::TestWithParam<Subject> {
   protected:
     /// The same one for all tests of the process.
     static const Scene& scene() {
-        static const Scene scene = make_sample_scene(GetParam(), Instancing::shared);
+        static const Scene scene = make_sample_scene(GetParam().scene, GetParam().instancing);
         return scene;
     }
 
@@ -108,8 +116,13 @@ TEST_P(Samples, answer_the_rays_of_other_programs_alike) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Samples, testing::Values("pumpkin", "ear", "bark"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Scenes, Samples,
+                         testing::Values(Subject{"pumpkin"}, Subject{"ear"}, Subject{"bark"},
+                                         Subject{"barks"}, Subject{"barks", Instancing::shared}),
+                         [](const auto& info) {
+                             const bool is_shared = info.param.instancing == Instancing::shared;
+                             return std::string(info.param.scene) + (is_shared ? "_shared" : "");
+                         });
 
 } // namespace
 } // namespace relief::gpu
