@@ -1,6 +1,8 @@
 #include "validate_settings.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,20 @@ namespace {
 
 void require(bool condition, const char* message, const std::string& hint) {
     if (!condition) throw Error(ErrorKind::usage, {message, "", hint});
+}
+
+void require_traversal(const RenderSettings& s) {
+    const std::vector<TraversalKind> valid = available_traversals(s.engine, s.structure);
+    if (s.traversal == TraversalKind::automatic ||
+        std::find(valid.begin(), valid.end(), s.traversal) != valid.end())
+        return;
+    std::vector<std::string> names;
+    for (const TraversalKind traversal : valid) names.emplace_back(traversal_name(traversal));
+    throw Error(ErrorKind::usage,
+                {fmt::format("the traversal {} does not go with the structure {} on the {} engine",
+                             traversal_name(s.traversal), structure_name(s.structure),
+                             s.engine == EngineKind::cpu ? "cpu" : "vulkan"),
+                 "", fmt::format("valid there: {}", fmt::join(names, ", "))});
 }
 
 } // namespace
@@ -33,6 +49,7 @@ void validate_settings(const RenderSettings& s) {
             "engine = EngineKind::vulkan");
     require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
             "engine = EngineKind::cpu");
+    require_traversal(s);
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
             fmt::format("auto, or 0 to {}", kMaxLevel));
     require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",

@@ -104,9 +104,10 @@ int run_inspect(const InspectOptions& options) {
 }
 
 nlohmann::ordered_json to_json(const DeviceInfo& device) {
-    return {{"engine", "vulkan"},       {"device", device.index}, {"name", device.name},
-            {"driver", device.driver},  {"kind", device.kind},    {"memory_bytes", device.memory_bytes},
-            {"missing", device.missing}};
+    return {{"engine", "vulkan"},        {"device", device.index},
+            {"name", device.name},       {"driver", device.driver},
+            {"kind", device.kind},       {"memory_bytes", device.memory_bytes},
+            {"missing", device.missing}, {"structures", traversals_to_json(EngineKind::vulkan)}};
 }
 
 void print_device(const DeviceInfo& device) {
@@ -116,18 +117,45 @@ void print_device(const DeviceInfo& device) {
         fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
 }
 
+constexpr StructureKind kStructures[] = {StructureKind::bvh, StructureKind::lbvh, StructureKind::kdtree};
+
+std::vector<std::string> list_traversals(EngineKind engine, StructureKind structure) {
+    std::vector<std::string> names;
+    for (const TraversalKind traversal : available_traversals(engine, structure))
+        names.emplace_back(traversal_name(traversal));
+    return names;
+}
+
+nlohmann::ordered_json traversals_to_json(EngineKind engine) {
+    nlohmann::ordered_json structures;
+    for (const StructureKind structure : kStructures)
+        structures[structure_name(structure)] = list_traversals(engine, structure);
+    return structures;
+}
+
+void print_traversals(EngineKind engine) {
+    for (const StructureKind structure : kStructures)
+        fmt::print("        --structure {:<6}  --traversal {}\n", structure_name(structure),
+                   fmt::join(list_traversals(engine, structure), " | "));
+}
+
 int run_devices(bool is_json) {
     const std::vector<std::string> isas = available_isas();
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     const std::vector<DeviceInfo> devices = vulkan_devices();
     if (is_json) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
-        list.push_back({{"engine", "cpu"}, {"threads", threads}, {"isa", isas}});
+        list.push_back({{"engine", "cpu"},
+                        {"threads", threads},
+                        {"isa", isas},
+                        {"structures", traversals_to_json(EngineKind::cpu)}});
         for (const DeviceInfo& device : devices) list.push_back(to_json(device));
         fmt::print("{}\n", list.dump());
     } else {
         fmt::print("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
+        print_traversals(EngineKind::cpu);
         for (const DeviceInfo& device : devices) print_device(device);
+        if (!devices.empty()) print_traversals(EngineKind::vulkan);
     }
     return kExitDone;
 }

@@ -20,6 +20,23 @@ enum class EngineKind { cpu, vulkan };
 enum class BottomForm { automatic, fused, split };
 enum class Isa { best, avx512, avx2, sse4, neon, scalar };
 
+/// Over instances, and over the patches of a mesh.
+enum class StructureKind { bvh, lbvh, kdtree };
+/// How a ray walks them; see docs/structures.md. `automatic` is the first of available_traversals().
+enum class TraversalKind {
+    automatic,
+    wide,
+    stack,
+    restart_trail,
+    parent_link,
+    skip_link,
+    trail,
+    pair_trail,
+    restart,
+    push_down,
+    backtrack
+};
+
 inline constexpr int kAutoLevel = -1;
 inline constexpr int kMaxLevel = 12;
 
@@ -39,6 +56,8 @@ struct RenderSettings {
     std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
     int threads = 0;            ///< 0: all cores
     Isa isa = Isa::best;
+    StructureKind structure = StructureKind::bvh;
+    TraversalKind traversal = TraversalKind::automatic; ///< one of available_traversals()
     SurfaceMode surface = SurfaceMode::direct;
     int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
     float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, > 0
@@ -103,6 +122,13 @@ struct RenderResult {
 /// Renders `scene`. The scene's polygons are released as soon as patches are made from them.
 /// Throws Error (bad_input, device_missing, out_of_memory). Safe to call from several threads at once.
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr);
+
+/// What an engine can walk a structure by, the default first.
+std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);
+
+/// As the command spells it: "skip-link".
+const char* traversal_name(TraversalKind traversal);
+const char* structure_name(StructureKind structure);
 
 /// Names of the instruction sets that this machine can run, best first; "scalar" is always there.
 std::vector<std::string> available_isas();

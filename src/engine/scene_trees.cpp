@@ -4,16 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "engine/walk_trees.h"
 #include "structures/sah_bvh.h"
 
 namespace relief {
 
 Bvh build_surface_bvh(const Surface& surface) {
-    std::vector<Box> boxes(surface.patch_count());
-    parallel_for("patch_boxes", boxes.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) boxes[k] = compute_patch_box(surface, uint32_t(k));
-    });
+    const std::vector<Box> boxes = compute_patch_boxes(surface);
     SahBvhBuilder::Config config;
     config.max_leaf_size = surface.has_displacement ? 1 : 4;
     return SahBvhBuilder::build(boxes, config);

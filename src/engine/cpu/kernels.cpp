@@ -67,10 +67,27 @@ void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu
                            [&](size_t k, const cpu::TraceHit&, bool has_hit) { occluded[k] = has_hit; });
 }
 
+template <Query kQuery>
+bool visit_primitive(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                     uint32_t instance, uint32_t patch, cpu::TraceHit& best) {
+    RayState ray;
+    ray.t_min = world.t_min, ray.t_max = std::fmin(world.t_max, best.t);
+    ray.instance = instance;
+    ray.hit = best;
+    enter_object(world, scene.instances[instance].object_from_world, ray);
+    const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
+    best = ray.hit;
+    return has_hit;
+}
+
 } // namespace
 
 const cpu::Kernels& kernels(const char* name) {
-    static const cpu::Kernels kKernels{name, closest_hits, any_hits, build_tree};
+    static const cpu::Kernels kKernels{name,
+                                       closest_hits,
+                                       any_hits,
+                                       build_tree,
+                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

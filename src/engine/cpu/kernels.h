@@ -22,12 +22,21 @@ struct SceneView {
     float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
 };
 
+/// One primitive of an instance: a polygon or a displaced patch. closest: a hit nearer than `best` takes its
+/// place. Both tell whether there was one.
+struct PrimitiveKernels {
+    using Function = bool (*)(const SceneView&, TraceContext&, const TraceRay& world, uint32_t instance,
+                              uint32_t patch, TraceHit& best);
+    Function closest, any;
+};
+
 struct Kernels {
     const char* name;
     /// Nearest hits of `count` rays; neighbours in runs of 16 may be traced as one packet.
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
+    PrimitiveKernels primitive; ///< for walks of any other tree
 };
 
 /// Kernels for an instruction set, or nullptr where it was not compiled in or this machine lacks it.

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
+#include "engine/cpu/tree_walks.h"
 #include "engine/scene_trees.h"
 #include "math/scalar.h"
 #include "relief/error.h"
@@ -129,10 +130,32 @@ SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const P
 
 struct Tracer::Implementation {
     const Kernels* kernels = nullptr;
+    WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
+    WalkTrees walk_trees;
     std::vector<WideBvh> surface_trees;
     WideBvh instance_tree;
     std::unique_ptr<BottomCache> cache;
     SceneView view;
+
+    void make_trees(const PreparedScene& scene, const RenderSettings& settings) {
+        const TraversalKind traversal =
+            settings.traversal == TraversalKind::automatic
+                ? available_traversals(EngineKind::cpu, settings.structure).front()
+                : settings.traversal;
+        if (traversal != TraversalKind::wide) {
+            walk = find_walk(traversal);
+            walk_trees = make_walk_trees(scene, settings.structure, traversal);
+            return;
+        }
+        std::vector<Box> boxes;
+        for (const Surface& surface : scene.surfaces) {
+            surface_trees.push_back(make_wide_bvh(build_surface_bvh(surface)));
+            boxes.push_back(surface_trees.back().bounds);
+        }
+        instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
+    }
+
+    WalkView walk_view() const { return {view, walk_trees, kernels->primitive}; }
 
     /// `cast` is the place in TraceContext::casts.
     template <class Trace> void trace_batch(size_t cast, size_t rays, const Trace& trace) const {
@@ -179,12 +202,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
                                                 "", "`relief devices` lists those that work"});
-    std::vector<Box> boxes;
-    for (const Surface& surface : scene_->surfaces) {
-        self.surface_trees.push_back(make_wide_bvh(build_surface_bvh(surface)));
-        boxes.push_back(self.surface_trees.back().bounds);
-    }
-    self.instance_tree = make_wide_bvh(build_instance_bvh(*scene_, boxes));
+    self.make_trees(*scene_, settings);
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
@@ -202,15 +220,21 @@ Tracer::~Tracer() = default;
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
     implementation_->trace_batch(2 * size_t(depth), rays.size(), [&](TraceContext& context) {
-        implementation_->kernels->closest_hits(implementation_->view, context, rays.data(), hits.data(),
-                                               rays.size());
+        const Implementation& self = *implementation_;
+        if (self.walk.closest_hits)
+            self.walk.closest_hits(self.walk_view(), context, rays.data(), hits.data(), rays.size());
+        else
+            self.kernels->closest_hits(self.view, context, rays.data(), hits.data(), rays.size());
     });
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
     implementation_->trace_batch(2 * size_t(depth) + 1, rays.size(), [&](TraceContext& context) {
-        implementation_->kernels->any_hits(implementation_->view, context, rays.data(), occluded.data(),
-                                           rays.size());
+        const Implementation& self = *implementation_;
+        if (self.walk.any_hits)
+            self.walk.any_hits(self.walk_view(), context, rays.data(), occluded.data(), rays.size());
+        else
+            self.kernels->any_hits(self.view, context, rays.data(), occluded.data(), rays.size());
     });
 }
 
@@ -249,7 +273,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
     self.add_casts(statistics);
-    statistics.structures_bytes += self.instance_tree.byte_count();
+    statistics.structures_bytes += self.instance_tree.byte_count() + self.walk_trees.byte_count();
     for (const WideBvh& tree : self.surface_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();
     for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();

@@ -1,0 +1,286 @@
+#include "engine/cpu/tree_walks.h"
+
+#include <cmath>
+#include <tuple>
+
+#include "base/check.h"
+#include "math/scalar.h"
+
+namespace relief {
+
+namespace scalar {
+
+namespace {
+
+using cpu::PrimitiveKernels;
+using cpu::TraceContext;
+using cpu::TraceHit;
+using cpu::TraceRay;
+using cpu::WalkView;
+
+/// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
+/// resume_walk() brings the old walk back, or the next instance of that leaf.
+template <TraversalKind kTraversal> class SceneWalk {
+  public:
+    using Key = uint;
+
+    /// `visit`: one of view.primitive.
+    SceneWalk(const WalkView& view, TraceContext& context, const TraceRay& world,
+              PrimitiveKernels::Function visit)
+        : view_(view),
+          context_(context),
+          world_(world),
+          visit_(visit),
+          is_any_(visit == view.primitive.any),
+          limit_(world.t_max) {}
+
+    /// True: a primitive ended the walk, which only those of any_hits do.
+    bool run(TraceHit& best) {
+        best_ = &best;
+        leave_instance();
+        stack_walk = make_empty_stack();
+        start();
+        const bool is_complete = walk();
+        DCHECK(is_complete);
+        static_cast<void>(is_complete);
+        return is_ended_;
+    }
+
+  private:
+#include "shared/succinct_heap.h"
+#include "shared/traverse_kd_backtrack.h"
+#include "shared/traverse_kd_push_down.h"
+#include "shared/traverse_kd_restart.h"
+#include "shared/traverse_pair_trail.h"
+#include "shared/traverse_parent_link.h"
+#include "shared/traverse_restart_trail.h"
+#include "shared/traverse_skip_link.h"
+#include "shared/traverse_stack.h"
+#include "shared/traverse_trail.h"
+
+    void leave_instance() {
+        instance_ = kNoIndex;
+        tree_ = &view_.trees.instances;
+        ray_ = make_object_ray(world_.origin, world_.direction);
+    }
+
+    void enter_instance(uint32_t index) {
+        const Instance& instance = view_.scene.instances[index];
+        instance_ = index;
+        tree_ = &view_.trees.surfaces[instance.surface];
+        ray_ = make_object_ray(transform_point(instance.object_from_world, world_.origin),
+                               transform_vector(instance.object_from_world, world_.direction));
+        start();
+    }
+
+    /// Walks the current tree from its root.
+    void start() {
+        const uint root = tree_->bounds.is_empty() ? kNoNode : 0u;
+        if constexpr (kTraversal == TraversalKind::stack)
+            start_stack(root);
+        else if constexpr (kTraversal == TraversalKind::restart_trail)
+            restart_walk = start_restart_trail(root, make_root_level32());
+        else if constexpr (kTraversal == TraversalKind::parent_link)
+            parent_walk = start_parent_link(root);
+        else if constexpr (kTraversal == TraversalKind::skip_link)
+            skip_walk = start_skip_link(root);
+        else if constexpr (kTraversal == TraversalKind::trail)
+            trail_walk = start_trail(root == kNoNode ? 0u : 1u);
+        else if constexpr (kTraversal == TraversalKind::pair_trail)
+            pair_walk = start_pair_trail(root == kNoNode ? 0u : 1u);
+        else
+            start_kd(root);
+    }
+
+    void start_kd(uint root) {
+        const KdRay ray = make_kd_ray(ray_, tree_->bounds.lower, tree_->bounds.upper, world_.t_min, limit_);
+        if constexpr (kTraversal == TraversalKind::restart)
+            kd_restart_walk = start_kd_restart(root, ray);
+        else if constexpr (kTraversal == TraversalKind::push_down)
+            kd_push_down_walk = start_kd_push_down(root, ray);
+        else
+            kd_backtrack_walk = start_kd_backtrack(root, ray);
+    }
+
+    bool walk() {
+        if constexpr (kTraversal == TraversalKind::stack)
+            return walk_stack();
+        else if constexpr (kTraversal == TraversalKind::restart_trail)
+            return walk_restart_trail();
+        else if constexpr (kTraversal == TraversalKind::parent_link)
+            return walk_parent_link();
+        else if constexpr (kTraversal == TraversalKind::skip_link)
+            return walk_skip_link();
+        else if constexpr (kTraversal == TraversalKind::trail)
+            return walk_trail();
+        else if constexpr (kTraversal == TraversalKind::pair_trail)
+            return walk_pair_trail();
+        else if constexpr (kTraversal == TraversalKind::restart)
+            return walk_kd_restart();
+        else if constexpr (kTraversal == TraversalKind::push_down)
+            return walk_kd_push_down();
+        else
+            return walk_kd_backtrack();
+    }
+
+    /// In the order of TraversalKind.
+    static constexpr size_t kIndex = size_t(kTraversal) - size_t(TraversalKind::stack);
+    using State =
+        std::tuple_element_t<kIndex,
+                             std::tuple<StackState, RestartState, ParentLinkState, SkipLinkState, TrailState,
+                                        PairTrailState, KdRestartState, KdPushDownState, KdBacktrackState>>;
+
+    State& state() {
+        return std::get<kIndex>(std::tie(stack_walk, restart_walk, parent_walk, skip_walk, trail_walk,
+                                         pair_walk, kd_restart_walk, kd_push_down_walk, kd_backtrack_walk));
+    }
+
+    /// The ids that leaves of the current tree count into.
+    const std::vector<uint32_t>& primitive_ids() const {
+        if (!tree_->kd.nodes.empty()) return tree_->kd.primitive_ids;
+        return tree_->heap.nodes.empty() ? tree_->linked.primitive_ids : tree_->heap.primitive_ids;
+    }
+
+    // The hooks of shared/tree.h.
+    TreeNode load_node(uint node) const {
+        if constexpr (kTraversal == TraversalKind::trail || kTraversal == TraversalKind::pair_trail)
+            return tree_->heap.nodes[node];
+        else
+            return tree_->linked.nodes[node];
+    }
+    uint load_parent(uint node) const { return tree_->linked.parents[node]; }
+    uint load_skip(uint node) const { return tree_->linked.skips[node]; }
+    HeapForm get_heap_form() const { return tree_->heap.form; }
+    HeapBlock load_heap_block(uint block) const { return tree_->heap.blocks[block]; }
+    HeapBrick load_heap_brick(uint brick) const { return tree_->heap.bricks[brick]; }
+    uint find_slot(Key key) { return find_succinct_slot(key); }
+    KdNode load_kd_node(uint node) const { return tree_->kd.nodes[node]; }
+    KdBox load_kd_box(uint node) const { return tree_->kd.cells[node]; }
+    float get_limit() const { return limit_; }
+    float enter_box(const TreeNode& node) const { return cross_node(ray_, node, world_.t_min, limit_); }
+    bool is_axis_backward(uint axis) const { return select_axis(ray_.direction, axis) < 0.0f; }
+    void count_box_test() {}
+    void count_restart() {}
+    void count_bytes(uint) {}
+
+    /// `word` of a kd leaf is its count.
+    bool visit_leaf(uint first, uint word, uint) {
+        const uint count = count_of_word(word);
+        if (instance_ == kNoIndex) {
+            waiting_first_ = first, waiting_count_ = count;
+            world_state_ = state();
+            enter_next_instance();
+            return false;
+        }
+        for (uint k = 0; k < count; ++k) {
+            const bool is_hit =
+                visit_(view_.scene, context_, world_, instance_, primitive_ids()[first + k], *best_);
+            limit_ = std::fmin(world_.t_max, best_->t);
+            if (is_hit && is_any_) return is_ended_ = true;
+        }
+        return false;
+    }
+
+    void enter_next_instance() {
+        tree_ = &view_.trees.instances;
+        const uint32_t index = primitive_ids()[waiting_first_];
+        ++waiting_first_, --waiting_count_;
+        enter_instance(index);
+    }
+
+    bool resume_walk() {
+        if (instance_ == kNoIndex) return false;
+        if (waiting_count_ > 0) {
+            enter_next_instance();
+            return true;
+        }
+        leave_instance();
+        state() = world_state_;
+        if constexpr (kTraversal == TraversalKind::restart_trail) state() = drop_short_stack(state());
+        return true;
+    }
+
+    const WalkView& view_;
+    TraceContext& context_;
+    const TraceRay& world_;
+    const PrimitiveKernels::Function visit_;
+    const bool is_any_;
+    float limit_; ///< no hit beyond it is of interest
+    TraceHit* best_ = nullptr;
+    bool is_ended_ = false;
+    uint32_t instance_ = kNoIndex; ///< kNoIndex: in the tree of instances
+    const WalkTree* tree_ = nullptr;
+    ObjectRay ray_{};
+    uint waiting_first_ = 0, waiting_count_ = 0; ///< instances of the leaf still to be entered
+    State world_state_{};                        ///< of the tree of instances, past that leaf
+};
+
+/// Calls trace(k) for each of `count` rays.
+template <class Trace>
+void trace_each(const WalkView& view, TraceContext& context, size_t count, Trace trace) {
+    for (size_t k = 0; k < count; ++k) {
+        if (k % 16 == 0) view.scene.cache->refresh(context);
+        trace(k);
+    }
+}
+
+template <TraversalKind kTraversal>
+void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, TraceHit* hits,
+                  size_t count) {
+    trace_each(view, context, count, [&](size_t k) {
+        TraceHit best;
+        SceneWalk<kTraversal>(view, context, rays[k], view.primitive.closest).run(best);
+        hits[k] = best;
+        hits[k].bias = uint8_t(rays[k].bias);
+    });
+}
+
+template <TraversalKind kTraversal>
+void any_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, uint8_t* occluded,
+              size_t count) {
+    trace_each(view, context, count, [&](size_t k) {
+        TraceHit best;
+        occluded[k] = SceneWalk<kTraversal>(view, context, rays[k], view.primitive.any).run(best);
+    });
+}
+
+template <TraversalKind kTraversal>
+constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal>, any_hits<kTraversal>};
+
+} // namespace
+
+} // namespace scalar
+
+namespace cpu {
+
+WalkFunctions find_walk(TraversalKind traversal) {
+    using T = TraversalKind;
+    switch (traversal) {
+    case T::stack:
+        return scalar::kWalk<T::stack>;
+    case T::restart_trail:
+        return scalar::kWalk<T::restart_trail>;
+    case T::parent_link:
+        return scalar::kWalk<T::parent_link>;
+    case T::skip_link:
+        return scalar::kWalk<T::skip_link>;
+    case T::trail:
+        return scalar::kWalk<T::trail>;
+    case T::pair_trail:
+        return scalar::kWalk<T::pair_trail>;
+    case T::restart:
+        return scalar::kWalk<T::restart>;
+    case T::push_down:
+        return scalar::kWalk<T::push_down>;
+    case T::backtrack:
+        return scalar::kWalk<T::backtrack>;
+    case T::automatic:
+    case T::wide:
+        break;
+    }
+    return {};
+}
+
+} // namespace cpu
+
+} // namespace relief
