@@ -132,12 +132,6 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
 
 void add_machine_options(CLI::App& verb, RenderOptions& o) {
     add_engine_options(verb, o.engine, o.settings);
-    add(verb, "--structure", "NAME", "of the scene: bvh", [](const std::string& text) {
-        parse_word("--structure", text, std::array<Word<int>, 1>{{{"bvh", 0}}});
-    });
-    add(verb, "--traversal", "NAME", "how it is walked: wide", [](const std::string& text) {
-        parse_word("--traversal", text, std::array<Word<int>, 1>{{{"wide", 0}}});
-    });
     add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 256",
         [&o](const std::string& text) {
             o.settings.bottom_cache_bytes =

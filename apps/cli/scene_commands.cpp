@@ -103,20 +103,6 @@ int run_inspect(const InspectOptions& options) {
     return options.is_strict && has(Severity::warning) ? kExitWarnings : kExitDone;
 }
 
-nlohmann::ordered_json to_json(const DeviceInfo& device) {
-    return {{"engine", "vulkan"},        {"device", device.index},
-            {"name", device.name},       {"driver", device.driver},
-            {"kind", device.kind},       {"memory_bytes", device.memory_bytes},
-            {"missing", device.missing}, {"structures", traversals_to_json(EngineKind::vulkan)}};
-}
-
-void print_device(const DeviceInfo& device) {
-    fmt::print("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
-               device.driver, double(device.memory_bytes) / double(1u << 30));
-    if (!device.missing.empty())
-        fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
-}
-
 constexpr StructureKind kStructures[] = {StructureKind::bvh, StructureKind::lbvh, StructureKind::kdtree};
 
 std::vector<std::string> list_traversals(EngineKind engine, StructureKind structure) {
@@ -137,6 +123,20 @@ void print_traversals(EngineKind engine) {
     for (const StructureKind structure : kStructures)
         fmt::print("        --structure {:<6}  --traversal {}\n", structure_name(structure),
                    fmt::join(list_traversals(engine, structure), " | "));
+}
+
+nlohmann::ordered_json to_json(const DeviceInfo& device) {
+    return {{"engine", "vulkan"},        {"device", device.index},
+            {"name", device.name},       {"driver", device.driver},
+            {"kind", device.kind},       {"memory_bytes", device.memory_bytes},
+            {"missing", device.missing}, {"structures", traversals_to_json(EngineKind::vulkan)}};
+}
+
+void print_device(const DeviceInfo& device) {
+    fmt::print("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
+               device.driver, double(device.memory_bytes) / double(1u << 30));
+    if (!device.missing.empty())
+        fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
 }
 
 int run_devices(bool is_json) {

@@ -61,8 +61,11 @@ TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
 TEST_F(Usage, only_what_exists_can_be_chosen) {
     expect_refused({"render", "plane.obj", "--engine", "opencl"}, "one of: cpu, vulkan");
     expect_refused({"render", "plane.obj", "--engine", "vulkan", "--bottom", "fuse"}, "'fused'");
-    expect_refused({"render", "plane.obj", "--structure", "lbvh"}, "one of: bvh");
-    expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: wide");
+    expect_refused({"render", "plane.obj", "--structure", "octree"}, "one of: bvh, lbvh, kdtree");
+    expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: auto, wide, stack");
+    expect_refused({"render", "plane.obj", "--structure", "kdtree", "--traversal", "trail"},
+                   "valid there: push-down, restart, backtrack");
+    expect_refused({"render", "plane.obj", "--engine", "vulkan", "--traversal", "wide"}, "valid there: stack");
     for (const char* option : {"--method", "--frames"}) {
         expect_refused({"render", "plane.obj", option, "0"}, option);
         EXPECT_FALSE(contains(run({"render", "--help"}).output, std::string(option) + " ")) << option;

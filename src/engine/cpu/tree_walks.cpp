@@ -158,6 +158,9 @@ template <TraversalKind kTraversal> class SceneWalk {
     KdBox load_kd_box(uint node) const { return tree_->kd.cells[node]; }
     float get_limit() const { return limit_; }
     float enter_box(const TreeNode& node) const { return cross_node(ray_, node, world_.t_min, limit_); }
+    float enter_whole_box(const TreeNode& node) const {
+        return cross_node(ray_, node, world_.t_min, world_.t_max);
+    }
     bool is_axis_backward(uint axis) const { return select_axis(ray_.direction, axis) < 0.0f; }
     void count_box_test() {}
     void count_restart() {}
