@@ -65,7 +65,8 @@ TEST_F(Usage, only_what_exists_can_be_chosen) {
     expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: auto, wide, stack");
     expect_refused({"render", "plane.obj", "--structure", "kdtree", "--traversal", "trail"},
                    "valid there: push-down, restart, backtrack");
-    expect_refused({"render", "plane.obj", "--engine", "vulkan", "--traversal", "wide"}, "valid there: stack");
+    expect_refused({"render", "plane.obj", "--engine", "vulkan", "--traversal", "wide"},
+                   "valid there: stack");
     for (const char* option : {"--method", "--frames"}) {
         expect_refused({"render", "plane.obj", option, "0"}, option);
         EXPECT_FALSE(contains(run({"render", "--help"}).output, std::string(option) + " ")) << option;

@@ -2,17 +2,19 @@
 #pragma once
 
 #include <numeric>
-#include <random>
 #include <vector>
 
-#include "engine/cpu/tracer.h"
 #include "engine/vulkan/tracer.h"
 #include "gpu_fixture.h"
-#include "math/affine.h"
 #include "math/scalar.h"
-#include "support/bodies.h"
+#include "support/casts.h"
 
 namespace relief::vulkan::tests {
+
+using test::cast_on_cpu;
+using test::CpuAnswers;
+using test::make_rays;
+using test::make_scene;
 
 struct CastAnswers {
     std::vector<scalar::HitData> closest;
@@ -43,57 +45,6 @@ inline CastAnswers cast_on_device(const Device& device, const PreparedScene& sce
         answers.occluded.push_back(hit.instance != scalar::kNone);
     tracer.add_statistics(answers.statistics);
     return answers;
-}
-
-/// The same by the CPU engine.
-struct CpuAnswers {
-    std::vector<cpu::TraceHit> closest;
-    std::vector<uint8_t> occluded;
-};
-
-inline CpuAnswers cast_on_cpu(const std::shared_ptr<const PreparedScene>& scene,
-                              const RenderSettings& settings, const std::vector<cpu::TraceRay>& rays) {
-    CpuAnswers answers;
-    answers.closest.resize(rays.size());
-    answers.occluded.resize(rays.size());
-    const cpu::Tracer tracer(scene, settings);
-    tracer.closest_hits(rays, answers.closest);
-    tracer.any_hits(rays, answers.occluded);
-    return answers;
-}
-
-/// Rays at the origin from all sides and from near it, at four biases, some short and some along an axis.
-inline std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<float> normal;
-    std::vector<cpu::TraceRay> rays;
-    for (uint32_t k = 0; k < count; ++k) {
-        cpu::TraceRay ray;
-        ray.origin =
-            normalize(Vec3f{normal(random), normal(random), normal(random)}) * (k % 3 == 0 ? 0.3f : 4.0f);
-        ray.direction = Vec3f{normal(random), normal(random), normal(random)} * 0.7f - ray.origin;
-        if (k % 7 == 0) ray.direction.x = 0;
-        if (k % 5 == 0) ray.t_max = 0.9f;
-        ray.bias = k % 4;
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
-/// A displaced sphere, its mirrored instance, and a plain one.
-inline Scene make_scene(DisplacementSpace space) {
-    Scene scene = test::make_body_scene(
-        test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), space));
-    Object second = scene.objects[0];
-    second.world_from_object = compose(make_translation({1.4f, 0.2f, 0}), make_scale({-0.5f, 0.7f, 0.6f}));
-    Object plain = scene.objects[0];
-    plain.displacement = kNoIndex;
-    plain.world_from_object = compose(make_translation({-1.2f, 0.5f, 0.3f}), make_scale({0.6f, 0.6f, 0.6f}));
-    scene.objects.push_back(second);
-    scene.objects.push_back(plain);
-    scene.camera.from = {2.5f, 0.4f, 0.6f};
-    scene.camera.to = {0, 0, 0};
-    return scene;
 }
 
 /// Both kinds of cast agree, ray for ray, and enough rays hit something.

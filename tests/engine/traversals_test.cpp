@@ -1,0 +1,85 @@
+// Every structure and traversal that can be chosen by name finds what the wide trees find, bit for bit.
+#include <gtest/gtest.h>
+
+#include "support/casts.h"
+
+namespace relief {
+namespace {
+
+struct Choice {
+    StructureKind structure;
+    TraversalKind traversal;
+};
+
+std::vector<Choice> list_choices() {
+    std::vector<Choice> choices;
+    for (const StructureKind structure : {StructureKind::bvh, StructureKind::lbvh, StructureKind::kdtree})
+        for (const TraversalKind traversal : available_traversals(EngineKind::cpu, structure))
+            choices.push_back({structure, traversal});
+    return choices;
+}
+
+class Traversals : public testing::TestWithParam<Choice> {
+  protected:
+    static void expect_same_hits(const Scene& scene, RenderSettings settings) {
+        const auto prepared = prepare_scene(scene, settings);
+        const std::vector<cpu::TraceRay> rays = test::make_rays(1500, 5);
+        const test::CpuAnswers expected = test::cast_on_cpu(prepared, settings, rays);
+        settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+        const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, rays);
+        EXPECT_EQ(found.occluded, expected.occluded);
+        size_t hit_count = 0;
+        for (size_t k = 0; k < rays.size(); ++k) {
+            const cpu::TraceHit &a = found.closest[k], &b = expected.closest[k];
+            ASSERT_EQ(a.instance, b.instance) << "ray " << k;
+            if (!b.is_hit()) continue;
+            ++hit_count;
+            ASSERT_EQ(a.t, b.t) << "ray " << k;
+            ASSERT_EQ(a.patch, b.patch) << "ray " << k;
+            ASSERT_TRUE(a.i == b.i && a.j == b.j && a.is_upper == b.is_upper) << "ray " << k;
+            ASSERT_TRUE(a.u == b.u && a.v == b.v && a.levels == b.levels && a.bias == b.bias) << "ray " << k;
+        }
+        EXPECT_GT(hit_count, rays.size() / 3);
+    }
+};
+
+TEST_P(Traversals, find_the_hits_of_the_wide_trees) {
+    RenderSettings settings;
+    settings.level = 4;
+    expect_same_hits(test::make_scene(DisplacementSpace::tangent), settings);
+}
+
+TEST_P(Traversals, find_them_in_tiles_and_at_mixed_levels) {
+    RenderSettings settings;
+    settings.width = 2000, settings.height = 1000;
+    settings.pixel_error = 4;
+    settings.lod = LodRule::ray;
+    expect_same_hits(test::make_scene(DisplacementSpace::object), settings);
+}
+
+TEST_P(Traversals, find_them_in_polygons) {
+    Scene scene = test::make_scene(DisplacementSpace::tangent);
+    for (Object& object : scene.objects) object.displacement = kNoIndex;
+    expect_same_hits(scene, {});
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(list_choices()), [](const auto& info) {
+    std::string name =
+        std::string(structure_name(info.param.structure)) + "_" + traversal_name(info.param.traversal);
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+TEST(TraversalsOfAnEmptyScene, find_nothing) {
+    for (const Choice& choice : list_choices()) {
+        RenderSettings settings;
+        settings.structure = choice.structure, settings.traversal = choice.traversal;
+        const auto prepared = prepare_scene(Scene{}, settings);
+        const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, test::make_rays(20, 1));
+        for (const cpu::TraceHit& hit : found.closest) EXPECT_FALSE(hit.is_hit());
+        EXPECT_EQ(found.occluded, std::vector<uint8_t>(20, 0));
+    }
+}
+
+} // namespace
+} // namespace relief
