@@ -14,6 +14,11 @@ using Part = BuildReport::Part;
 
 constexpr uint32_t kGroupSize = 256;
 
+/// Mesa's CPU device (22.3) runs a group as fibres of eight lanes and takes memory barriers for points where
+/// all fibres meet. In a loop that some leave earlier than others it loses the rest, unless there is one
+/// fibre.
+uint32_t choose_refit_group_size(const Device& device) { return device.is_cpu() ? 8 : kGroupSize; }
+
 constexpr std::array<Stage, BuildReport::kPartCount> kStages = {
     Stage::tree_boxes, Stage::tree_codes, Stage::sort, Stage::tree_hierarchy, Stage::tree_refit};
 
@@ -44,7 +49,7 @@ struct Kernels {
           order(device, {"lbvh_order", {kGroupSize}}),
           sums(device, {"lbvh_sums", {scalar::kBuildGroupSize}}),
           numbers(device, {"lbvh_numbers", {scalar::kBuildGroupSize}}),
-          refit(device, {"lbvh_refit", {kGroupSize}}),
+          refit(device, {"lbvh_refit", {choose_refit_group_size(device)}}),
           heap_refit(device, {"heap_refit", {kGroupSize}}),
           sort(device),
           of_30_bits(device, 30),

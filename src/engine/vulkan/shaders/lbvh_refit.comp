@@ -32,24 +32,30 @@ uint find_height(uint node) {
     return is_leaf_word(nodes[2u * node + 1u].w) ? 0u : heights[(nodes[2u * node].w - 1u) / 2u];
 }
 
+/// A pair whose boxes are done; returns the pair of their parent, kNoNode at the root.
+uint bound_parent(uint pair) {
+    uint left = 1u + 2u * pair;
+    uint parent = parents[left];
+    store_box(parent, join_boxes(load_box(left), load_box(left + 1u)));
+    heights[pair] = 1u + max(find_height(left), find_height(left + 1u));
+    if (parent == 0u) state.depth = heights[pair];
+    return parent == 0u ? kNoNode : (parent - 1u) / 2u;
+}
+
 void main() {
     uint pair = invocation_index();
-    if (state.cut_count == 0u && pair == 0u) bound_leaf(0u);
-    if (pair >= state.cut_count) return;
-    uint arrived = bound_leaf(1u + 2u * pair) + bound_leaf(2u + 2u * pair);
+    uint cut_count = state.cut_count;
+    uint arrived = 0u;
+    if (cut_count == 0u && pair == 0u) bound_leaf(0u);
+    if (pair < cut_count) arrived = bound_leaf(1u + 2u * pair) + bound_leaf(2u + 2u * pair);
     while (arrived > 0u) {
         memoryBarrierBuffer(); // what was stored is there before the arrival is
-        if (atomicAdd(arrivals[pair], arrived) + arrived < 2u) return;
+        bool is_complete = atomicAdd(arrivals[pair], arrived) + arrived == 2u;
         memoryBarrierBuffer(); // and the sibling's is read after its arrival
-        uint left = 1u + 2u * pair;
-        uint parent = parents[left];
-        store_box(parent, join_boxes(load_box(left), load_box(left + 1u)));
-        heights[pair] = 1u + max(find_height(left), find_height(left + 1u));
-        if (parent == 0u) {
-            state.depth = heights[pair];
-            return;
+        arrived = 0u;
+        if (is_complete) {
+            pair = bound_parent(pair);
+            arrived = pair == kNoNode ? 0u : 1u;
         }
-        pair = (parent - 1u) / 2u;
-        arrived = 1u;
     }
 }
