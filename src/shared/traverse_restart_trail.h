@@ -1,6 +1,9 @@
-// Restart trail with a short stack (Laine 2010): no parents, no heap; what the stack has lost is found again
-// from the root. Children are ordered by the distance of entry: the walk relies on it that a box which a hit
-// has culled was the farther one. Trees of at most kTrailLevels32 or 64 levels. Included as tree.h says.
+// Restart trail with a short stack (after Laine 2010): no parents, no heap; what the stack has lost is found
+// again from the root. The trail says which child is under way, so both ways down have to agree on which
+// boxes are met and on their order, whatever hits have done to the ray in between: boxes are tested against
+// the whole ray, and culled by the distance of entry afterwards. (The paper's rule, by which a single box
+// that is met on the level of the last pop is the one already done, visits leaves twice where the hit has
+// culled a box further up.) Trees of at most kTrailLevels32 or 64 levels. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_RESTART_TRAIL_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_RESTART_TRAIL_H
@@ -9,23 +12,29 @@
 struct RestartState {
     uint root; ///< kNoNode: ended
     uint node;
-    Key trail, level, popped; ///< levels as one bit each; popped: where the walk last came up to
+    float entry;      ///< into the box of `node`
+    Key trail, level; ///< levels as one bit each
     uint stack_top, stack_count;
 };
 
 RestartState restart_walk;
-uint short_stack[kShortStackSize]; ///< a ring: the oldest entry makes room
+uint short_stack_nodes[kShortStackSize]; ///< a ring: the oldest entry makes room
+float short_stack_entries[kShortStackSize];
 
 /// `root_level`: make_root_level32 or 64; kNoNode: no tree.
 RestartState start_restart_trail(uint root, Key root_level) {
     RestartState state;
     state.root = root;
     state.node = root;
+    state.entry = 0.0f;
     state.trail = root_level;
     state.level = root_level;
-    state.popped = pop_level(root_level, root_level); // no level
     state.stack_top = 0u;
     state.stack_count = 0u;
+    if (root == kNoNode) return state;
+    count_bytes(kNodeBytes);
+    count_box_test();
+    if (!(enter_whole_box(load_node(root)) < make_infinity())) state.root = kNoNode;
     return state;
 }
 
@@ -35,56 +44,54 @@ RestartState drop_short_stack(RestartState state) {
     return state;
 }
 
-void push_on_short_stack(uint node) {
-    short_stack[restart_walk.stack_top & (kShortStackSize - 1u)] = node;
+void push_on_short_stack(uint node, float entry) {
+    uint place = restart_walk.stack_top & (kShortStackSize - 1u);
+    short_stack_nodes[place] = node;
+    short_stack_entries[place] = entry;
     restart_walk.stack_top += 1u;
     restart_walk.stack_count = min_uint(restart_walk.stack_count + 1u, kShortStackSize);
 }
 
+/// On to what is due after the node: the entry on top of the stack, if there is one, is the sibling on that
+/// level.
 void leave_level() {
     restart_walk.trail = pop_level(restart_walk.trail, restart_walk.level);
     if (is_root_finished(restart_walk.trail)) {
         restart_walk.root = kNoNode;
-        return;
-    }
-    restart_walk.popped = lowest_bit(restart_walk.trail);
-    if (restart_walk.stack_count > 0u) {
+    } else if (restart_walk.stack_count > 0u) {
         restart_walk.stack_count -= 1u;
         restart_walk.stack_top -= 1u;
-        restart_walk.node = short_stack[restart_walk.stack_top & (kShortStackSize - 1u)];
-        restart_walk.level = restart_walk.popped;
-        return;
+        uint place = restart_walk.stack_top & (kShortStackSize - 1u);
+        restart_walk.node = short_stack_nodes[place];
+        restart_walk.entry = short_stack_entries[place];
+        restart_walk.level = lowest_bit(restart_walk.trail);
+    } else {
+        count_restart();
+        restart_walk.node = restart_walk.root;
+        restart_walk.entry = 0.0f;
+        restart_walk.level = highest_bit(restart_walk.trail);
     }
-    count_restart();
-    restart_walk.node = restart_walk.root;
-    restart_walk.level = highest_bit(restart_walk.trail);
 }
 
-/// At an inner node whose box was met.
 void choose_child(uint first) {
     count_bytes(2u * kNodeBytes);
     count_box_test();
     count_box_test();
-    float left = enter_box(load_node(first));
-    float right = enter_box(load_node(first + 1u));
-    bool is_right_nearer = right < left;
-    uint near = first + (is_right_nearer ? 1u : 0u);
+    float left = enter_whole_box(load_node(first));
+    float right = enter_whole_box(load_node(first + 1u));
+    float far_entry = max(left, right);
+    uint near = first + (right < left ? 1u : 0u);
     uint far = first + first + 1u - near;
-    if (!(min(left, right) < make_infinity())) {
-        leave_level();
-        return;
-    }
     restart_walk.level = shift_right(restart_walk.level, 1u);
     restart_walk.node = near;
-    if (max(left, right) < make_infinity()) {
-        if (has_common_bits(restart_walk.trail, restart_walk.level))
-            restart_walk.node = far;
-        else
-            push_on_short_stack(far);
-    } else if (is_equal(restart_walk.level, restart_walk.popped)) {
-        leave_level(); // the far child was due, and a hit has culled it
-    } else {
+    restart_walk.entry = min(left, right);
+    if (!(far_entry < make_infinity())) {
         restart_walk.trail = join_bits(restart_walk.trail, restart_walk.level);
+    } else if (has_common_bits(restart_walk.trail, restart_walk.level)) {
+        restart_walk.node = far;
+        restart_walk.entry = far_entry;
+    } else {
+        push_on_short_stack(far, far_entry);
     }
 }
 
@@ -95,13 +102,15 @@ bool walk_restart_trail() {
             if (resume_walk()) continue;
             return true;
         }
+        // Where both children were missed, the entry is infinity, and so may be the limit.
+        if (restart_walk.entry > get_limit() * kBoxSlack || !(restart_walk.entry < make_infinity())) {
+            leave_level();
+            continue;
+        }
         uint node = restart_walk.node;
         TreeNode data = load_node(node);
-        count_bytes(kNodeBytes);
-        count_box_test();
-        if (!(enter_box(data) < make_infinity())) {
-            leave_level();
-        } else if (!is_leaf_word(data.word)) {
+        count_bytes(8u); // its box was read before
+        if (!is_leaf_word(data.word)) {
             choose_child(data.first);
         } else {
             leave_level();

@@ -41,7 +41,7 @@ class SuccinctBuild {
         heap_.primitive_ids = bvh_.primitive_ids;
         const uint32_t pairs = uint32_t(bvh_.nodes.size() / 2);
         // Four to eight bits of the flat part a pair: most nodes are found by one look into it.
-        const int levels = pairs > 0 ? std::bit_width(pairs) + 1 : 0;
+        const int levels = pairs > 0 ? int(std::bit_width(pairs)) + 1 : 0;
         heap_.form.flat_levels = uint32_t(std::min(levels, heap_.depth));
         heap_.blocks.resize(((size_t(2) << heap_.form.flat_levels) + 63) / 64);
         heap_.nodes.reserve(bvh_.nodes.size() + 1);

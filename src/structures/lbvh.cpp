@@ -165,7 +165,7 @@ class HeapBuild {
   private:
     Box build_node(const Range& range, uint32_t key) {
         TreeNode& node = heap_.slots[key];
-        const bool is_last_level = std::bit_width(key) == levels_;
+        const bool is_last_level = int(std::bit_width(key)) == levels_;
         if (is_last_level || order_.codes[range.begin] == order_.codes[range.last()]) {
             const Box box = compute_range_box(boxes_, order_.ids, range);
             node = {box.lower, range.begin, box.upper, range.count()};
@@ -214,7 +214,7 @@ DenseHeap LbvhBuilder::build_heap(std::span<const Box> boxes, const HeapConfig& 
 }
 
 int choose_heap_levels(size_t primitive_count) {
-    const int levels = std::bit_width(std::max<size_t>(primitive_count, 1) - 1) + 2;
+    const int levels = int(std::bit_width(std::max<size_t>(primitive_count, 1) - 1)) + 2;
     return std::min(levels, DenseHeap::kMaxLevels);
 }
 

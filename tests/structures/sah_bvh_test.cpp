@@ -3,17 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
 #include "box_sets.h"
 #include "structures/sah_split.h"
+#include "structures/tree_links.h"
+#include "tree_checks.h"
 
 namespace relief {
 namespace {
 
 using test::BoxSet;
+using test::expect_sound;
+using test::is_same;
 using Method = SahBvhBuilder::Method;
 
 std::vector<SahBvhBuilder::Config> make_configs() {
@@ -28,52 +31,12 @@ std::vector<SahBvhBuilder::Config> make_configs() {
     return configs;
 }
 
-struct Visit {
-    uint32_t node;
-    int depth;
-};
-
-void expect_sound(const Bvh& bvh, const std::vector<Box>& boxes, uint32_t max_leaf_size) {
-    std::vector<int> seen(boxes.size());
-    std::vector<Visit> pending{{0, 0}};
-    size_t node_count = 0;
-    while (!pending.empty()) {
-        const Visit visit = pending.back();
-        pending.pop_back();
-        ++node_count;
-        ASSERT_LE(visit.depth, kMaxBvhDepth);
-        ASSERT_LT(visit.node, bvh.nodes.size());
-        const BvhNode& node = bvh.nodes[visit.node];
-        if (!node.is_leaf()) {
-            ASSERT_LT(node.first + 1, bvh.nodes.size());
-            for (const uint32_t child : {node.first, node.first + 1}) {
-                ASSERT_TRUE(node.box().contains(bvh.nodes[child].box()));
-                pending.push_back({child, visit.depth + 1});
-            }
-            continue;
-        }
-        ASSERT_LE(node.primitive_count, max_leaf_size);
-        for (uint32_t k = node.first; k < node.first + node.primitive_count; ++k) {
-            ASSERT_LT(k, bvh.primitive_ids.size());
-            ++seen[bvh.primitive_ids[k]];
-            ASSERT_TRUE(node.box().contains(boxes[bvh.primitive_ids[k]]));
-        }
-    }
-    EXPECT_EQ(node_count, bvh.nodes.size());
-    for (const int times : seen) ASSERT_EQ(times, 1);
-}
-
 double compute_cost(const Bvh& bvh, const SahBvhBuilder::Config& config) {
     double cost = 0;
     for (const BvhNode& node : bvh.nodes)
         cost += compute_half_area(node.box()) *
                 (node.is_leaf() ? config.intersection_cost * node.primitive_count : config.traversal_cost);
     return cost / compute_half_area(bvh.nodes[0].box());
-}
-
-bool is_same(const Bvh& a, const Bvh& b) {
-    return a.nodes.size() == b.nodes.size() && a.primitive_ids == b.primitive_ids &&
-           std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)) == 0;
 }
 
 TEST(SahBvh, holds_every_primitive_once_and_children_inside_parents) {
@@ -145,6 +108,47 @@ TEST(SahBvh, keeps_primitives_together_when_nodes_are_dear) {
     EXPECT_EQ(SahBvhBuilder::build(boxes, config).nodes.size(), 1u);
     config.traversal_cost = 0.01f;
     EXPECT_GT(SahBvhBuilder::build(boxes, config).nodes.size(), 1u);
+}
+
+TEST(SahBvh, keeps_to_the_greatest_depth) {
+    for (const BoxSet& set : test::make_box_sets())
+        for (SahBvhBuilder::Config config : make_configs())
+            for (const int max_depth : {11, 30, 62}) {
+                SCOPED_TRACE(set.name);
+                config.max_depth = max_depth;
+                const Bvh bvh = SahBvhBuilder::build(set.boxes, config);
+                // 2^11 leaves of two are enough for every set.
+                const uint32_t leaf_size =
+                    max_depth == 11 ? std::max(2u, config.max_leaf_size) : config.max_leaf_size;
+                expect_sound(bvh, set.boxes, leaf_size, max_depth);
+            }
+}
+
+TEST(SahBvh, puts_everything_into_leaves_of_the_last_level) {
+    SahBvhBuilder::Config config;
+    config.max_depth = 1;
+    const std::vector<Box> boxes = test::make_random_boxes(42, 100, 1, 0.1f);
+    const Bvh bvh = SahBvhBuilder::build(boxes, config);
+    EXPECT_EQ(bvh.nodes.size(), 3u);
+    expect_sound(bvh, boxes, 100, 1);
+}
+
+TEST(SahBvh, grows_wider_leaves_and_shallower_trees_at_the_costs_of_mobile_devices) {
+    for (const uint32_t seed : {43u, 44u}) {
+        const std::vector<Box> boxes = test::make_random_boxes(seed, 3000, 10, 0.3f);
+        SahBvhBuilder::Config usual;
+        usual.method = Method::sweep;
+        usual.max_leaf_size = 8;
+        SahBvhBuilder::Config mobile = usual;
+        mobile.traversal_cost = 3.0f, mobile.intersection_cost = 1.5f;
+        const Bvh a = SahBvhBuilder::build(boxes, usual), b = SahBvhBuilder::build(boxes, mobile);
+        expect_sound(b, boxes, 8);
+        EXPECT_LT(b.nodes.size(), a.nodes.size());
+        EXPECT_LE(compute_depth(b), compute_depth(a));
+        // By its own costs each tree is the better one.
+        EXPECT_LT(compute_cost(a, usual), compute_cost(b, usual));
+        EXPECT_LT(compute_cost(b, mobile), compute_cost(a, mobile));
+    }
 }
 
 TEST(SahBvh, separates_two_distant_groups_at_the_root) {
