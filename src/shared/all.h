@@ -34,3 +34,4 @@
 #include "shared/device_rays.h"
 #include "shared/device_paths.h"
 #include "shared/device_sort.h"
+#include "shared/device_trees.h"

@@ -6,21 +6,27 @@
 // goes on from it. They move the state on before they visit a leaf; so a leaf that is an instance saves the
 // state and puts that of another tree in its place, and resume_walk() brings the old one back.
 //
-//   hook                                     what it does                                         asked for
-//   by bool visit_leaf(first, word, node)       tests primitives; true ends the walk                 all bool
-//   resume_walk()                       the tree is done: true: the state is another's now   all float
-//   get_limit()                        t_max, shortened by hits                             stack, kd void
-//   count_box_test(), count_restart()   empty where nobody counts                            all void
-//   count_bytes(uint bytes)             read by the walk; look-ups of hooks count their own  all TreeNode
-//   load_node(uint node)            32 bytes                                             all but kd float
-//   enter_box(TreeNode node)           entry into the box, infinity: missed or beyond t_max all but kd bool
-//   is_axis_backward(uint axis)         is the direction below zero? for a fixed order       trail, parent
-//   link Key, uint find_slot(Key key)             uint or HeapKey; where the node of a key lies        trail,
-//   pair trail Key                                      as wide as the tree is deep restart trail uint
-//   load_parent(uint node)              4 bytes                                              parent link uint
-//   load_skip(uint node)                4 bytes; kNoNode behind the last                     skip link KdNode
-//   load_kd_node(uint node)           8 bytes                                              kd KdBox
-//   load_kd_box(uint node)             32 bytes                                             kd backtrack
+// Hooks of all walks:
+// - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the walk.
+// - bool resume_walk(): the tree is done; true: the state is another's now.
+// - float get_limit(): t_max of the ray, shortened by hits.
+// - void count_box_test(), count_restart(), count_bytes(uint): empty where nobody counts. Bytes are those
+//   of nodes, links and directories; primitives are counted by visit_leaf.
+//
+// Of walks over boxes:
+// - TreeNode load_node(uint node): 32 bytes.
+// - float enter_box(TreeNode node): entry into the box, infinity: missed or beyond the limit. See cross_node.
+// - float enter_whole_box(TreeNode node): the same for t_max before any hit. Restart trail only.
+// - bool is_axis_backward(uint axis): is the direction below zero? For the order of trail and parent links.
+// - Key: a type, uint or HeapKey, for trees of kTrailLevels32 or 64 levels. Trails and restart trail.
+// - uint find_slot(Key key): where the node of a key lies; siblings follow one another. Trail, pair trail.
+// - HeapForm get_heap_form(), HeapBlock load_heap_block(uint), HeapBrick load_heap_brick(uint), for
+//   succinct_heap.h.
+// - uint load_parent(uint node): 4 bytes. Parent links.
+// - uint load_skip(uint node): 4 bytes; kNoNode behind the last. Skip links.
+//
+// Of kd-trees: KdNode load_kd_node(uint node), 8 bytes; KdBox load_kd_box(uint node), 32 bytes, backtrack
+// only. There `word` of visit_leaf is the count alone.
 #ifndef RELIEF_TREE_H
 #ifndef __cplusplus
 #define RELIEF_TREE_H

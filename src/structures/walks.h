@@ -95,6 +95,7 @@ template <class View, class Leaf, class Counts> class Walker {
           ray_(ray),
           leaf_(leaf),
           counts_(counts),
+          whole_t_max_(ray.t_max),
           object_ray_(make_object_ray(ray.origin, ray.direction)) {}
 
     /// True: a leaf ended the walk. `start`: key of the node to start at, for the two trails.
@@ -177,6 +178,9 @@ template <class View, class Leaf, class Counts> class Walker {
     float enter_box(const TreeNode& node) const {
         return cross_node(object_ray_, node, ray_.t_min, ray_.t_max);
     }
+    float enter_whole_box(const TreeNode& node) const {
+        return cross_node(object_ray_, node, ray_.t_min, whole_t_max_);
+    }
     bool is_axis_backward(uint axis) const { return select_axis(ray_.direction, axis) < 0.0f; }
     bool resume_walk() const { return false; }
 
@@ -220,6 +224,7 @@ template <class View, class Leaf, class Counts> class Walker {
     BoxRay& ray_;
     Leaf& leaf_;
     Counts& counts_;
+    const float whole_t_max_;
     const ObjectRay object_ray_;
     bool is_ended_ = false;
 };

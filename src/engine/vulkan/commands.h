@@ -11,9 +11,23 @@
 
 namespace relief::vulkan {
 
-/// Parts of a frame whose time is told apart; names follow the keys of `stage_s`.
-enum class Stage { top_traversal, sort, bottom_build, bottom_traversal, shade, film };
-inline constexpr size_t kStageCount = 6;
+/// Parts of a frame whose time is told apart; names follow the keys of `stage_s`;
+/// from tree_boxes on those of trees that are built and walked for themselves.
+enum class Stage {
+    top_traversal,
+    sort,
+    bottom_build,
+    bottom_traversal,
+    shade,
+    film,
+    tree_boxes,
+    tree_codes,
+    tree_hierarchy,
+    tree_refit,
+    tree_walk,
+    copy
+};
+inline constexpr size_t kStageCount = 12;
 
 /// One thread at a time. Every call after a dispatch sees what that dispatch wrote: a full memory barrier
 /// stands between any two of them.

@@ -27,11 +27,15 @@ uint64_t RadixSort::histogram_words(uint64_t capacity) const {
     return count_tiles(capacity) * kSortDigitCount;
 }
 
+uint32_t RadixSort::count_passes(uint32_t key_bits) {
+    // An even number, so that the last one ends where the first began.
+    return (key_bits + 2 * kLargestDigitBits - 1) / (2 * kLargestDigitBits) * 2;
+}
+
 void RadixSort::record(Commands& commands, uint64_t capacity, uint32_t key_bits,
                        uint32_t counter_word) const {
     DCHECK(key_bits <= 32 && capacity < kNone);
-    // An even number of passes, so that the last one ends where the first began.
-    const uint32_t passes = (key_bits + 2 * kLargestDigitBits - 1) / (2 * kLargestDigitBits) * 2;
+    const uint32_t passes = count_passes(key_bits);
     if (passes == 0 || capacity == 0) return;
     const uint32_t digit_bits = (key_bits + passes - 1) / passes;
     const uint64_t invocations = count_tiles(capacity) * kSortGroupSize;

@@ -18,6 +18,9 @@ class RadixSort {
     /// Words that the buffer bound at kBindHistogram must have to sort `capacity` pairs.
     uint64_t histogram_words(uint64_t capacity) const;
 
+    /// Passes over all pairs, each of which reads them twice and writes them once.
+    static uint32_t count_passes(uint32_t key_bits);
+
     /// Sorts the first counters[counter_word] pairs of kBindPairs, at most `capacity`, by the lowest
     /// `key_bits` (0 to 32) of their first word; higher bits must be 0. The result is in kBindPairs;
     /// kBindSortedPairs, as large, and kBindHistogram are overwritten. `counter_word` is an index of a word

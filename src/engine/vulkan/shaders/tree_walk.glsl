@@ -1,0 +1,146 @@
+// One ray through one tree over a triangle mesh: the hooks of shared/tree.h from buffers. The including file has
+// defined one of WALK_..., and Key where the walk has one. begin_walk(), then walk_tree(); the result is in walk_best.
+#include "shared/lang.h"
+#include "shared/constants.h"
+#include "shared/exact.h"
+#include "shared/object_ray.h"
+#include "shared/trail.h"
+#include "shared/tree.h"
+#include "shared/bindings.h"
+#include "shared/device_trees.h"
+
+layout(constant_id = 1) const uint kIsCounting = 0u;
+layout(constant_id = 2) const uint kIsSuccinct = 0u; ///< heaps only
+
+layout(scalar, push_constant) uniform Push { WalkPush push; };
+layout(set = 0, binding = kBindTreeIds) uniform usamplerBuffer tree_ids;
+layout(set = 0, binding = kBindMeshTriangles) uniform usamplerBuffer mesh_triangles;
+layout(set = 0, binding = kBindMeshPositions) uniform samplerBuffer mesh_positions;
+
+ObjectRay walk_ray;
+float walk_t_min, walk_t_max;
+TreeHit walk_best; ///< t: no farther than this matters
+RayCounts walk_counts;
+
+void count_box_test() {
+    if (kIsCounting != 0u) ++walk_counts.box_tests;
+}
+void count_primitive_test() {
+    if (kIsCounting != 0u) ++walk_counts.primitive_tests;
+}
+void count_restart() {
+    if (kIsCounting != 0u) ++walk_counts.restarts;
+}
+void count_bytes(uint bytes) {
+    if (kIsCounting != 0u) walk_counts.bytes += bytes;
+}
+
+float get_limit() { return walk_best.t; }
+bool resume_walk() { return false; }
+bool visit_leaf(uint first, uint word, uint node);
+
+#if defined(WALK_KD_RESTART) || defined(WALK_KD_PUSH_DOWN) || defined(WALK_KD_BACKTRACK)
+#include "engine/vulkan/shaders/kd_hooks.glsl"
+#else
+#include "engine/vulkan/shaders/box_hooks.glsl"
+#endif
+
+#if defined(WALK_STACK)
+#include "shared/traverse_stack.h"
+bool walk_tree() {
+    stack_walk = make_empty_stack();
+    start_stack(push.root);
+    return walk_stack();
+}
+#elif defined(WALK_RESTART_TRAIL)
+#include "shared/traverse_restart_trail.h"
+bool walk_tree() {
+    restart_walk = start_restart_trail(push.root, make_root_level());
+    return walk_restart_trail();
+}
+#elif defined(WALK_TRAIL)
+#include "shared/traverse_trail.h"
+Key walk_start;
+bool walk_tree() {
+    trail_walk = start_trail(walk_start);
+    return walk_trail();
+}
+Key get_leaf_key() { return trail_walk.leaf; }
+#elif defined(WALK_PAIR_TRAIL)
+#include "shared/traverse_pair_trail.h"
+Key walk_start;
+bool walk_tree() {
+    pair_walk = start_pair_trail(walk_start);
+    return walk_pair_trail();
+}
+Key get_leaf_key() { return pair_walk.leaf; }
+#elif defined(WALK_PARENT_LINK)
+#include "shared/traverse_parent_link.h"
+bool walk_tree() {
+    parent_walk = start_parent_link(push.root);
+    return walk_parent_link();
+}
+#elif defined(WALK_SKIP_LINK)
+#include "shared/traverse_skip_link.h"
+bool walk_tree() {
+    skip_walk = start_skip_link(push.root);
+    return walk_skip_link();
+}
+#elif defined(WALK_KD_RESTART)
+#include "shared/traverse_kd_restart.h"
+bool walk_tree() {
+    kd_restart_walk = start_kd_restart(push.root, enter_root_cell());
+    return walk_kd_restart();
+}
+#elif defined(WALK_KD_PUSH_DOWN)
+#include "shared/traverse_kd_push_down.h"
+bool walk_tree() {
+    kd_push_down_walk = start_kd_push_down(push.root, enter_root_cell());
+    return walk_kd_push_down();
+}
+#elif defined(WALK_KD_BACKTRACK)
+#include "shared/traverse_kd_backtrack.h"
+bool walk_tree() {
+    kd_backtrack_walk = start_kd_backtrack(push.root, enter_root_cell());
+    return walk_kd_backtrack();
+}
+#endif
+
+#if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
+Key walk_hit_leaf; ///< of the hit in walk_best
+void note_hit_leaf() { walk_hit_leaf = get_leaf_key(); }
+#else
+void note_hit_leaf() {}
+#endif
+
+vec3 load_sheared(uint vertex) {
+    return shear_vertex(walk_ray, texelFetch(mesh_positions, int(vertex)).xyz);
+}
+
+void offer_triangle(uint primitive) {
+    count_primitive_test();
+    uvec4 corners = texelFetch(mesh_triangles, int(primitive));
+    TriangleHit found = intersect_sheared(walk_ray, load_sheared(corners.x), load_sheared(corners.y),
+                                          load_sheared(corners.z), walk_t_min, walk_best.t);
+    if (found.t == make_infinity() || (found.t == walk_best.t && primitive >= walk_best.primitive)) return;
+    walk_best = TreeHit(found.t, primitive, found.weight_b, found.weight_c);
+    note_hit_leaf();
+}
+
+/// The count of a kd leaf has the place of a word.
+bool visit_leaf(uint first, uint word, uint node) {
+    uint count = count_of_word(word);
+    for (uint k = 0u; k < count; ++k) {
+        offer_triangle(texelFetch(tree_ids, int(first + k)).x);
+        if (push.is_any != 0u && walk_best.primitive != kNone) return true;
+    }
+    return false;
+}
+
+void begin_walk(TreeRay ray) {
+    walk_ray = make_object_ray(ray.origin, ray.direction);
+    walk_t_min = ray.t_min;
+    walk_t_max = ray.t_max;
+    walk_best = TreeHit(ray.t_max, kNone, 0.0, 0.0);
+    walk_counts = RayCounts(0u, 0u, 0u, 0u);
+}
