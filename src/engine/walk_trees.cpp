@@ -34,6 +34,7 @@ WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, Traversa
         SahKdTreeBuilder::Config config;
         if (traversal == TraversalKind::backtrack) config.cells = SahKdTreeBuilder::Cells::kept;
         tree.kd = SahKdTreeBuilder::build(boxes, config);
+        tree.boxes.assign(boxes.begin(), boxes.end());
         return tree;
     }
     Lbvh binary = build_binary(boxes, structure, max_leaf_size);

@@ -11,10 +11,11 @@ namespace relief {
 
 /// One tree; what the traversal does not walk is empty.
 struct WalkTree {
-    LinkedBvh linked;  ///< stack, restart trail, parent link, skip link
-    SuccinctHeap heap; ///< trail, pair trail
-    KdTree kd;         ///< restart, push-down, backtrack
-    Box bounds;        ///< empty: nothing in it
+    LinkedBvh linked;       ///< stack, restart trail, parent link, skip link
+    SuccinctHeap heap;      ///< trail, pair trail
+    KdTree kd;              ///< restart, push-down, backtrack
+    std::vector<Box> boxes; ///< of the primitives; kd-trees only, whose leaves have none
+    Box bounds;             ///< empty: nothing in it
 
     /// Of what a traversal reads.
     size_t byte_count(TraversalKind traversal) const;

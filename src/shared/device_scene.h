@@ -68,6 +68,21 @@ struct TileRecord {
     uint cell_x, cell_y; ///< first cell on the patch
 };
 
+/// An upper tree of a traversal chosen by name. Its nodes lie among the nodes, all else as words among the
+/// ids of primitives, at the beginning of which are these records: first that of the tree of instances, then
+/// one a surface.
+struct WalkTreeData {
+    Vec3 lower, upper; ///< of all of it
+    uint is_empty;
+    uint nodes;                   ///< its first node; kd: its first cell
+    uint ids;                     ///< first word of what leaves count into: instances, or patches
+    uint links;                   ///< first word: parents, skip links, blocks of a heap, or kd nodes
+    uint bricks;                  ///< first word: bricks of a heap
+    uint boxes;                   ///< kd: first of the boxes of primitives, kept as nodes
+    uint flat_levels, flat_pairs; ///< HeapForm of a heap
+};
+const uint kWalkTreeWords = 14u;
+
 // Nodes of every upper tree take two texels: (lower x y z, first), (upper x y z, kind_and_count), floats as
 // their bits.
 const uint kNodeInner = 0u;    ///< first: node of the left child, the right one follows

@@ -27,7 +27,7 @@ inline CastAnswers cast_on_device(const Device& device, const PreparedScene& sce
                                   const RenderSettings& settings, const std::vector<cpu::TraceRay>& rays,
                                   TracerConfig config) {
     config.ray_capacity = std::max<uint32_t>(1, uint32_t(rays.size()));
-    const DeviceScene device_scene(device, scene);
+    const DeviceScene device_scene(device, scene, settings);
     Tracer tracer(device, scene, device_scene, settings, config);
     std::vector<scalar::RayData> data;
     for (const cpu::TraceRay& ray : rays)

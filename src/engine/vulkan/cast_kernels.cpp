@@ -23,13 +23,13 @@ std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
 
 } // namespace
 
-CastKernels::CastKernels(const Device& device, const RenderSettings& settings, const TracerConfig& config,
-                         uint32_t stack_size) {
+CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
+                         const TracerConfig& config, uint32_t stack_size) {
     const bool is_cpu = device.is_cpu();
     const uint32_t is_box = settings.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.bottom == BottomForm::fused;
-    scene_traversal = Kernel(device, {"scene_traversal", {kGroup, stack_size}});
+    scene_traversal = Kernel(device, {scene.traversal_kernel(), {kGroup, stack_size}});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "engine/vulkan/device_scene.h"
 #include "engine/vulkan/kernel.h"
 #include "engine/vulkan/tracer.h"
 #include "math/scalar.h"
@@ -10,8 +11,9 @@
 namespace relief::vulkan {
 
 struct CastKernels {
-    CastKernels(const Device& device, const RenderSettings& settings, const TracerConfig& config,
-                uint32_t stack_size);
+    /// `stack_size`: entries for upper trees and tiles.
+    CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
+                const TracerConfig& config, uint32_t stack_size);
 
     /// The fused form leaves pairs of large trees to `leftover`; only devices that bound the loops of an
     /// invocation have any.

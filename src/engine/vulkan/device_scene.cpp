@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/scene_trees.h"
+#include "engine/vulkan/device_walk_trees.h"
 #include "engine/vulkan/texel_store.h"
 
 namespace relief::vulkan {
@@ -55,11 +56,17 @@ struct DeviceScene::Arrays {
     }
 };
 
-DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene) {
+DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene, const RenderSettings& settings) {
     Arrays arrays;
     add_textures(device, scene);
     add_surfaces(scene, arrays);
-    add_trees(scene, arrays);
+    const TraversalKind traversal = settings.traversal == TraversalKind::automatic
+                                        ? available_traversals(EngineKind::vulkan, settings.structure).front()
+                                        : settings.traversal;
+    if (settings.structure == StructureKind::bvh && traversal == TraversalKind::stack)
+        add_trees(scene, arrays);
+    else
+        add_walk_trees(scene, settings.structure, traversal, arrays);
     add_instances(scene, arrays);
     upload(device, arrays);
 }
@@ -157,6 +164,19 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
     });
     // Nearest first, each step down leaves one sibling behind.
     stack_size_ = measure_depth(instances) + arrays.deepest_surface + 4;
+    node_count_ = arrays.nodes.size();
+}
+
+void DeviceScene::add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
+                                 Arrays& arrays) {
+    traversal_kernel_ = std::string("scene_walk_") + traversal_name(traversal);
+    std::replace(traversal_kernel_.begin(), traversal_kernel_.end(), '-', '_');
+    const WalkTrees trees = make_walk_trees(scene, structure, traversal);
+    append_walk_trees(trees, arrays.nodes, arrays.primitive_ids);
+    for (const WalkTree& tree : trees.surfaces)
+        arrays.surface_roots.push_back(tree.bounds.is_empty() ? kNone : 0);
+    root_ = trees.instances.bounds.is_empty() ? kNone : 0;
+    stack_size_ = 1; // walks have no use for it; tiles add theirs
     node_count_ = arrays.nodes.size();
 }
 

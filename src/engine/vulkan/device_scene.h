@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/prepared_scene.h"
@@ -27,7 +28,8 @@ static_assert(sizeof(NodeTexels) == 32);
 /// once made. Throws Error{out_of_memory} with the byte count for what the device cannot hold.
 class DeviceScene {
   public:
-    DeviceScene(const Device& device, const PreparedScene& scene);
+    /// Of the settings only structure and traversal matter.
+    DeviceScene(const Device& device, const PreparedScene& scene, const RenderSettings& settings = {});
 
     void bind(BindingTable& bindings) const;
 
@@ -36,7 +38,8 @@ class DeviceScene {
     /// Number of the first patch of a surface among all; trees of tiles are numbered from patch_count() on.
     uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
     uint32_t patch_count() const { return patch_count_; }
-    /// Entries that a ray's stack needs for both upper trees.
+    /// The kernel that walks the upper trees, and the entries that its stack needs for them.
+    const std::string& traversal_kernel() const { return traversal_kernel_; }
     uint32_t stack_size() const { return stack_size_; }
     uint32_t node_count() const { return uint32_t(node_count_); }
     const Buffer& nodes() const { return nodes_; }
@@ -56,10 +59,13 @@ class DeviceScene {
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
     void add_instances(const PreparedScene& scene, Arrays& arrays);
     void add_trees(const PreparedScene& scene, Arrays& arrays);
+    void add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
+                        Arrays& arrays);
     void upload(const Device& device, Arrays& arrays);
 
     Tables tables_;
     std::map<const Texture*, uint32_t> texture_indices_;
+    std::string traversal_kernel_ = "scene_traversal";
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0;
     size_t node_count_ = 0;
     struct Binding {

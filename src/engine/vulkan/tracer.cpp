@@ -53,7 +53,7 @@ struct Tracer::Implementation {
           cache(d, settings.bottom_cache_bytes, c.pool_restart_units),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
-          kernels(d, settings, c, ds.stack_size() + directories.stack_size()) {
+          kernels(d, ds, settings, c, ds.stack_size() + directories.stack_size()) {
         device_scene.bind(bindings);
         directories.bind(bindings);
         cache.bind(bindings);

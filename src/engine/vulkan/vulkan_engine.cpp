@@ -30,7 +30,7 @@ class VulkanEngine final : public Engine {
         : scene_(std::move(scene)),
           settings_(settings),
           device_(std::move(device)),
-          device_scene_(*device_, *scene_) {}
+          device_scene_(*device_, *scene_, settings_) {}
 
     bool render(Film& film, RenderObserver* observer) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;

@@ -1,0 +1,202 @@
+// One ray through the two upper levels by a traversal chosen by name, compiled once for each (see CMakeLists.txt): what
+// scene_traversal.comp does with its stack. A leaf of the tree of instances puts the tree of a surface in the place of
+// the walk; at its end resume_walk() goes on with the next instance of that leaf, or brings the old walk back.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/vulkan/shaders/kernel.glsl"
+
+#if defined(WALK_KD_RESTART) || defined(WALK_KD_PUSH_DOWN) || defined(WALK_KD_BACKTRACK)
+#define WALK_KD
+#endif
+#ifdef WALK_KD
+const bool kMayOfferTwice = true; // a patch has entries in several leaves
+#else
+const bool kMayOfferTwice = false;
+#endif
+#include "engine/vulkan/shaders/scene_candidates.glsl"
+#include "engine/vulkan/shaders/node_stack.glsl"
+#include "shared/trail.h"
+#include "shared/tree.h"
+
+WalkTreeData tree;    ///< that is walked
+float instance_entry; ///< into the box of the instance, for the order of candidates
+uint waiting_first;   ///< instances of the leaf that are still to be entered, as words
+uint waiting_count = 0u;
+float waiting_entry; ///< into the box of their leaf
+
+uint load_word(uint word) { return texelFetch(primitive_ids, int(word)).x; }
+vec3 load_word_vector(uint word) {
+    return vec3(uintBitsToFloat(load_word(word)), uintBitsToFloat(load_word(word + 1u)),
+                uintBitsToFloat(load_word(word + 2u)));
+}
+
+/// 0: of the instances, 1 + s: of surface s.
+WalkTreeData load_walk_tree(uint index) {
+    uint word = kWalkTreeWords * index;
+    return WalkTreeData(load_word_vector(word), load_word_vector(word + 3u), load_word(word + 6u),
+                        load_word(word + 7u), load_word(word + 8u), load_word(word + 9u), load_word(word + 10u),
+                        load_word(word + 11u), load_word(word + 12u), load_word(word + 13u));
+}
+
+TreeNode load_any_node(uint place) {
+    uvec4 low = texelFetch(nodes, 2 * int(place));
+    uvec4 high = texelFetch(nodes, 2 * int(place) + 1);
+    return TreeNode(uintBitsToFloat(low.xyz), low.w, uintBitsToFloat(high.xyz), high.w);
+}
+
+BoxInterval cross_tree_box(TreeNode node) {
+    return cross_box(ray, node.lower, node.upper, world.t_min, world.t_max);
+}
+
+/// Infinity where nothing in the box is wanted.
+float enter_wanted_box(TreeNode node) {
+    BoxInterval interval = cross_tree_box(node);
+    float entry = max(interval.entry, instance_entry);
+    return is_wanted(interval, entry) ? entry : kInfinity;
+}
+
+// The hooks of shared/tree.h.
+bool visit_leaf(uint first, uint word, uint node);
+bool resume_walk();
+void count_box_test() {}
+void count_restart() {}
+void count_bytes(uint bytes) {}
+float get_limit() { return find_limit(); }
+#ifdef WALK_KD
+KdNode load_kd_node(uint node) {
+    return KdNode(load_word(tree.links + 2u * node), load_word(tree.links + 2u * node + 1u));
+}
+KdBox load_kd_box(uint node) {
+    TreeNode cell = load_any_node(tree.nodes + node);
+    return KdBox(cell.lower, cell.first, cell.upper, cell.word);
+}
+KdRay enter_root_cell() { return make_kd_ray(ray, tree.lower, tree.upper, world.t_min, best.t); }
+#else
+TreeNode load_node(uint node) { return load_any_node(tree.nodes + node); }
+float enter_box(TreeNode node) { return enter_wanted_box(node); }
+float enter_whole_box(TreeNode node) {
+    BoxInterval interval = cross_tree_box(node);
+    float entry = max(interval.entry, instance_entry);
+    return is_wanted_at_all(interval, entry) ? entry : kInfinity;
+}
+bool is_axis_backward(uint axis) { return select_axis(ray.direction, axis) < 0.0; }
+uint load_parent(uint node) { return load_word(tree.links + node); }
+uint load_skip(uint node) { return load_word(tree.links + node); }
+#if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
+HeapForm get_heap_form() { return HeapForm(tree.flat_levels, tree.flat_pairs); }
+HeapBlock load_heap_block(uint block) {
+    uint word = tree.links + 3u * block;
+    return HeapBlock(load_word(word), load_word(word + 1u), load_word(word + 2u));
+}
+HeapBrick load_heap_brick(uint brick) {
+    uint word = tree.bricks + 6u * brick;
+    return HeapBrick(load_word(word), load_word(word + 1u), load_word(word + 2u), load_word(word + 3u),
+                     load_word(word + 4u), load_word(word + 5u));
+}
+#include "shared/succinct_heap.h"
+uint find_slot(Key key) { return find_succinct_slot(key); }
+#endif
+#endif
+#include "engine/vulkan/shaders/walk_kind.glsl"
+
+KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
+
+/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met.
+float enter_primitive(uint id, float leaf_entry) {
+#ifdef WALK_KD
+    return enter_wanted_box(load_any_node(tree.boxes + id));
+#else
+    return leaf_entry;
+#endif
+}
+
+float enter_leaf(uint node) {
+#ifdef WALK_KD
+    return 0.0;
+#else
+    return max(cross_tree_box(load_node(node)).entry, instance_entry);
+#endif
+}
+
+/// In world space, `tree` that of the instances. False: none is left.
+bool enter_next_instance() {
+    while (waiting_count > 0u) {
+        uint index = load_word(waiting_first);
+        ++waiting_first;
+        --waiting_count;
+        float entry = enter_primitive(index, waiting_entry);
+        if (instances[index].root == kNone || entry > find_limit()) continue;
+        enter_instance(index);
+        instance_entry = entry;
+        tree = load_walk_tree(1u + instance.surface);
+        start_walk(0u);
+        return true;
+    }
+    return false;
+}
+
+bool visit_leaf(uint first, uint word, uint node) {
+    uint count = count_of_word(word);
+    float leaf_entry = enter_leaf(node);
+    if (instance_index == kNone) {
+        waiting_first = tree.ids + first;
+        waiting_count = count;
+        waiting_entry = leaf_entry;
+        world_state = walk_state;
+        enter_next_instance();
+        return false;
+    }
+    bool has_displacement = surfaces[instance.surface].map != kNone;
+    for (uint k = 0u; k < count; ++k) {
+        uint patch_index = load_word(tree.ids + first + k);
+        if (!has_displacement) {
+            intersect_polygon(patch_index);
+            if (push.is_any != 0u && best.instance != kNone) return true;
+            continue;
+        }
+        float entry = enter_primitive(patch_index, leaf_entry);
+        if (entry <= find_limit()) enter_patch(patch_index, entry);
+    }
+    return false;
+}
+
+bool resume_walk() {
+    if (instance_index == kNone) return false;
+    leave_instance();
+    instance_entry = world.t_min;
+    tree = load_walk_tree(0u);
+    if (enter_next_instance()) return true;
+    walk_state = world_state;
+#ifdef WALK_RESTART_TRAIL
+    walk_state = drop_short_stack(walk_state);
+#endif
+    return true;
+}
+
+void enter_tiles(uint root, float entry) {
+    push_node(root, entry);
+    while (stack_size > 0u) {
+        --stack_size;
+        if (stack_entry[stack_size] > find_limit()) continue;
+        uint node = stack_node[stack_size];
+        uint first = texelFetch(nodes, 2 * int(node)).w;
+        uint kind = texelFetch(nodes, 2 * int(node) + 1).w >> kNodeKindShift;
+        if (kind == kNodeInner)
+            enter_inner(first, stack_entry[stack_size]);
+        else
+            offer_candidate(first, tile_records[first - push.patch_count].levels, stack_entry[stack_size]);
+    }
+}
+
+bool walk() {
+    leave_instance();
+    instance_entry = world.t_min;
+    tree = load_walk_tree(0u);
+#ifdef WALK_STACK
+    stack_walk = make_empty_stack();
+#endif
+    start_walk(0u);
+    return walk_on();
+}
+
+void main() { trace_round(); }
