@@ -46,7 +46,7 @@ class Traversals : public testing::TestWithParam<Choice> {
 TEST_P(Traversals, find_the_hits_of_the_wide_trees) {
     RenderSettings settings;
     settings.level = 4;
-    expect_same_hits(test::make_scene(DisplacementSpace::tangent), settings);
+    expect_same_hits(test::make_crowd(), settings);
 }
 
 TEST_P(Traversals, find_them_in_tiles_and_at_mixed_levels) {
@@ -58,7 +58,7 @@ TEST_P(Traversals, find_them_in_tiles_and_at_mixed_levels) {
 }
 
 TEST_P(Traversals, find_them_in_polygons) {
-    Scene scene = test::make_scene(DisplacementSpace::tangent);
+    Scene scene = test::make_crowd();
     for (Object& object : scene.objects) object.displacement = kNoIndex;
     expect_same_hits(scene, {});
 }

@@ -62,4 +62,17 @@ inline Scene make_scene(DisplacementSpace space) {
     return scene;
 }
 
+/// Many small copies, so that the tree of instances is deep.
+inline Scene make_crowd() {
+    Scene scene = make_scene(DisplacementSpace::tangent);
+    for (int k = 0; k < 40; ++k) {
+        Object copy = scene.objects[size_t(k) % 3];
+        const float a = 0.37f * float(k);
+        copy.world_from_object = compose(make_translation({std::cos(a), 0.05f * float(k) - 1, std::sin(a)}),
+                                         make_scale({0.2f, 0.15f, 0.2f}));
+        scene.objects.push_back(copy);
+    }
+    return scene;
+}
+
 } // namespace relief::test

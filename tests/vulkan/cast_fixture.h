@@ -13,6 +13,7 @@ namespace relief::vulkan::tests {
 
 using test::cast_on_cpu;
 using test::CpuAnswers;
+using test::make_crowd;
 using test::make_rays;
 using test::make_scene;
 

@@ -118,21 +118,24 @@ float enter_leaf(uint node) {
 #endif
 }
 
-/// In world space, `tree` that of the instances. False: none is left.
+/// In world space, `tree` that of the instances. False: none is left. (No `continue` or `return` in these inner loops:
+/// Mesa 22.3's lavapipe loses lanes there.)
 bool enter_next_instance() {
-    while (waiting_count > 0u) {
+    bool is_entered = false;
+    while (waiting_count > 0u && !is_entered) {
         uint index = load_word(waiting_first);
         ++waiting_first;
         --waiting_count;
         float entry = enter_primitive(index, waiting_entry);
-        if (instances[index].root == kNone || entry > find_limit()) continue;
-        enter_instance(index);
-        instance_entry = entry;
-        tree = load_walk_tree(1u + instance.surface);
-        start_walk(0u);
-        return true;
+        is_entered = instances[index].root != kNone && entry <= find_limit();
+        if (is_entered) {
+            enter_instance(index);
+            instance_entry = entry;
+            tree = load_walk_tree(1u + instance.surface);
+            start_walk(0u);
+        }
     }
-    return false;
+    return is_entered;
 }
 
 bool visit_leaf(uint first, uint word, uint node) {
@@ -149,15 +152,14 @@ bool visit_leaf(uint first, uint word, uint node) {
     bool has_displacement = surfaces[instance.surface].map != kNone;
     for (uint k = 0u; k < count; ++k) {
         uint patch_index = load_word(tree.ids + first + k);
-        if (!has_displacement) {
+        if (has_displacement) {
+            float entry = enter_primitive(patch_index, leaf_entry);
+            if (entry <= find_limit()) enter_patch(patch_index, entry);
+        } else {
             intersect_polygon(patch_index);
-            if (push.is_any != 0u && best.instance != kNone) return true;
-            continue;
         }
-        float entry = enter_primitive(patch_index, leaf_entry);
-        if (entry <= find_limit()) enter_patch(patch_index, entry);
     }
-    return false;
+    return push.is_any != 0u && best.instance != kNone;
 }
 
 bool resume_walk() {
@@ -177,14 +179,15 @@ void enter_tiles(uint root, float entry) {
     push_node(root, entry);
     while (stack_size > 0u) {
         --stack_size;
-        if (stack_entry[stack_size] > find_limit()) continue;
-        uint node = stack_node[stack_size];
-        uint first = texelFetch(nodes, 2 * int(node)).w;
-        uint kind = texelFetch(nodes, 2 * int(node) + 1).w >> kNodeKindShift;
-        if (kind == kNodeInner)
-            enter_inner(first, stack_entry[stack_size]);
-        else
-            offer_candidate(first, tile_records[first - push.patch_count].levels, stack_entry[stack_size]);
+        float node_entry = stack_entry[stack_size];
+        if (node_entry <= find_limit()) {
+            uint node = stack_node[stack_size];
+            uint first = texelFetch(nodes, 2 * int(node)).w;
+            if (texelFetch(nodes, 2 * int(node) + 1).w >> kNodeKindShift == kNodeInner)
+                enter_inner(first, node_entry);
+            else
+                offer_candidate(first, tile_records[first - push.patch_count].levels, node_entry);
+        }
     }
 }
 
