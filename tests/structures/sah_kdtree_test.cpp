@@ -205,7 +205,7 @@ std::vector<test::TriangleSet> make_small_sets() {
         sets.push_back({"grid", test::make_grid_triangles(seed, 40, 4 + seed % 3, 1)});
     }
     sets.push_back({"floor", test::make_floor(114, 4, 0, 0)});
-    sets.push_back({"noisy floor", test::make_floor(115, 4, 0.3f, 6)});
+    sets.push_back({"noisy floor", test::make_floor_between(115, 4, 0.3f, 6)});
     sets.push_back({"far floor", test::move(test::make_floor(116, 4, 0.3f, 0), {1000, 0, 0})});
     sets.push_back({"far", test::move(test::make_random_triangles(117, 40, 1, 0.5f), {300, 300, -100})});
     return sets;
