@@ -1,5 +1,5 @@
-// Linear BVH: the tree that the bits of sorted Morton codes spell (Karras 2012; Murguia et al. 2013 for the
-// heap).
+// Linear BVH: the tree that the bits of sorted Morton codes spell (Karras 2012; Apetrei 2014, for nodes
+// numbered by their cut; Murguia et al. 2013 for the heap).
 //
 // The rule, so that every builder makes the same tree, node for node, however it works:
 // - Primitives are sorted by code; equal codes keep the order of their indices. Entry g of primitive_ids is

@@ -1,5 +1,5 @@
-// The walks of shared/traverse_*.h over the trees of this folder: the reference for the kernels of a device,
-// and what the CPU runs when a traversal is asked for by name. Same leaf contract as walk_stack.h:
+// The walks of shared/traverse_*.h over the trees of this folder: the reference for the SIMD kernels and
+// those of a device, and what the CPU runs when a traversal is asked for by name.
 //   closest_hit<Traversal::trail>(walk_view(heap), ray, leaf);
 #pragma once
 
@@ -39,6 +39,15 @@ struct WalkCounts {
 struct NoCounts {};
 
 namespace scalar {
+
+struct PlainWalkView {
+    using Key = uint;
+    const Bvh& tree;
+
+    bool is_empty() const { return tree.nodes.empty(); }
+    TreeNode load_node(uint node) const { return std::bit_cast<TreeNode>(tree.nodes[node]); }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
 
 /// `Width`: uint or HeapKey, for the restart trail: trees of 30 or 62 levels.
 template <class Width> struct BvhWalkView {
@@ -260,6 +269,15 @@ template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
 bool any_hit(const View& view, BoxRay ray, Leaf&& leaf, Counts&& counts = {}) {
     scalar::Walker walker(view, ray, leaf, counts);
     return walker.template run<kTraversal>(scalar::make_root_key(typename View::Key{}));
+}
+
+/// Of a tree as it is, by a full stack: what other structures are compared with.
+template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
+    closest_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
+}
+
+template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
+    return any_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 /// As any_hit, by Traversal::trail or pair_trail, but from the leaf where the ray before ended, `start`,
