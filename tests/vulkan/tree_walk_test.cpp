@@ -265,9 +265,10 @@ class Forest {
     const DeviceMesh mesh;
 };
 
-class TreeWalks : public GpuTest, public testing::WithParamInterface<TriangleSet> {
+/// Rays of one table, on the device.
+class TreeBatch : public GpuTest {
   protected:
-    TreeWalks() : rays_(device(), kRayCount) {}
+    TreeBatch() : rays_(device(), kRayCount) {}
 
     void upload(const std::vector<BoxRay>& rays) {
         std::vector<TreeRay> packed;
@@ -330,6 +331,8 @@ class TreeWalks : public GpuTest, public testing::WithParamInterface<TriangleSet
     TreeRays rays_;
 };
 
+class TreeWalks : public TreeBatch, public testing::WithParamInterface<TriangleSet> {};
+
 TEST_P(TreeWalks, find_the_hits_of_brute_force_and_count_as_the_host_does) {
     const TriangleSet& set = GetParam();
     const Forest forest(device(), builder(), set);
@@ -381,6 +384,93 @@ TEST_P(TreeWalks, that_start_at_the_last_hit_find_the_same) {
         expect_true(closest, truths, Kind::closest, walk.name + ", closest from the last leaf");
         expect_true(any, truths, Kind::any, walk.name + ", any from the last leaf");
     }
+}
+
+class TreeTracing : public TreeBatch {
+  protected:
+    TreeTracing()
+        : set_(find_set("many small")),
+          boxes_(set_.boxes()),
+          mesh_(upload_triangles(device(), set_.triangles)) {
+        upload(make_rays(set_));
+    }
+
+    static TriangleSet find_set(const std::string& name) {
+        for (const TriangleSet& set : test::make_triangle_sets())
+            if (set.name == name) return set;
+        return {};
+    }
+
+    DeviceTree make_linked() {
+        const Bvh sah = SahBvhBuilder::build(boxes_, {});
+        return upload_tree(device(), make_linked_bvh(sah, compute_axes(sah)));
+    }
+
+    TriangleSet set_;
+    std::vector<Box> boxes_;
+    DeviceMesh mesh_;
+};
+
+TEST_F(TreeTracing, twice_gives_the_same_bits) {
+    const DeviceTree heap = builder().build_heap(mesh_, {});
+    const TreeQuery query{Traversal::pair_trail, Kind::closest, TreeQuery::Counting::each_ray, Start::root};
+    const Answers first = run(heap, mesh_, query);
+    expect_same(run(heap, mesh_, query), first, "second run");
+}
+
+TEST_F(TreeTracing, counts_nothing_unless_asked) {
+    const DeviceTree tree = make_linked();
+    const Answers counted = run(tree, mesh_, {.counting = TreeQuery::Counting::each_ray});
+    rays_.counts.upload(std::vector<RayCounts>(kRayCount, RayCounts{1, 2, 3, 4}));
+    Answers uncounted = run(tree, mesh_, {});
+    for (const RayCounts& counts : uncounted.counts) EXPECT_TRUE(is_same(counts, {1, 2, 3, 4}));
+    uncounted.counts = counted.counts;
+    expect_same(uncounted, counted, "without counts");
+}
+
+TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
+    const DenseHeap host = LbvhBuilder::build_heap(boxes_, {});
+    const Answers found =
+        run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::root});
+    rays_.start_keys.upload(std::vector<HeapKey>(kRayCount, HeapKey{1, 0}));
+    const Answers noted =
+        run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::last_leaf});
+    for (uint32_t k = 0; k < kRayCount; ++k) {
+        EXPECT_TRUE(is_same(noted.hits[k], found.hits[k]));
+        if (noted.hits[k].primitive == kNone) {
+            EXPECT_EQ(noted.leaves[k].low, 1u);
+            continue;
+        }
+        const TreeNode& leaf = host.slots[noted.leaves[k].low];
+        ASSERT_TRUE(scalar::is_leaf_word(leaf.word));
+        const auto begin = host.primitive_ids.begin() + leaf.first;
+        EXPECT_EQ(std::count(begin, begin + scalar::count_of_word(leaf.word), noted.hits[k].primitive), 1);
+    }
+}
+
+TEST_F(TreeTracing, refuses_trees_that_the_traversal_does_not_walk) {
+    const DeviceTree linked = make_linked();
+    const DeviceTree kd = upload_tree(device(), SahKdTreeBuilder::build(boxes_, {}));
+    EXPECT_THROW(run(linked, mesh_, {.traversal = Traversal::trail}), Error);
+    EXPECT_THROW(run(linked, mesh_, {.traversal = Traversal::kd_restart}), Error);
+    EXPECT_THROW(run(linked, mesh_, {.start = Start::last_leaf}), Error);
+    EXPECT_THROW(run(kd, mesh_, {.traversal = Traversal::stack}), Error);
+    EXPECT_THROW(run(kd, mesh_, {.traversal = Traversal::kd_backtrack}), Error) << "it has no cells";
+    DeviceTree deep = make_linked();
+    deep.depth = int(scalar::kTrailLevels64) + 1;
+    EXPECT_THROW(run(deep, mesh_, {.traversal = Traversal::restart_trail}), Error);
+    deep.depth = int(scalar::kTreeStackSize);
+    EXPECT_THROW(run(deep, mesh_, {.traversal = Traversal::stack}), Error);
+}
+
+TEST_F(TreeTracing, says_so_when_the_device_ends_a_walk_early) {
+    if (!device().is_cpu()) GTEST_SKIP() << "only a device that bounds its loops";
+    const TriangleSet same{"one leaf",
+                           std::vector<Triangle>(70'000, Triangle{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}})};
+    const DenseHeap heap = LbvhBuilder::build_heap(same.boxes(), {.levels = 1});
+    upload(std::vector<BoxRay>(kRayCount, BoxRay{{0, 0, -1}, {0, 0, 1}}));
+    const DeviceMesh mesh = upload_triangles(device(), same.triangles);
+    EXPECT_THROW(run(upload_tree(device(), heap), mesh, {.traversal = Traversal::trail}), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, TreeWalks, testing::ValuesIn(test::make_triangle_sets()),

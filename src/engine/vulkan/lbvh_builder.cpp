@@ -219,8 +219,9 @@ scalar::BuildState DeviceLbvhBuilder::Implementation::finish() {
         report.seconds[part] = commands.stage_seconds()[stage] - seconds_before[stage];
     }
     const scalar::BuildState state = scratch->state.download<scalar::BuildState>(1).front();
-    if (state.loops_ended > 0)
-        throw Error(ErrorKind::failed, {"the device ended the loop over the primitives of a leaf early",
+    // A compact tree whose root was not reached has no depth.
+    if (state.loops_ended > 0 || (state.cut_count > 0 && state.depth == 0))
+        throw Error(ErrorKind::failed, {"the device ended a loop over the primitives of a leaf early",
                                         device.description().name, "build smaller leaves, or on the host"});
     return state;
 }
