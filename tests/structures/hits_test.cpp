@@ -146,6 +146,35 @@ TEST_P(Hits, of_every_walk_are_those_of_brute_force) {
     }
 }
 
+/// A chain of rays, each from the leaf where the one before was hit.
+template <Traversal kTraversal, class View>
+void expect_same_from_last_hit(const View& view, const std::vector<Triangle>& triangles, uint32_t seed) {
+    test::RayMaker maker(seed, triangles);
+    auto closest_start = scalar::make_root_key(typename View::Key{}), any_start = closest_start;
+    for (int k = 0; k < 400; ++k) {
+        BoxRay ray = k % 2 ? maker.make_general() : maker.make_special();
+        const Nearest expected = test::find_by_brute_force(triangles, ray);
+        ASSERT_EQ(any_hit_from<kTraversal>(view, any_start, ray, AnyLeaf(triangles)), expected.is_hit());
+        NearestLeaf leaf(triangles);
+        closest_hit_from<kTraversal>(view, closest_start, ray, leaf);
+        ASSERT_EQ(leaf.best, expected);
+    }
+}
+
+TEST_P(Hits, from_the_leaf_of_the_last_hit_are_those_of_brute_force) {
+    const TriangleSet& set = GetParam();
+    if (set.triangles.empty()) return;
+    const DenseHeap paper = LbvhBuilder::build_heap(set.boxes(), {});
+    expect_same_from_last_hit<Traversal::trail>(walk_view(paper), set.triangles, 91);
+    expect_same_from_last_hit<Traversal::pair_trail>(walk_view(paper), set.triangles, 92);
+    SahBvhBuilder::Config config;
+    config.max_depth = int(scalar::kTrailLevels64);
+    const Bvh bvh = SahBvhBuilder::build(set.boxes(), config);
+    const SuccinctHeap heap = make_succinct_heap(bvh, compute_axes(bvh));
+    expect_same_from_last_hit<Traversal::trail>(wide_walk_view(heap), set.triangles, 93);
+    expect_same_from_last_hit<Traversal::pair_trail>(wide_walk_view(heap), set.triangles, 94);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sets, Hits, testing::ValuesIn(test::make_triangle_sets()),
                          [](const testing::TestParamInfo<TriangleSet>& info) {
                              std::string name = info.param.name;
