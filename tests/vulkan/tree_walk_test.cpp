@@ -105,45 +105,34 @@ RayCounts narrow_counts(const WalkCounts& counts) {
 
 uint32_t narrow_key(uint32_t, HeapKey key) { return key.low; }
 HeapKey narrow_key(HeapKey, HeapKey key) { return key; }
+HeapKey widen_key(uint32_t key) { return {key, 0}; }
+HeapKey widen_key(HeapKey key) { return key; }
 
 /// One tree with one walk, on the device and on the host.
 struct WalkCase {
     std::string name;
     const DeviceTree* tree;
     Traversal traversal;
-    std::function<Answers(Kind, const std::vector<BoxRay>&)> run_on_host;
-    /// Any hits from given keys; heaps only.
-    std::function<Answers(const std::vector<BoxRay>&, const std::vector<HeapKey>&)> start_on_host;
+    std::function<Answers(Kind, const std::vector<BoxRay>&, const std::vector<HeapKey>&)> run_on_host;
 };
 
+/// From keys; only walks of heaps heed them.
 template <Traversal kTraversal, class View>
 Answers run_walk(const View& view, const std::vector<Triangle>& triangles, Kind kind,
-                 const std::vector<BoxRay>& rays) {
-    Answers answers;
-    for (BoxRay ray : rays) {
-        HostLeaf leaf(triangles, ray);
-        WalkCounts counts;
-        if (kind == Kind::any)
-            any_hit<kTraversal>(view, ray, leaf, counts);
-        else
-            closest_hit<kTraversal>(view, ray, leaf, counts);
-        answers.hits.push_back(leaf.result());
-        answers.counts.push_back(narrow_counts(counts));
-    }
-    return answers;
-}
-
-template <Traversal kTraversal, class View>
-Answers start_walk(const View& view, const std::vector<Triangle>& triangles, const std::vector<BoxRay>& rays,
-                   const std::vector<HeapKey>& starts) {
+                 const std::vector<BoxRay>& rays, const std::vector<HeapKey>& starts) {
     Answers answers;
     for (size_t k = 0; k < rays.size(); ++k) {
-        HostLeaf leaf(triangles, rays[k]);
+        BoxRay ray = rays[k];
+        HostLeaf leaf(triangles, ray);
         WalkCounts counts;
-        auto start = narrow_key(typename View::Key{}, starts[k]);
-        any_hit_from<kTraversal>(view, start, rays[k], leaf, counts);
+        auto key = narrow_key(typename View::Key{}, starts[k]);
+        if (kind == Kind::any)
+            any_hit_from<kTraversal>(view, key, ray, leaf, counts);
+        else
+            closest_hit_from<kTraversal>(view, key, ray, leaf, counts);
         answers.hits.push_back(leaf.result());
         answers.counts.push_back(narrow_counts(counts));
+        answers.leaves.push_back(widen_key(key));
     }
     return answers;
 }
@@ -226,13 +215,7 @@ class Forest {
 
     template <class View> void add_heap(const std::string& name, const DeviceTree& tree, const View& view) {
         add<Traversal::trail>(name, tree, view);
-        walks_.back().start_on_host = [this, view](const auto& rays, const auto& starts) {
-            return start_walk<Traversal::trail>(view, triangles_, rays, starts);
-        };
         add<Traversal::pair_trail>(name, tree, view);
-        walks_.back().start_on_host = [this, view](const auto& rays, const auto& starts) {
-            return start_walk<Traversal::pair_trail>(view, triangles_, rays, starts);
-        };
     }
 
     /// As if it were deeper: the walk takes keys of 64 bits.
@@ -243,13 +226,10 @@ class Forest {
 
     template <Traversal kTraversal, class View>
     void add(const std::string& name, const DeviceTree& tree, const View& view) {
-        walks_.push_back({name + ", traversal " + std::to_string(int(kTraversal)),
-                          &tree,
-                          kTraversal,
-                          [this, view](Kind kind, const auto& rays) {
-                              return run_walk<kTraversal>(view, triangles_, kind, rays);
-                          },
-                          {}});
+        walks_.push_back({name + ", traversal " + std::to_string(int(kTraversal)), &tree, kTraversal,
+                          [this, view](Kind kind, const auto& rays, const auto& starts) {
+                              return run_walk<kTraversal>(view, triangles_, kind, rays, starts);
+                          }});
     }
 
     const Device& device_;
@@ -293,6 +273,13 @@ class TreeBatch : public GpuTest {
                 << " primitives, " << c.restarts << " restarts, " << c.bytes << " bytes for " << d.box_tests
                 << " " << d.primitive_tests << " " << d.restarts << " " << d.bytes;
         }
+    }
+
+    static std::vector<HeapKey> roots() { return std::vector<HeapKey>(kRayCount, HeapKey{1, 0}); }
+
+    static void expect_same_leaves(const Answers& found, const Answers& expected, const std::string& name) {
+        for (uint32_t k = 0; k < kRayCount; ++k)
+            ASSERT_TRUE(scalar::is_equal(found.leaves[k], expected.leaves[k])) << name << ", ray " << k;
     }
 
     static void expect_true(const Answers& found, const std::vector<Truth>& truths, Kind kind,
@@ -344,7 +331,7 @@ TEST_P(TreeWalks, find_the_hits_of_brute_force_and_count_as_the_host_does) {
             const Answers found =
                 run(*walk.tree, forest.mesh, {walk.traversal, kind, TreeQuery::Counting::each_ray});
             const std::string name = walk.name + (kind == Kind::any ? ", any" : ", closest");
-            expect_same(found, walk.run_on_host(kind, rays), name);
+            expect_same(found, walk.run_on_host(kind, rays, roots()), name);
             expect_true(found, truths, kind, name);
         }
 }
@@ -365,21 +352,25 @@ TEST_P(TreeWalks, that_start_at_the_last_hit_find_the_same) {
     const Forest forest(device(), builder(), set);
     const std::vector<BoxRay> rays = make_rays(set);
     for (const WalkCase& walk : forest.walks()) {
-        if (!walk.start_on_host) continue;
+        if (walk.traversal != Traversal::trail && walk.traversal != Traversal::pair_trail) continue;
         TreeQuery query{walk.traversal, Kind::closest, TreeQuery::Counting::each_ray, Start::last_leaf};
         upload(rays);
-        rays_.start_keys.upload(std::vector<HeapKey>(kRayCount, HeapKey{1, 0}));
+        rays_.start_keys.upload(roots());
         const Answers first = run(*walk.tree, forest.mesh, query);
-        expect_same(first, walk.run_on_host(Kind::closest, rays), walk.name);
+        expect_same(first, walk.run_on_host(Kind::closest, rays, roots()), walk.name);
+        expect_same_leaves(first, walk.run_on_host(Kind::closest, rays, roots()), walk.name);
         const std::vector<BoxRay> bounced = bounce_rays(rays, first.hits);
         upload(bounced);
         rays_.start_keys.upload(first.leaves);
         const Answers closest = run(*walk.tree, forest.mesh, query);
         query.kind = Kind::any;
         const Answers any = run(*walk.tree, forest.mesh, query);
-        if (!set.triangles.empty())
-            expect_same(any, walk.start_on_host(bounced, first.leaves),
-                        walk.name + ", any from the last leaf");
+        for (const Kind kind : {Kind::closest, Kind::any}) {
+            const Answers& found = kind == Kind::any ? any : closest;
+            const Answers expected = walk.run_on_host(kind, bounced, first.leaves);
+            expect_same(found, expected, walk.name + " from the last leaf");
+            expect_same_leaves(found, expected, walk.name + " from the last leaf");
+        }
         const std::vector<Truth> truths = find_truths(set.triangles, bounced);
         expect_true(closest, truths, Kind::closest, walk.name + ", closest from the last leaf");
         expect_true(any, truths, Kind::any, walk.name + ", any from the last leaf");
@@ -432,7 +423,7 @@ TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
     const DenseHeap host = LbvhBuilder::build_heap(boxes_, {});
     const Answers found =
         run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::root});
-    rays_.start_keys.upload(std::vector<HeapKey>(kRayCount, HeapKey{1, 0}));
+    rays_.start_keys.upload(roots());
     const Answers noted =
         run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::last_leaf});
     for (uint32_t k = 0; k < kRayCount; ++k) {
