@@ -1,7 +1,7 @@
 // Trees over one mesh on the processor: the scalar walks of structures/walks.h, rays over threads.
 #include "engine/tree_workshop.h"
 
-#include <algorithm>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -31,10 +31,10 @@ class TriangleLeaf {
     /// Nearest hit, ties to the lowest triangle.
     void offer(uint32_t triangle, BoxRay& ray) {
         const float t = intersect(triangle, ray);
-        if (t < best_.t || (t == best_.t && triangle < best_.primitive)) {
-            best_ = {t, triangle};
-            ray.t_max = t;
-        }
+        if (t == std::numeric_limits<float>::infinity() || t > best_.t) return;
+        if (t == best_.t && triangle > best_.primitive) return;
+        best_ = {t, triangle};
+        ray.t_max = t;
     }
 
     bool stop_at(uint32_t triangle, const BoxRay& ray) {
