@@ -7,10 +7,11 @@
 
 // The set layout is that of bindings.h, and so are the texel formats behind each number; what a number means
 // is not. Storage buffers of a walk.
-const uint kBindTreeRays = 0u;   ///< TreeRay
-const uint kBindTreeHits = 1u;   ///< TreeHit
-const uint kBindStartKeys = 2u;  ///< HeapKey: where in a heap each ray starts
-const uint kBindLeafKeys = 3u;   ///< HeapKey: the leaf of each hit, where the next ray may start
+const uint kBindTreeRays = 0u;  ///< TreeRay
+const uint kBindTreeHits = 1u;  ///< TreeHit
+const uint kBindStartKeys = 2u; ///< HeapKey: where in a heap each ray starts
+const uint kBindLeafKeys =
+    3u; ///< HeapKey: the leaf of each hit, where the next ray may start; else the start
 const uint kBindWalkCounts = 4u; ///< RayCounts
 const uint kBindHeapBlocks = 5u; ///< HeapBlock
 const uint kBindHeapBricks = 6u; ///< HeapBrick

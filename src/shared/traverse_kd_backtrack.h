@@ -1,7 +1,7 @@
 // Kd-tree, after every leaf up the parents to the first cell that the ray has not left yet (Foley and
 // Sugerman 2005). A cell is left where the nearest of its planes is crossed, by the operations that the way
-// down used; a cell without thickness would be left before it is entered, so the builder must refuse such
-// (SahKdTreeBuilder::Flat). Included as tree.h says.
+// down used; one without thickness would be left before it is entered, so the builder must make none.
+// Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_KD_BACKTRACK_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_KD_BACKTRACK_H

@@ -1,4 +1,4 @@
-// Bit trail on a heap (Murguia et al. 2013, paper of the SLBVH): a node is tested when the walk comes to it;
+// Bit trail on a heap (Murguia et al. 2013): a node is tested when the walk comes to it;
 // then down, or to the next sibling that is due, by shifts alone. It may start at any node and still visits
 // every leaf once: what lies under the start first, then the siblings of its ancestors, whose own boxes are
 // never tested. Trees of at most kTrailLevels32 or 64 levels. Included as tree.h says.

@@ -135,17 +135,21 @@ struct KdRay {
     float end; ///< below 0: the cell is missed
 };
 
+/// 2 - kBoxSlack. A number by itself: a compiler of shaders works out constants in double precision.
+const float kCellSlack = 0.99999845f;
+
 FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t_max) {
     BoxInterval interval = cross_box(ray, lower, upper, t_min, t_max);
+    // Not behind the face: far away, the steps between floats are longer than the cell's margin.
+    EXACT float offset = interval.entry * kCellSlack;
+    EXACT float end = interval.exit * kBoxSlack - offset;
+    // Not fused: a device may round fma() twice.
+    EXACT Vec3 origin = ray.origin + ray.direction * offset;
     KdRay result;
     result.direction = ray.direction;
-    result.offset = interval.entry;
-    Vec3 origin = {fma(ray.direction.x, interval.entry, ray.origin.x),
-                   fma(ray.direction.y, interval.entry, ray.origin.y),
-                   fma(ray.direction.z, interval.entry, ray.origin.z)};
-    result.origin = interval.entry > 0.0f ? origin : ray.origin;
-    EXACT float reach = interval.exit * kBoxSlack - interval.entry;
-    result.end = is_box_met(interval) ? max(reach, 0.0f) : -1.0f;
+    result.origin = offset > 0.0f ? origin : ray.origin;
+    result.offset = offset;
+    result.end = is_box_met(interval) ? max(end, 0.0f) : -1.0f;
     return result;
 }
 

@@ -22,7 +22,7 @@ struct DenseHeap {
     }
 };
 
-/// Only the slots in use, and a directory from keys to slots: about 66 bytes for two siblings.
+/// Only the slots in use, and a directory from keys to slots: about 67 bytes for two siblings.
 struct SuccinctHeap {
     std::vector<TreeNode>
         nodes; ///< slot 0 is empty, the root slot 1, siblings at 2k and 2k + 1; none: no primitives

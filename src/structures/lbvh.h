@@ -1,18 +1,15 @@
-// Linear BVH: the tree that the bits of sorted Morton codes spell (Karras 2012; Murguia et al. 2013 for the
-// heap).
+// Linear BVH: the tree that the bits of sorted Morton codes spell (Karras 2012; Apetrei 2014, for nodes
+// numbered by their cut; Murguia et al. 2013 for the heap).
 //
 // The rule, so that every builder makes the same tree, node for node, however it works:
 // - Primitives are sorted by code; equal codes keep the order of their indices. Entry g of primitive_ids is
-// the g-th.
-// - A node stands for the entries [a, b]. Where its codes differ, p is the highest bit in which the code of a
-// differs
-//   from that of b, and the right child starts at the first entry with bit p set. The axis is that of bit p.
-// - Where they are equal and there are more than max_leaf_size, the same goes for the bits of the entry's
-// number g.
-//   The axis is 0. Otherwise the node is a leaf, and its `first` is a.
+//   the g-th of them.
+// - A node stands for the entries [a, b]. Where the codes of a and b differ, p is the highest bit in which
+//   they do, and the right child starts at the first entry with bit p set. The axis is that of bit p.
+// - Where they are equal and the entries are more than max_leaf_size, the same goes for the bits of the
+//   entries' numbers g. The axis is 0. Otherwise the node is a leaf, and its `first` is a.
 // - Every entry g > 0 at which some node's right child starts has a number c among those in ascending order:
-// the
-//   children of that node are nodes 1 + 2c and 2 + 2c. The root is node 0.
+//   the children of that node are nodes 1 + 2c and 2 + 2c. The root is node 0.
 // - Boxes are unions, upwards from the leaves; zeros may differ in their sign.
 #pragma once
 

@@ -18,8 +18,7 @@ class SahBvhBuilder {
         float intersection_cost = 1.0f; ///< of one primitive, relative, > 0
         uint32_t max_leaf_size = 4;     ///< primitives, [1, 8]
         /// Edges on the longest way down, [1, kMaxBvhDepth]. Sets are halved where they would not fit
-        /// otherwise; leaves on the last level hold all that is left, which is more than max_leaf_size only
-        /// below 30 levels.
+        /// otherwise. Where even that is too deep, leaves on the last level hold all that is left.
         int max_depth = kMaxBvhDepth;
     };
 

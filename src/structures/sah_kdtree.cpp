@@ -23,6 +23,7 @@ constexpr size_t kParallelCount = 4096;
 /// Of the greatest coordinate: the distances of planes, the ray's new origin, and a reported hit may each be
 /// off by some units of 2^-24, and they are compared with one another.
 constexpr float kMargin = 64 * 0x1p-24f;
+constexpr float kLeastMargin = 1e-36f;
 
 /// One face of a box. Of all events at one position the order does not matter.
 struct Event {
@@ -75,7 +76,7 @@ class KdBuild {
         for (int axis = 0; axis < 3; ++axis)
             greatest = std::max({greatest, std::fabs(get_component(bounds_.lower, axis)),
                                  std::fabs(get_component(bounds_.upper, axis))});
-        margin_ = greatest * kMargin;
+        margin_ = std::max(greatest * kMargin, kLeastMargin);
         boxes_.assign(boxes.begin(), boxes.end());
         for (Box& box : boxes_) box = widen(box);
         bounds_ = widen(bounds_);
@@ -131,25 +132,24 @@ class KdBuild {
         const float lower = get_component(cell.lower, axis), upper = get_component(cell.upper, axis);
         const std::vector<Event>& events = set.events[size_t(axis)];
         const uint32_t count = uint32_t(set.ids.size());
-        uint32_t begun = 0, ended = 0; // boxes that lie below the position with their lower, their upper face
+        uint32_t begun = 0, ended = 0; // boxes whose lower, whose upper face lies below the position
         Plane best;
         for (size_t k = 0; k < events.size();) {
             const float position = events[k].position;
-            uint32_t ending = 0;
+            uint32_t beginning = 0;
+            const uint32_t left_count = begun;
             for (; k < events.size() && events[k].position == position; ++k)
-                events[k].is_upper() ? ++ending : ++begun;
-            if (position - lower >= margin_ && upper - position >= margin_ && lower < position &&
-                position < upper) {
-                Plane plane{0, axis, position, begun, count - ended};
-                const double left = compute_half_area(cut_cell(cell, axis, lower, position));
-                const double right = compute_half_area(cut_cell(cell, axis, position, upper));
-                plane.cost = config_.traversal_cost +
-                             config_.intersection_cost *
-                                 (left * plane.left_count + right * plane.right_count) / half_area;
-                if (plane.left_count == 0 || plane.right_count == 0) plane.cost *= config_.empty_factor;
-                if (plane.cost < best.cost) best = plane;
-            }
-            ended += ending;
+                events[k].is_upper() ? ++ended : ++beginning;
+            begun += beginning;
+            if (!(position - lower >= margin_ && upper - position >= margin_)) continue;
+            Plane plane{0, axis, position, left_count, count - ended};
+            const double left = compute_half_area(cut_cell(cell, axis, lower, position));
+            const double right = compute_half_area(cut_cell(cell, axis, position, upper));
+            plane.cost = config_.traversal_cost + config_.intersection_cost *
+                                                      (left * plane.left_count + right * plane.right_count) /
+                                                      half_area;
+            if (plane.left_count == 0 || plane.right_count == 0) plane.cost *= config_.empty_factor;
+            if (plane.cost < best.cost) best = plane;
         }
         return best;
     }
@@ -168,14 +168,14 @@ class KdBuild {
         return best;
     }
 
-    /// Of the boxes that touch [lower, upper] along the axis; their events keep their order.
+    /// Of the boxes that reach into (lower, upper) along the axis; their events keep their order.
     EventSet select(const EventSet& set, int axis, float lower, float upper) const {
         constexpr uint32_t kOutside = 0xffffffffu;
         EventSet part;
         std::vector<uint32_t> numbers(set.ids.size(), kOutside);
         for (size_t k = 0; k < set.ids.size(); ++k) {
             const Box& box = boxes_[set.ids[k]];
-            if (get_component(box.lower, axis) > upper || get_component(box.upper, axis) < lower) continue;
+            if (get_component(box.lower, axis) >= upper || get_component(box.upper, axis) <= lower) continue;
             numbers[k] = uint32_t(part.ids.size());
             part.ids.push_back(set.ids[k]);
         }
@@ -257,7 +257,8 @@ class KdBuild {
     }
 
     SahKdTreeBuilder::Config config_;
-    std::vector<Box> boxes_; ///< widened by the margin
+    std::vector<Box>
+        boxes_; ///< widened by the margin, so that a plane on their face does not touch what is in them
     Box bounds_;
     float margin_ = 0;
     int max_depth_ = 0;

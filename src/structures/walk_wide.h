@@ -1,5 +1,5 @@
 // Walks a wide tree one child at a time, nearest first: the scalar reference for the SIMD kernels; same leaf
-// contract as walk_stack.h.
+// contract as walks.h.
 #pragma once
 
 #include <array>

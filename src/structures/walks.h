@@ -1,11 +1,11 @@
-// The walks of shared/traverse_*.h over the trees of this folder: the reference for the kernels of a device,
-// and what the CPU runs when a traversal is asked for by name. Same leaf contract as walk_stack.h:
+// The walks of shared/traverse_*.h over the trees of this folder: the reference for the SIMD kernels and
+// those of a device, and what the CPU runs when a traversal is asked for by name.
 //   closest_hit<Traversal::trail>(walk_view(heap), ray, leaf);
 #pragma once
 
 #include <bit>
 #include <cstdint>
-#include <span>
+#include <type_traits>
 
 #include "base/check.h"
 #include "structures/heap_tree.h"
@@ -39,6 +39,15 @@ struct WalkCounts {
 struct NoCounts {};
 
 namespace scalar {
+
+struct PlainWalkView {
+    using Key = uint;
+    const Bvh& tree;
+
+    bool is_empty() const { return tree.nodes.empty(); }
+    TreeNode load_node(uint node) const { return std::bit_cast<TreeNode>(tree.nodes[node]); }
+    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+};
 
 /// `Width`: uint or HeapKey, for the restart trail: trees of 30 or 62 levels.
 template <class Width> struct BvhWalkView {
@@ -86,7 +95,7 @@ struct KdWalkView {
 
 /// All walks in one class: their hooks are the same, and only the members that a walk uses are ever made.
 /// `Leaf` is called as leaf(primitive_id, ray), may shorten ray.t_max, and ends the walk by true.
-template <class View, class Leaf, class Counts> class Walker {
+template <Traversal kTraversal, class View, class Leaf, class Counts> class Walker {
   public:
     using Key = typename View::Key;
 
@@ -99,21 +108,20 @@ template <class View, class Leaf, class Counts> class Walker {
           object_ray_(make_object_ray(ray.origin, ray.direction)) {}
 
     /// True: a leaf ended the walk. `start`: key of the node to start at, for the two trails.
-    template <Traversal kTraversal> bool run(Key start) {
+    bool run(Key start) {
+        hit_leaf_ = start;
         if (view_.is_empty()) return false;
-        const bool is_complete = walk<kTraversal>(start);
+        const bool is_complete = walk(start);
         DCHECK(is_complete);
         static_cast<void>(is_complete);
         return is_ended_;
     }
 
-    /// Key of the last leaf that was visited, by a trail; `start` where none was.
-    template <Traversal kTraversal> Key last_leaf() const {
-        return kTraversal == Traversal::trail ? trail_walk.leaf : pair_walk.leaf;
-    }
+    /// Key of the leaf that ended the walk or shortened the ray last, by a trail; the start where none did.
+    Key hit_leaf() const { return hit_leaf_; }
 
   private:
-    template <Traversal kTraversal> bool walk(Key start) {
+    bool walk(Key start) {
         if constexpr (kTraversal == Traversal::stack) {
             stack_walk = make_empty_stack();
             start_stack(0u);
@@ -134,11 +142,11 @@ template <class View, class Leaf, class Counts> class Walker {
             pair_walk = start_pair_trail(start);
             return walk_pair_trail();
         } else {
-            return walk_kd<kTraversal>();
+            return walk_kd();
         }
     }
 
-    template <Traversal kTraversal> bool walk_kd() {
+    bool walk_kd() {
         const KdRay ray = make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper,
                                       ray_.t_min, ray_.t_max);
         if constexpr (kTraversal == Traversal::kd_restart) {
@@ -185,11 +193,16 @@ template <class View, class Leaf, class Counts> class Walker {
     bool resume_walk() const { return false; }
 
     bool visit_leaf(uint first, uint word, uint) {
-        for (uint k = 0; k < count_of_word(word); ++k) {
+        const float limit = ray_.t_max;
+        for (uint k = 0; k < count_of_word(word) && !is_ended_; ++k) {
             if constexpr (kIsCounting) ++counts_.primitive_tests;
-            if (leaf_(view_.primitive_ids()[first + k], ray_)) return is_ended_ = true;
+            is_ended_ = leaf_(view_.primitive_ids()[first + k], ray_);
         }
-        return false;
+        if (is_ended_ || ray_.t_max < limit) {
+            if constexpr (kTraversal == Traversal::trail) hit_leaf_ = trail_walk.leaf;
+            if constexpr (kTraversal == Traversal::pair_trail) hit_leaf_ = pair_walk.leaf;
+        }
+        return is_ended_;
     }
 
     uint find_slot(Key key) {
@@ -226,6 +239,7 @@ template <class View, class Leaf, class Counts> class Walker {
     Counts& counts_;
     const float whole_t_max_;
     const ObjectRay object_ray_;
+    Key hit_leaf_;
     bool is_ended_ = false;
 };
 
@@ -242,37 +256,55 @@ inline scalar::SuccinctWalkView<uint32_t> walk_view(const SuccinctHeap& tree) { 
 inline scalar::SuccinctWalkView<scalar::HeapKey> wide_walk_view(const SuccinctHeap& tree) { return {tree}; }
 inline scalar::KdWalkView walk_view(const KdTree& tree) { return {tree}; }
 
+/// As closest_hit below. The two trails may start at any node, `start`, which becomes the leaf of the hit, if
+/// there is one: rays that follow one another often end at the same things. Others start at the root.
+template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+void closest_hit_from(const View& view, typename View::Key& start, BoxRay& ray, Leaf&& leaf,
+                      Counts&& counts = {}) {
+    auto visit = [&](uint32_t id, BoxRay& r) {
+        leaf(id, r);
+        return false;
+    };
+    scalar::Walker<kTraversal, View, decltype(visit), std::remove_reference_t<Counts>> walker(view, ray,
+                                                                                              visit, counts);
+    walker.run(start);
+    start = walker.hit_leaf();
+}
+
+/// As any_hit below, likewise.
+template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+bool any_hit_from(const View& view, typename View::Key& start, BoxRay ray, Leaf&& leaf,
+                  Counts&& counts = {}) {
+    scalar::Walker<kTraversal, View, std::remove_reference_t<Leaf>, std::remove_reference_t<Counts>> walker(
+        view, ray, leaf, counts);
+    const bool is_hit = walker.run(start);
+    start = walker.hit_leaf();
+    return is_hit;
+}
+
 /// Calls `leaf(primitive_id, ray)` for every primitive whose box the ray may meet before ray.t_max (in a
 /// kd-tree perhaps several times); the leaf shortens ray.t_max to its hits. Where hits tie, the leaf decides.
 /// `counts`: WalkCounts to add to, or NoCounts.
 template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
 void closest_hit(const View& view, BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
-    auto visit = [&](uint32_t id, BoxRay& r) {
-        leaf(id, r);
-        return false;
-    };
-    scalar::Walker walker(view, ray, visit, counts);
-    walker.template run<kTraversal>(scalar::make_root_key(typename View::Key{}));
+    auto start = scalar::make_root_key(typename View::Key{});
+    closest_hit_from<kTraversal>(view, start, ray, leaf, counts);
 }
 
 /// Whether `leaf(primitive_id, ray)` was true for any primitive; stops at the first.
 template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
-bool any_hit(const View& view, BoxRay ray, Leaf&& leaf, Counts&& counts = {}) {
-    scalar::Walker walker(view, ray, leaf, counts);
-    return walker.template run<kTraversal>(scalar::make_root_key(typename View::Key{}));
+bool any_hit(const View& view, const BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
+    auto start = scalar::make_root_key(typename View::Key{});
+    return any_hit_from<kTraversal>(view, start, ray, leaf, counts);
 }
 
-/// As any_hit, by Traversal::trail or pair_trail, but from the leaf where the ray before ended, `start`,
-/// which then becomes that of this one: rays that follow one another are often stopped by the same things. A
-/// key of the tree.
-template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
-bool any_hit_from(const View& view, typename View::Key& start, BoxRay ray, Leaf&& leaf,
-                  Counts&& counts = {}) {
-    static_assert(kTraversal == Traversal::trail || kTraversal == Traversal::pair_trail);
-    scalar::Walker walker(view, ray, leaf, counts);
-    const bool is_hit = walker.template run<kTraversal>(start);
-    if (is_hit) start = walker.template last_leaf<kTraversal>();
-    return is_hit;
+/// Of a tree as it is, by a full stack: what other structures are compared with.
+template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
+    closest_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
+}
+
+template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
+    return any_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 } // namespace relief

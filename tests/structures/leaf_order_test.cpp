@@ -118,14 +118,14 @@ TEST(LeafOrder, is_that_of_recursion_for_all_shapes_to_depth_four) {
     Totals totals;
     const std::vector<Shape> shapes = test::make_all_shapes(4);
     EXPECT_EQ(shapes.size(), 677u);
-    for (const Shape& shape : shapes) check_shape(shape, random, 12, totals);
+    for (const Shape& shape : shapes) check_shape(shape, random, 30, totals);
     EXPECT_GT(totals.visited, 100000u);
 }
 
 TEST(LeafOrder, is_that_of_recursion_for_shapes_of_depth_five_and_six) {
     std::mt19937 random(2);
     Totals totals;
-    for (int k = 0; k < 3000; ++k)
+    for (int k = 0; k < 8000; ++k)
         for (const int depth : {5, 6}) {
             const double probability = 0.5 + 0.1 * (k % 6);
             check_shape(test::make_random_shape(random, depth, probability, 1000), random, 1, totals);
@@ -137,7 +137,7 @@ TEST(LeafOrder, is_that_of_recursion_for_shapes_of_depth_five_and_six) {
 TEST(LeafOrder, is_that_of_recursion_for_deep_random_trees) {
     std::mt19937 random(3);
     Totals totals;
-    for (int k = 0; k < 300; ++k) {
+    for (int k = 0; k < 2000; ++k) {
         const int depth = 7 + k % 56;
         check_shape(test::make_random_shape(random, depth, 0.55 + 0.05 * (k % 5), 400), random, 1, totals);
     }

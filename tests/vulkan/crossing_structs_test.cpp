@@ -27,6 +27,9 @@ static_assert(sizeof(scalar::HitData) == 7 * 4);
 static_assert(sizeof(scalar::CastPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::TreeRay) == 8 * 4);
+static_assert(sizeof(scalar::TreeHit) == 4 * 4);
+static_assert(sizeof(scalar::WalkPush) <= scalar::kMaxPushBytes);
 
 /// Distinct numbers; as floats normal, because devices may flush others.
 class Numbers {

@@ -51,14 +51,18 @@ void write_binding(const BindingTable::Implementation& table, uint32_t binding,
     table.device->device.updateDescriptorSets(write, {});
 }
 
-const Buffer& find_unbound(BindingTable::Implementation& table, const Device& device, TexelFormat format) {
+void make_unbound(BindingTable::Implementation& table, const Device& device, TexelFormat format) {
     for (const Buffer& buffer : table.unbound)
-        if (buffer.internals().config.format == format) return buffer;
+        if (buffer.internals().config.format == format) return;
     constexpr uint64_t kBytes = 16;
     Buffer buffer(device, {.name = "unbound", .bytes = kBytes, .format = format});
     buffer.upload(std::vector<uint8_t>(kBytes, 0));
     table.unbound.push_back(std::move(buffer));
-    return table.unbound.back();
+}
+
+const Buffer& find_unbound(const BindingTable::Implementation& table, TexelFormat format) {
+    return *std::find_if(table.unbound.begin(), table.unbound.end(),
+                         [&](const Buffer& buffer) { return buffer.internals().config.format == format; });
 }
 
 /// What ggx_albedo.h reads in C++.
@@ -89,16 +93,22 @@ BindingTable::BindingTable(const Device& device) : implementation_(std::make_uni
         own.set = std::move(vk::raii::DescriptorSets(handle, {*own.pool, *own.device->set_layout}).front());
         own.device->set_name(own.set, "relief bindings");
     });
-    for (uint32_t i = 0; i < scalar::kStorageBindingCount; ++i)
-        bind(i, find_unbound(own, device, TexelFormat::none));
-    for (uint32_t i = 0; i < scalar::kTexelBindingCount; ++i)
-        bind(scalar::kFirstTexelBinding + i, find_unbound(own, device, kTexelFormats[i]));
+    make_unbound(own, device, TexelFormat::none);
+    for (const TexelFormat format : kTexelFormats) make_unbound(own, device, format);
     own.albedos = make_albedos(device);
-    bind(scalar::kBindAlbedos, own.albedos);
+    clear();
 }
 BindingTable::~BindingTable() = default;
 BindingTable::BindingTable(BindingTable&&) noexcept = default;
 BindingTable& BindingTable::operator=(BindingTable&&) noexcept = default;
+
+void BindingTable::clear() {
+    for (uint32_t i = 0; i < scalar::kStorageBindingCount; ++i)
+        bind(i, find_unbound(*implementation_, TexelFormat::none));
+    for (uint32_t i = 0; i < scalar::kTexelBindingCount; ++i)
+        bind(scalar::kFirstTexelBinding + i, find_unbound(*implementation_, kTexelFormats[i]));
+    bind(scalar::kBindAlbedos, implementation_->albedos);
+}
 
 void BindingTable::bind(uint32_t binding, const Buffer& buffer) {
     const TexelFormat format = find_format(binding);

@@ -53,6 +53,9 @@ class BindingTable {
     /// holds a small buffer of zeros.
     void bind(uint32_t binding, const Buffer& buffer);
 
+    /// As if nothing had been bound: needed before a buffer goes whose place nothing else takes.
+    void clear();
+
     struct Implementation;
     Implementation& internals() const { return *implementation_; }
 

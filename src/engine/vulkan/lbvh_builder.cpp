@@ -100,6 +100,7 @@ struct Scratch {
 };
 
 void bind_tree(BindingTable& bindings, const DeviceTree& tree) {
+    bindings.clear(); // buffers of the last build may be gone
     bindings.bind(scalar::kBindBuildNodes, tree.nodes);
     bindings.bind(scalar::kBindBuildIds, tree.primitive_ids);
     bindings.bind(scalar::kBindBuildParents, tree.parents);
@@ -137,11 +138,7 @@ double measure_copy_bandwidth(const Device& device, uint64_t bytes) {
 
 struct DeviceLbvhBuilder::Implementation {
     explicit Implementation(const Device& device)
-        : device(device),
-          kernels(device),
-          no_mesh(upload_mesh(device, {}, {})),
-          bindings(device),
-          commands(device, bindings) {}
+        : device(device), kernels(device), bindings(device), commands(device, bindings) {}
 
     void begin(Part part) { commands.begin_stage(kStages[size_t(part)]); }
     void count_bytes(Part part, uint64_t bytes) { report.bytes[size_t(part)] += bytes; }
@@ -152,7 +149,6 @@ struct DeviceLbvhBuilder::Implementation {
 
     const Device& device;
     Kernels kernels;
-    DeviceMesh no_mesh; ///< bound where there is none: a mesh of before may be gone
     BindingTable bindings;
     Commands commands;
     std::unique_ptr<Scratch> scratch = nullptr;
@@ -168,8 +164,8 @@ void DeviceLbvhBuilder::Implementation::order_primitives(const Input& input, int
         scratch = std::make_unique<Scratch>(device, count, kernels.sort.histogram_words(count));
     scratch->bind(bindings);
     if (input.boxes) bindings.bind(scalar::kBindBuildBoxes, *input.boxes);
-    bindings.bind(scalar::kBindMeshTriangles, input.mesh ? input.mesh->triangles : no_mesh.triangles);
-    bindings.bind(scalar::kBindMeshPositions, input.mesh ? input.mesh->positions : no_mesh.positions);
+    if (input.mesh) bindings.bind(scalar::kBindMeshTriangles, input.mesh->triangles);
+    if (input.mesh) bindings.bind(scalar::kBindMeshPositions, input.mesh->positions);
     report = {.primitive_count = input.count};
     seconds_before = commands.stage_seconds();
     begin(Part::boxes);
@@ -223,8 +219,9 @@ scalar::BuildState DeviceLbvhBuilder::Implementation::finish() {
         report.seconds[part] = commands.stage_seconds()[stage] - seconds_before[stage];
     }
     const scalar::BuildState state = scratch->state.download<scalar::BuildState>(1).front();
-    if (state.loops_ended > 0)
-        throw Error(ErrorKind::failed, {"the device ended the loop over the primitives of a leaf early",
+    // A compact tree whose root was not reached has no depth.
+    if (state.loops_ended > 0 || (state.cut_count > 0 && state.depth == 0))
+        throw Error(ErrorKind::failed, {"the device ended a loop over the primitives of a leaf early",
                                         device.description().name, "build smaller leaves, or on the host"});
     return state;
 }

@@ -104,6 +104,7 @@ const Kernel& TreeTracer::find_kernel(const DeviceTree& tree, const TreeQuery& q
 
 void TreeTracer::bind(const DeviceTree& tree, const DeviceMesh& mesh, const TreeRays& rays) {
     using namespace scalar;
+    bindings_.clear(); // buffers of the last trace may be gone
     bindings_.bind(kBindTreeRays, rays.rays);
     bindings_.bind(kBindTreeHits, rays.hits);
     bindings_.bind(kBindStartKeys, rays.start_keys);

@@ -25,8 +25,8 @@ struct TreeRays {
 struct TreeQuery {
     enum class Kind { closest, any };
     enum class Counting { off, each_ray };
-    /// last_leaf: each ray starts at its start_keys, and leaf_keys receive the leaf of its hit, the root
-    /// where nothing is hit. Heaps only.
+    /// last_leaf: each ray starts at its start_keys, and leaf_keys receive the leaf of its hit, its start
+    /// where nothing is hit (closest_hit_from and any_hit_from of structures/walks.h). Heaps only.
     enum class Start { root, last_leaf };
 
     Traversal traversal = Traversal::stack;

@@ -24,6 +24,19 @@ struct AllStructs {
     CameraPush camera_push;
     PathPush path_push;
     SortPush sort_push;
+    TreeNode tree_node;
+    KdNode kd_node;
+    KdBox kd_box;
+    HeapBlock heap_block;
+    HeapBrick heap_brick;
+    HeapKey heap_key;
+    TreeRay tree_ray;
+    TreeHit tree_hit;
+    RayCounts ray_counts;
+    WalkState walk_state;
+    WalkPush walk_push;
+    BuildState build_state;
+    BuildPush build_push;
 };
 
 // clang-format off
@@ -104,6 +117,36 @@ struct AllStructs {
     FIELD(s.environment.texture_index)
 #define FIELDS_SORT_PUSH(s) \
     FIELD(s.counter_word) FIELD(s.capacity) FIELD(s.shift) FIELD(s.mask) FIELD(s.is_back)
+#define FIELDS_TREE_NODE(s) \
+    FIELD3(s.lower) FIELD(s.first) FIELD3(s.upper) FIELD(s.word)
+#define FIELDS_KD_NODE(s) \
+    FIELD(s.bits) FIELD(s.word)
+#define FIELDS_KD_BOX(s) \
+    FIELD3(s.lower) FIELD(s.parent) FIELD3(s.upper) FIELD(s.unused)
+#define FIELDS_HEAP_BLOCK(s) \
+    FIELD(s.inner_low) FIELD(s.inner_high) FIELD(s.rank)
+#define FIELDS_HEAP_BRICK(s) \
+    FIELD(s.inner_low) FIELD(s.inner_high) FIELD(s.first_pair) FIELD(s.deeper_low) FIELD(s.deeper_high) \
+    FIELD(s.first_brick)
+#define FIELDS_HEAP_KEY(s) \
+    FIELD(s.low) FIELD(s.high)
+#define FIELDS_TREE_RAY(s) \
+    FIELD3(s.origin) FIELD(s.t_min) FIELD3(s.direction) FIELD(s.t_max)
+#define FIELDS_TREE_HIT(s) \
+    FIELD(s.t) FIELD(s.primitive) FIELD(s.weight_b) FIELD(s.weight_c)
+#define FIELDS_RAY_COUNTS(s) \
+    FIELD(s.box_tests) FIELD(s.primitive_tests) FIELD(s.restarts) FIELD(s.bytes)
+#define FIELDS_WALK_STATE(s) \
+    FIELD(s.rays_lost)
+#define FIELDS_WALK_PUSH(s) \
+    FIELD(s.ray_count) FIELD(s.root) FIELD(s.is_any) FIELD(s.has_start_keys) FIELD(s.has_leaf_keys) \
+    FIELD(s.flat_levels) FIELD(s.flat_pairs) FIELD3(s.cell_lower) FIELD3(s.cell_upper)
+#define FIELDS_BUILD_STATE(s) \
+    FIELD(s.primitive_count) FIELD(s.cut_count) FIELD(s.depth) FIELD(s.loops_ended) \
+    FIELD(s.lower[0]) FIELD(s.lower[1]) FIELD(s.lower[2]) \
+    FIELD(s.upper[0]) FIELD(s.upper[1]) FIELD(s.upper[2])
+#define FIELDS_BUILD_PUSH(s) \
+    FIELD(s.primitive_count) FIELD(s.max_leaf_size) FIELD(s.level) FIELD(s.step)
 #define ALL_FIELDS(s) \
     FIELDS_INSTANCE(s.instance) \
     FIELDS_SURFACE(s.surface) \
@@ -128,5 +171,18 @@ struct AllStructs {
     FIELDS_LIGHT(s.light) \
     FIELDS_CAMERA_PUSH(s.camera_push) \
     FIELDS_PATH_PUSH(s.path_push) \
-    FIELDS_SORT_PUSH(s.sort_push)
+    FIELDS_SORT_PUSH(s.sort_push) \
+    FIELDS_TREE_NODE(s.tree_node) \
+    FIELDS_KD_NODE(s.kd_node) \
+    FIELDS_KD_BOX(s.kd_box) \
+    FIELDS_HEAP_BLOCK(s.heap_block) \
+    FIELDS_HEAP_BRICK(s.heap_brick) \
+    FIELDS_HEAP_KEY(s.heap_key) \
+    FIELDS_TREE_RAY(s.tree_ray) \
+    FIELDS_TREE_HIT(s.tree_hit) \
+    FIELDS_RAY_COUNTS(s.ray_counts) \
+    FIELDS_WALK_STATE(s.walk_state) \
+    FIELDS_WALK_PUSH(s.walk_push) \
+    FIELDS_BUILD_STATE(s.build_state) \
+    FIELDS_BUILD_PUSH(s.build_push)
 // clang-format on

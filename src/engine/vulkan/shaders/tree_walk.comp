@@ -15,9 +15,10 @@ layout(scalar, set = 0, binding = kBindLeafKeys) writeonly buffer LeafKeys { Hea
 
 void choose_start(uint ray) {
     HeapKey root = HeapKey(push.root, 0u);
-    if (push.has_start_keys != 0u && push.root != 0u) root = start_keys[ray];
-    walk_start = narrow_key(root);
-    walk_hit_leaf = narrow_key(HeapKey(push.root, 0u));
+    HeapKey start = root;
+    if (push.has_start_keys != 0u) start = start_keys[ray];
+    walk_start = narrow_key(is_zero(root) ? root : start);
+    walk_hit_leaf = narrow_key(start);
 }
 
 void keep_leaf(uint ray) {

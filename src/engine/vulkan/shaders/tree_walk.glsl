@@ -107,7 +107,7 @@ bool walk_tree() {
 #endif
 
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
-Key walk_hit_leaf; ///< of the hit in walk_best
+Key walk_hit_leaf; ///< that ended the walk or shortened the ray last
 void note_hit_leaf() { walk_hit_leaf = get_leaf_key(); }
 #else
 void note_hit_leaf() {}
@@ -124,17 +124,19 @@ void offer_triangle(uint primitive) {
                                           load_sheared(corners.z), walk_t_min, walk_best.t);
     if (found.t == make_infinity() || (found.t == walk_best.t && primitive >= walk_best.primitive)) return;
     walk_best = TreeHit(found.t, primitive, found.weight_b, found.weight_c);
-    note_hit_leaf();
 }
 
 /// The count of a kd leaf has the place of a word.
 bool visit_leaf(uint first, uint word, uint node) {
     uint count = count_of_word(word);
-    for (uint k = 0u; k < count; ++k) {
+    float limit = walk_best.t;
+    bool is_ended = false;
+    for (uint k = 0u; k < count && !is_ended; ++k) {
         offer_triangle(texelFetch(tree_ids, int(first + k)).x);
-        if (push.is_any != 0u && walk_best.primitive != kNone) return true;
+        is_ended = push.is_any != 0u && walk_best.primitive != kNone;
     }
-    return false;
+    if (is_ended || walk_best.t < limit) note_hit_leaf();
+    return is_ended;
 }
 
 void begin_walk(TreeRay ray) {
