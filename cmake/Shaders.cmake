@@ -1,20 +1,30 @@
-# relief_shaders(TARGET DIRECTORY HEADER NAMESPACE): compiles DIRECTORY/*.comp to SPIR-V and adds it to the target as
-# NAMESPACE::find_shader, which HEADER declares.
+# relief_shaders(TARGET DIRECTORY HEADER NAMESPACE [FULL_SCREEN NAME...]): compiles the shaders of DIRECTORY to SPIR-V and
+# adds them to the target as NAMESPACE::find_shader, which HEADER declares. The compute shaders named after FULL_SCREEN
+# are also there as fragment shaders, NAME_fragment.
 find_program(RELIEF_GLSLC glslc REQUIRED)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
+# Adds the SPIR-V file to the list `compiled` of the caller.
+function(relief_shader name source)
+  add_custom_command(OUTPUT ${folder}/${name}.spv
+    COMMAND ${RELIEF_GLSLC} --target-env=vulkan1.3 -O -Werror -I ${PROJECT_SOURCE_DIR}/src ${ARGN}
+            -MD -MF ${folder}/${name}.d -MT ${folder}/${name}.spv -o ${folder}/${name}.spv ${source}
+    DEPENDS ${source} DEPFILE ${folder}/${name}.d VERBATIM)
+  set(compiled ${compiled} ${folder}/${name}.spv PARENT_SCOPE)
+endfunction()
+
 function(relief_shaders target directory header namespace)
-  file(GLOB shaders CONFIGURE_DEPENDS ${directory}/*.comp)
+  cmake_parse_arguments(PARSE_ARGV 4 argument "" "" FULL_SCREEN)
+  file(GLOB shaders CONFIGURE_DEPENDS ${directory}/*.comp ${directory}/*.vert ${directory}/*.frag)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
   file(MAKE_DIRECTORY ${folder})
   set(compiled)
   foreach(shader IN LISTS shaders)
     get_filename_component(name ${shader} NAME_WE)
-    add_custom_command(OUTPUT ${folder}/${name}.spv
-      COMMAND ${RELIEF_GLSLC} --target-env=vulkan1.3 -O -Werror -I ${PROJECT_SOURCE_DIR}/src
-              -MD -MF ${folder}/${name}.d -MT ${folder}/${name}.spv -o ${folder}/${name}.spv ${shader}
-      MAIN_DEPENDENCY ${shader} DEPFILE ${folder}/${name}.d VERBATIM)
-    list(APPEND compiled ${folder}/${name}.spv)
+    relief_shader(${name} ${shader})
+  endforeach()
+  foreach(name IN LISTS argument_FULL_SCREEN)
+    relief_shader(${name}_fragment ${directory}/${name}.comp -fshader-stage=fragment -DFULL_SCREEN)
   endforeach()
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_shaders.py)
   add_custom_command(OUTPUT ${folder}/shaders.cpp

@@ -31,6 +31,12 @@ void validate_settings(const RenderSettings& s) {
     require(s.engine == EngineKind::vulkan || (s.device == -1 && s.bottom == BottomForm::automatic),
             "a device and a form of the bottom kernel go with the Vulkan engine",
             "engine = EngineKind::vulkan");
+    require(s.engine == EngineKind::vulkan || s.method == RenderMethod::compute,
+            "a render method goes with the Vulkan engine",
+            "--method compute, or --engine vulkan with compute, fragment or hybrid");
+    require(s.method != RenderMethod::fragment || s.bottom != BottomForm::fused,
+            "the fused form of the bottom kernel needs work groups, which fragments have not",
+            "--bottom auto or split, or --method compute or hybrid");
     require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
             "engine = EngineKind::cpu");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",

@@ -164,7 +164,8 @@ std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
 
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings) {
-    const vulkan::Device::Config config{.index = settings.device, .pipeline_cache = settings.pipeline_cache};
+    const vulkan::Device::Config config{
+        .index = settings.device, .method = settings.method, .pipeline_cache = settings.pipeline_cache};
     return vulkan::make_engine_on(std::make_unique<vulkan::Device>(config), std::move(scene), settings);
 }
 
