@@ -40,10 +40,12 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
             s.bottom = parse_word("--bottom", text, words);
             o.vulkan_only.push_back("--bottom");
         });
-    add("--method", "NAME", "of the Vulkan engine: compute (default) kernels, or fragment shaders",
+    add("--method", "NAME",
+        "of the Vulkan engine: compute (default), fragment, or hybrid: first hits are drawn",
         [&o, &s](const std::string& text) {
-            constexpr std::array<Word<RenderMethod>, 2> words{
-                {{"compute", RenderMethod::compute}, {"fragment", RenderMethod::fragment}}};
+            constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
+                                                               {"fragment", RenderMethod::fragment},
+                                                               {"hybrid", RenderMethod::hybrid}}};
             s.method = parse_word("--method", text, words);
             o.vulkan_only.push_back("--method");
         });

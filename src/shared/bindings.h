@@ -39,6 +39,11 @@ const uint kBindShadowList = 29u;   ///< uint: rays towards lights
 const uint kBindDirectories = 30u;  ///< DirectoryData: hash table of the tiles of patches above level 5
 const uint kStorageBindingCount = 31u;
 
+// First hits by drawing borrow what only shading needs.
+const uint kBindRasterVertices = kBindPoints;      ///< float: three a vertex
+const uint kBindRasterItems = kBindShadowList;     ///< RasterItem
+const uint kBindRasterNearest = kBindNextPathList; ///< uint64: (distance, rank) of each path's ray
+
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
 const uint kBindNodes = 32u;        ///< rgba32ui: two a node

@@ -55,9 +55,10 @@ size_t count_hits(const Image& image) {
 
 class Methods : public testing::TestWithParam<RenderMethod> {};
 
-INSTANTIATE_TEST_SUITE_P(ThatDraw, Methods, testing::Values(RenderMethod::fragment), [](const auto& info) {
-    return info.param == RenderMethod::fragment ? "fragment" : "hybrid";
-});
+INSTANTIATE_TEST_SUITE_P(ThatDraw, Methods, testing::Values(RenderMethod::fragment, RenderMethod::hybrid),
+                         [](const auto& info) {
+                             return info.param == RenderMethod::fragment ? "fragment" : "hybrid";
+                         });
 
 TEST_P(Methods, make_the_picture_that_compute_makes) {
     const Scene scene = make_scene(DisplacementSpace::tangent);
