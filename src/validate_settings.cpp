@@ -37,6 +37,12 @@ void validate_settings(const RenderSettings& s) {
     require(s.method != RenderMethod::fragment || s.bottom != BottomForm::fused,
             "the fused form of the bottom kernel needs work groups, which fragments have not",
             "--bottom auto or split, or --method compute or hybrid");
+    require(s.method != RenderMethod::hybrid || s.lod == LodRule::field,
+            "the hybrid method draws each patch at one level, so it has none for each ray",
+            "--lod field, or --method compute or fragment");
+    require(s.method != RenderMethod::hybrid || s.leaf == LeafKind::exact,
+            "the hybrid method draws triangles, not their boxes",
+            "--leaf exact, or --method compute or fragment");
     require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
             "engine = EngineKind::cpu");
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
@@ -47,6 +53,12 @@ void validate_settings(const RenderSettings& s) {
                                    s.crop.y0 < s.crop.y1 && s.crop.x1 <= s.width && s.crop.y1 <= s.height),
             "the crop is empty or leaves the picture",
             "x0,y0,x1,y1 in pixels, half open, inside the picture");
+}
+
+void validate_method(const RenderSettings& s, const Camera& camera) {
+    require(s.method != RenderMethod::hybrid || camera.aperture_radius == 0,
+            "the hybrid method draws what one point sees, and the camera has a lens",
+            "aperture_radius 0, or --method compute or fragment");
 }
 
 } // namespace relief

@@ -104,9 +104,15 @@ int run_inspect(const InspectOptions& options) {
 }
 
 nlohmann::ordered_json to_json(const DeviceInfo& device) {
-    return {{"engine", "vulkan"},       {"device", device.index}, {"name", device.name},
-            {"driver", device.driver},  {"kind", device.kind},    {"memory_bytes", device.memory_bytes},
-            {"missing", device.missing}};
+    return {{"engine", "vulkan"},
+            {"device", device.index},
+            {"name", device.name},
+            {"driver", device.driver},
+            {"kind", device.kind},
+            {"memory_bytes", device.memory_bytes},
+            {"methods", device.methods},
+            {"missing", device.missing},
+            {"missing_to_draw", device.missing_to_draw}};
 }
 
 void print_device(const DeviceInfo& device) {
@@ -114,6 +120,10 @@ void print_device(const DeviceInfo& device) {
                device.driver, double(device.memory_bytes) / double(1u << 30));
     if (!device.missing.empty())
         fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
+    else
+        fmt::print("        methods {}\n", fmt::join(device.methods, " "));
+    if (device.missing.empty() && !device.missing_to_draw.empty())
+        fmt::print("        fragment and hybrid: lacks {}\n", fmt::join(device.missing_to_draw, ", "));
 }
 
 int run_devices(bool is_json) {

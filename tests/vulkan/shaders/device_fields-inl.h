@@ -24,6 +24,8 @@ struct AllStructs {
     CameraPush camera_push;
     PathPush path_push;
     SortPush sort_push;
+    RasterItem raster_item;
+    RasterPush raster_push;
 };
 
 // clang-format off
@@ -104,6 +106,12 @@ struct AllStructs {
     FIELD(s.environment.texture_index)
 #define FIELDS_SORT_PUSH(s) \
     FIELD(s.counter_word) FIELD(s.capacity) FIELD(s.shift) FIELD(s.mask) FIELD(s.is_back)
+#define FIELDS_RASTER_ITEM(s) \
+    FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.first_row) FIELD(s.first_vertex) FIELD(s.first_cell)
+#define FIELDS_RASTER_PUSH(s) \
+    FIELD3(s.origin) FIELD3(s.corner) FIELD3(s.step_x) FIELD3(s.step_y) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) \
+    FIELD(s.height) FIELD(s.first_pixel) FIELD(s.count) FIELD(s.first_row) FIELD(s.row_count) FIELD(s.item_count) \
+    FIELD(s.vertex_count)
 #define ALL_FIELDS(s) \
     FIELDS_INSTANCE(s.instance) \
     FIELDS_SURFACE(s.surface) \
@@ -128,5 +136,7 @@ struct AllStructs {
     FIELDS_LIGHT(s.light) \
     FIELDS_CAMERA_PUSH(s.camera_push) \
     FIELDS_PATH_PUSH(s.path_push) \
-    FIELDS_SORT_PUSH(s.sort_push)
+    FIELDS_SORT_PUSH(s.sort_push) \
+    FIELDS_RASTER_ITEM(s.raster_item) \
+    FIELDS_RASTER_PUSH(s.raster_push)
 // clang-format on

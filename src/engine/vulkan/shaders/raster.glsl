@@ -12,13 +12,8 @@ layout(scalar, set = 0, binding = kBindRasterItems) readonly buffer Items { Rast
 /// Cells a row, and vertices less one.
 uint count_columns(RasterItem item) { return 1u << packed_patch_level(item.levels); }
 
-/// A cell of an item, row by row from the item's first; `number` in the wave.
-struct RasterCell {
-    RasterItem item;
-    uint column, row;
-};
-
-RasterCell find_cell(uint number) {
+/// The item that a cell of the wave belongs to.
+uint find_item(uint number) {
     uint low = 0u;
     uint high = push.item_count - 1u;
     while (low < high) {
@@ -28,8 +23,18 @@ RasterCell find_cell(uint number) {
         else
             high = middle - 1u;
     }
+    return low;
+}
+
+/// A cell of an item, which counts its own rows.
+struct RasterCell {
+    RasterItem item;
+    uint column, row;
+};
+
+RasterCell make_cell(uint item_index, uint number) {
     RasterCell cell;
-    cell.item = items[low];
+    cell.item = items[item_index];
     uint place = number - cell.item.first_cell;
     cell.column = place % count_columns(cell.item);
     cell.row = place / count_columns(cell.item);

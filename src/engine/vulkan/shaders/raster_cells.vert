@@ -6,7 +6,7 @@
 #include "engine/vulkan/shaders/raster.glsl"
 #include "shared/raster.h"
 
-layout(location = 0) flat out uint cell_number;
+layout(location = 0) flat out uvec2 item_and_cell;
 
 vec3 bound_vector(AffineData a, vec3 v) {
     return vec3(dot(abs(a.x), abs(v)), dot(abs(a.y), abs(v)), dot(abs(a.z), abs(v)));
@@ -38,8 +38,9 @@ vec4 place_on_window(ScreenBox box) {
 }
 
 void main() {
-    cell_number = uint(gl_VertexIndex) / kRasterVertices;
-    RasterCell cell = find_cell(cell_number);
+    uint number = uint(gl_VertexIndex) / kRasterVertices;
+    item_and_cell = uvec2(find_item(number), number);
+    RasterCell cell = make_cell(item_and_cell.x, item_and_cell.y);
     CellCorners corners = load_cell(cell);
     ScreenBox box = bound_on_screen(enter_camera(instances[cell.item.instance]), corners.p00, corners.p10, corners.p11,
                                     corners.p01);

@@ -26,16 +26,16 @@ void main() {
     uint rank = uint(packed_hit);
     if (rank == 0xffffffffu) return;
     uint is_upper = rank & 1u;
-    RasterCell cell = find_cell(rank >> 1u);
+    RasterCell cell = make_cell(find_item(rank >> 1u), rank >> 1u);
     uint cell_rank = make_cell_rank(cell.column, cell.item.first_row + cell.row, is_upper);
     HitData found = HitData(nearest_distance(packed_hit), cell.item.instance, cell.item.patch_index, 0.0, 0.0, cell_rank,
                             cell.item.levels);
-    if (!is_better(found, hits[index])) found = hits[index];
-    else {
-        vec2 uv = place_on_patch(cell_rank, packed_patch_level(cell.item.levels), find_place(cell, rays[index], is_upper));
+    if (is_better(found, hits[index])) {
+        vec2 within = find_place(cell, rays[index], is_upper);
+        vec2 uv = place_on_patch(cell_rank, packed_patch_level(cell.item.levels), within);
         found.u = uv.x;
         found.v = uv.y;
+        hits[index] = found;
     }
-    hits[index] = found;
     raster_nearest[index] = make_nearest(found.t, 0xffffffffu);
 }

@@ -7,7 +7,7 @@
 
 layout(scalar, set = 0, binding = kBindRasterVertices) writeonly buffer Vertices { vec3 raster_vertices[]; };
 
-RasterItem find_item(uint vertex) {
+RasterItem find_item_of_vertex(uint vertex) {
     uint low = 0u;
     uint high = push.item_count - 1u;
     while (low < high) {
@@ -28,7 +28,7 @@ vec3 load_polygon_corner(SurfaceData s, uint patch_index, uint i, uint j) {
 void main() {
     uint vertex = invocation_index();
     if (vertex >= push.vertex_count) return;
-    RasterItem item = find_item(vertex);
+    RasterItem item = find_item_of_vertex(vertex);
     SurfaceData s = surfaces[instances[item.instance].surface];
     uint stride = count_columns(item) + 1u;
     uint place = vertex - item.first_vertex;
