@@ -132,6 +132,9 @@ class KdBuild {
         const float lower = get_component(cell.lower, axis), upper = get_component(cell.upper, axis);
         const std::vector<Event>& events = set.events[size_t(axis)];
         const uint32_t count = uint32_t(set.ids.size());
+        // Half the area of a part of the cell: both ends, and the sides by its length.
+        const double ends = compute_half_area(cut_cell(cell, axis, lower, lower));
+        const double sides = (half_area - ends) / (double(upper) - lower);
         uint32_t begun = 0, ended = 0; // boxes whose lower, whose upper face lies below the position
         Plane best;
         for (size_t k = 0; k < events.size();) {
@@ -143,8 +146,8 @@ class KdBuild {
             begun += beginning;
             if (!(position - lower >= margin_ && upper - position >= margin_)) continue;
             Plane plane{0, axis, position, left_count, count - ended};
-            const double left = compute_half_area(cut_cell(cell, axis, lower, position));
-            const double right = compute_half_area(cut_cell(cell, axis, position, upper));
+            const double left = ends + sides * (double(position) - lower);
+            const double right = ends + sides * (double(upper) - position);
             plane.cost = config_.traversal_cost + config_.intersection_cost *
                                                       (left * plane.left_count + right * plane.right_count) /
                                                       half_area;
