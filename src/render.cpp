@@ -49,6 +49,7 @@ void add_metadata(const RenderSettings& settings, uint64_t scene_hash, int sampl
 
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer) {
     validate_settings(settings);
+    validate_method(settings, scene.camera);
     const uint64_t scene_hash = scene.hash;
     RenderResult result;
     Statistics& statistics = result.statistics;

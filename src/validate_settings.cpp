@@ -47,6 +47,18 @@ void validate_settings(const RenderSettings& s) {
     require(s.engine == EngineKind::vulkan || (s.device == -1 && s.bottom == BottomForm::automatic),
             "a device and a form of the bottom kernel go with the Vulkan engine",
             "engine = EngineKind::vulkan");
+    require(s.engine == EngineKind::vulkan || s.method == RenderMethod::compute,
+            "a render method goes with the Vulkan engine",
+            "--method compute, or --engine vulkan with compute, fragment or hybrid");
+    require(s.method != RenderMethod::fragment || s.bottom != BottomForm::fused,
+            "the fused form of the bottom kernel needs work groups, which fragments have not",
+            "--bottom auto or split, or --method compute or hybrid");
+    require(s.method != RenderMethod::hybrid || s.lod == LodRule::field,
+            "the hybrid method draws each patch at one level, so it has none for each ray",
+            "--lod field, or --method compute or fragment");
+    require(s.method != RenderMethod::hybrid || s.leaf == LeafKind::exact,
+            "the hybrid method draws triangles, not their boxes",
+            "--leaf exact, or --method compute or fragment");
     require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
             "engine = EngineKind::cpu");
     require_traversal(s);
@@ -58,6 +70,12 @@ void validate_settings(const RenderSettings& s) {
                                    s.crop.y0 < s.crop.y1 && s.crop.x1 <= s.width && s.crop.y1 <= s.height),
             "the crop is empty or leaves the picture",
             "x0,y0,x1,y1 in pixels, half open, inside the picture");
+}
+
+void validate_method(const RenderSettings& s, const Camera& camera) {
+    require(s.method != RenderMethod::hybrid || camera.aperture_radius == 0,
+            "the hybrid method draws what one point sees, and the camera has a lens",
+            "aperture_radius 0, or --method compute or fragment");
 }
 
 } // namespace relief

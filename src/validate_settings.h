@@ -8,4 +8,7 @@ namespace relief {
 /// Throws Error{usage} that names the setting and its range.
 void validate_settings(const RenderSettings& settings);
 
+/// Throws Error{usage} for a camera whose pictures the settings' method cannot make.
+void validate_method(const RenderSettings& settings, const Camera& camera);
+
 } // namespace relief

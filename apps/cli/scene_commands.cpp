@@ -126,10 +126,16 @@ void print_traversals(EngineKind engine) {
 }
 
 nlohmann::ordered_json to_json(const DeviceInfo& device) {
-    return {{"engine", "vulkan"},        {"device", device.index},
-            {"name", device.name},       {"driver", device.driver},
-            {"kind", device.kind},       {"memory_bytes", device.memory_bytes},
-            {"missing", device.missing}, {"structures", traversals_to_json(EngineKind::vulkan)}};
+    return {{"engine", "vulkan"},
+            {"device", device.index},
+            {"name", device.name},
+            {"driver", device.driver},
+            {"kind", device.kind},
+            {"memory_bytes", device.memory_bytes},
+            {"methods", device.methods},
+            {"missing", device.missing},
+            {"missing_to_draw", device.missing_to_draw},
+            {"structures", traversals_to_json(EngineKind::vulkan)}};
 }
 
 void print_device(const DeviceInfo& device) {
@@ -137,6 +143,10 @@ void print_device(const DeviceInfo& device) {
                device.driver, double(device.memory_bytes) / double(1u << 30));
     if (!device.missing.empty())
         fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
+    else
+        fmt::print("        methods {}\n", fmt::join(device.methods, " "));
+    if (device.missing.empty() && !device.missing_to_draw.empty())
+        fmt::print("        fragment and hybrid: lacks {}\n", fmt::join(device.missing_to_draw, ", "));
 }
 
 int run_devices(bool is_json) {

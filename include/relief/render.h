@@ -18,6 +18,9 @@ enum class EngineKind { cpu, vulkan };
 /// How the Vulkan engine builds and walks bottom trees: one kernel that keeps groups resident and takes jobs
 /// from a queue (Harada 2015), or a build kernel and then one invocation per pair of patch and ray.
 enum class BottomForm { automatic, fused, split };
+/// What of a device finds hits (GRAPP 2019, section 3.3): compute kernels; fragment shaders over the
+/// full screen; or compute kernels after the first hits have been found by drawing the surfaces.
+enum class RenderMethod { compute, fragment, hybrid };
 enum class Isa { best, avx512, avx2, sse4, neon, scalar };
 
 /// Over instances, and over the patches of a mesh.
@@ -53,6 +56,7 @@ struct RenderSettings {
     EngineKind engine = EngineKind::cpu;
     int device = -1; ///< Vulkan: index of vulkan_devices() (relief/devices.h); -1: the best one
     BottomForm bottom = BottomForm::automatic;
+    RenderMethod method = RenderMethod::compute; ///< of the Vulkan engine; all give the same bits
     std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
     int threads = 0;            ///< 0: all cores
     Isa isa = Isa::best;

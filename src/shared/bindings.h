@@ -28,7 +28,7 @@ const uint kBindNearest = 18u;      ///< uint64: (distance, rank) of each ray in
 const uint kBindCounters = 19u;     ///< CounterData
 const uint kBindJobs = 20u;         ///< uint: trees that have pairs in this round
 const uint kBindBuilds = 21u;       ///< uint: trees that are to be built, in bins by size
-const uint kBindArguments = 22u;    ///< uvec4: group counts of indirect dispatches
+const uint kBindArguments = 22u;    ///< uint: sizes of indirect launches, kArgumentWords each
 const uint kBindRequests = 23u;     ///< RequestData: patches whose tiles are asked for
 const uint kBindPaths = 24u;        ///< PathData
 const uint kBindPoints = 25u;       ///< SurfacePointData
@@ -38,6 +38,11 @@ const uint kBindNextPathList = 28u; ///< uint: those that go on
 const uint kBindShadowList = 29u;   ///< uint: rays towards lights
 const uint kBindDirectories = 30u;  ///< DirectoryData: hash table of the tiles of patches above level 5
 const uint kStorageBindingCount = 31u;
+
+// First hits by drawing borrow what only shading needs.
+const uint kBindRasterVertices = kBindPoints;      ///< float: three a vertex
+const uint kBindRasterItems = kBindShadowList;     ///< RasterItem
+const uint kBindRasterNearest = kBindNextPathList; ///< uint64: (distance, rank) of each path's ray
 
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
@@ -59,7 +64,7 @@ const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emis
 const uint kBindAlbedos = 47u;      ///< rg32f: table of ggx_albedo.h; every table of bindings holds it
 const uint kTexelBindingCount = 16u;
 
-// Indirect group counts, in the order of kBindArguments.
+// Indirect launches, in the order of kBindArguments.
 const uint kArgumentsPairs = 0u;
 const uint kArgumentsJobs = 1u;
 const uint kArgumentsBuilds = 2u; ///< and the following, one a bin
@@ -67,6 +72,18 @@ const uint kArgumentCount = 6u;
 
 // Bins of trees to be built, by the lanes that a tree is worth: up to 2 x 2 cells, up to 8 x 8, more.
 const uint kBuildBinCount = 3u;
+
+// Words of one entry of kBindArguments: group counts, nothing, then the same work as a full-screen draw.
+const uint kArgumentWords = 8u;
+const uint kArgumentDrawWord = 4u;
+
+// Fragments in place of work groups: a square of fragments does what a group of as many invocations does. The
+// screen is as large as every device allows.
+const uint kFragmentSquare = 8u;  ///< pixels a side
+const uint kScreenColumns = 256u; ///< squares
+const uint kScreenRows = 512u;    ///< squares
+const uint kScreenVertexCount =
+    6u; ///< full_screen.vert reads the rows to be drawn from the first one's number
 
 const uint kMaxPushBytes = 128u;
 const uint kNone = 0xffffffffu;

@@ -49,27 +49,6 @@ struct EmitterData {
 
 const float kEmitterParts = 16777216.0f;
 
-/// Edge of the squares that neighbouring paths come from, so that their rays go the same way.
-const uint kPixelSquare = 8u;
-
-struct PixelPlace {
-    uint x, y;
-};
-
-/// Pixel `index` of a window in the order of squares: bands of rows, squares in a band, rows in a square;
-/// those at the right and lower edge are cut.
-FN PixelPlace place_pixel(uint index, uint width, uint height) {
-    uint band = index / (kPixelSquare * width);
-    uint in_band = index - band * kPixelSquare * width;
-    uint rows = min_uint(kPixelSquare, height - band * kPixelSquare);
-    uint square = in_band / (kPixelSquare * rows);
-    uint in_square = in_band - square * kPixelSquare * rows;
-    uint columns = min_uint(kPixelSquare, width - square * kPixelSquare);
-    PixelPlace result = {square * kPixelSquare + in_square % columns,
-                         band * kPixelSquare + in_square / columns};
-    return result;
-}
-
 /// Pixels [first_pixel, first_pixel + count) of a window in the order of place_pixel; path k is the k-th.
 struct CameraPush {
     CameraFrame camera;

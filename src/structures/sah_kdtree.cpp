@@ -132,6 +132,9 @@ class KdBuild {
         const float lower = get_component(cell.lower, axis), upper = get_component(cell.upper, axis);
         const std::vector<Event>& events = set.events[size_t(axis)];
         const uint32_t count = uint32_t(set.ids.size());
+        // Half the area of a part of the cell: both ends, and the sides by its length.
+        const double ends = compute_half_area(cut_cell(cell, axis, lower, lower));
+        const double sides = (half_area - ends) / (double(upper) - lower);
         uint32_t begun = 0, ended = 0; // boxes whose lower, whose upper face lies below the position
         Plane best;
         for (size_t k = 0; k < events.size();) {
@@ -143,8 +146,8 @@ class KdBuild {
             begun += beginning;
             if (!(position - lower >= margin_ && upper - position >= margin_)) continue;
             Plane plane{0, axis, position, left_count, count - ended};
-            const double left = compute_half_area(cut_cell(cell, axis, lower, position));
-            const double right = compute_half_area(cut_cell(cell, axis, position, upper));
+            const double left = ends + sides * (double(position) - lower);
+            const double right = ends + sides * (double(upper) - position);
             plane.cost = config_.traversal_cost + config_.intersection_cost *
                                                       (left * plane.left_count + right * plane.right_count) /
                                                       half_area;
@@ -179,13 +182,17 @@ class KdBuild {
             numbers[k] = uint32_t(part.ids.size());
             part.ids.push_back(set.ids[k]);
         }
+        // No branch on what is left out, which no machine foresees: the next one is written over it.
         for (size_t a = 0; a < 3; ++a) {
-            part.events[a].reserve(2 * part.ids.size());
+            std::vector<Event>& events = part.events[a];
+            events.resize(2 * part.ids.size() + 1);
+            size_t place = 0;
             for (const Event& event : set.events[a]) {
                 const uint32_t number = numbers[event.primitive()];
-                if (number != kOutside)
-                    part.events[a].push_back({event.position, 2 * number + (event.is_upper() ? 1u : 0u)});
+                events[place] = {event.position, 2 * number + (event.is_upper() ? 1u : 0u)};
+                place += number != kOutside ? 1 : 0;
             }
+            events.pop_back();
         }
         return part;
     }

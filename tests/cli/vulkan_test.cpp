@@ -74,6 +74,38 @@ TEST_F(Vulkan, makes_the_picture_that_the_cpu_engine_makes) {
     }
 }
 
+TEST_F(Vulkan, makes_one_picture_by_every_method) {
+    const std::vector<std::string> common{"--layers", "depth,N", "--spp",   "2",
+                                          "--engine", "vulkan",  "--method"};
+    for (const char* method : {"compute", "fragment", "hybrid"}) {
+        std::vector<std::string> all = common;
+        all.insert(all.end(), {method, "--stats", "s.json"});
+        const CommandResult result = render_bump(std::string(method) + ".exr", all);
+        ASSERT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_EQ(json::parse(read("s.json"))["casts"][0]["rays"], 2 * 24 * 16) << method;
+        for (const char* layer : {"", "depth.Z", "N.X"}) {
+            std::vector<std::string> compare{"compare", "compute.exr", std::string(method) + ".exr"};
+            if (*layer) compare.insert(compare.end(), {"--layer", layer});
+            EXPECT_EQ(run(compare).exit_code, 0) << method << " " << layer;
+        }
+    }
+    EXPECT_NE(run({"devices"}).output.find("compute fragment hybrid"), std::string::npos);
+}
+
+TEST_F(Vulkan, names_what_a_method_does_not_go_with) {
+    const auto expect_refusal = [&](std::vector<std::string> options, const char* hint) {
+        const CommandResult result = render_bump("a.exr", options);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.errors.find(hint), std::string::npos) << result.errors;
+        EXPECT_FALSE(exists("a.exr"));
+    };
+    expect_refusal({"--method", "hybrid"}, "--engine vulkan");
+    expect_refusal({"--engine", "vulkan", "--method", "rays"}, "hybrid");
+    expect_refusal({"--engine", "vulkan", "--method", "hybrid", "--lod", "ray"}, "--lod field");
+    expect_refusal({"--engine", "vulkan", "--method", "hybrid", "--leaf", "box"}, "--leaf exact");
+    expect_refusal({"--engine", "vulkan", "--method", "fragment", "--bottom", "fused"}, "--bottom auto");
+}
+
 TEST_F(Vulkan, keeps_compiled_kernels_between_runs) {
     const Environment cache("XDG_CACHE_HOME", (folder_ / "cache").string());
     ASSERT_EQ(render_bump("a.exr", {"--engine", "vulkan", "--spp", "1"}).exit_code, 0);
@@ -142,6 +174,20 @@ TEST_F(FaultyVulkan, a_lacking_feature_is_named_with_the_way_out) {
     EXPECT_EQ(list.exit_code, 0);
     EXPECT_NE(list.output.find("lacks shaderInt64"), std::string::npos) << list.output;
     EXPECT_EQ(render_bump("a.exr", {"--engine", "cpu"}).exit_code, 0);
+}
+
+TEST_F(FaultyVulkan, a_feature_that_only_some_methods_need_stops_only_those) {
+    const Environment fault("RELIEF_FAULT_FEATURE", "fragmentStoresAndAtomics");
+    for (const char* method : {"fragment", "hybrid"}) {
+        const CommandResult result = render_bump("a.exr", {"--engine", "vulkan", "--method", method});
+        EXPECT_EQ(result.exit_code, 4);
+        EXPECT_NE(result.errors.find("lacks fragmentStoresAndAtomics"), std::string::npos) << result.errors;
+        EXPECT_NE(result.errors.find("--method compute"), std::string::npos) << result.errors;
+    }
+    const CommandResult list = run({"devices"});
+    EXPECT_NE(list.output.find("methods compute\n"), std::string::npos) << list.output;
+    EXPECT_NE(list.output.find("lacks fragmentStoresAndAtomics"), std::string::npos) << list.output;
+    EXPECT_EQ(render_bump("a.exr", {"--engine", "vulkan", "--spp", "1"}).exit_code, 0);
 }
 
 TEST_F(FaultyVulkan, a_lost_device_is_told_with_the_way_out) {

@@ -35,5 +35,38 @@ TEST(Settings, of_one_engine_do_not_go_with_the_other) {
     expect_usage_error(settings);
 }
 
+TEST(Settings, of_a_method_name_what_goes_with_it) {
+    RenderSettings settings;
+    settings.method = RenderMethod::fragment;
+    expect_usage_error(settings);
+    settings.method = RenderMethod::hybrid;
+    expect_usage_error(settings);
+    settings.engine = EngineKind::vulkan;
+    settings.lod = LodRule::ray;
+    expect_usage_error(settings);
+    settings.lod = LodRule::field;
+    settings.leaf = LeafKind::box;
+    expect_usage_error(settings);
+    settings.leaf = LeafKind::exact;
+    settings.method = RenderMethod::fragment;
+    settings.bottom = BottomForm::fused;
+    expect_usage_error(settings);
+}
+
+TEST(Settings, of_the_hybrid_method_want_a_camera_without_a_lens) {
+    RenderSettings settings;
+    settings.engine = EngineKind::vulkan;
+    settings.method = RenderMethod::hybrid;
+    Scene scene;
+    scene.camera.aperture_radius = 0.1f;
+    try {
+        render(scene, settings);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+        EXPECT_NE(error.hint().find("compute or fragment"), std::string::npos) << error.what();
+    }
+}
+
 } // namespace
 } // namespace relief

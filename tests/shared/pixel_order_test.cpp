@@ -18,6 +18,7 @@ TEST(pixel_order, takes_every_pixel_of_any_window_once) {
                 ASSERT_LT(pixel.x, width);
                 ASSERT_LT(pixel.y, height);
                 ++seen[pixel.y * width + pixel.x];
+                ASSERT_EQ(scalar::find_pixel_number(pixel.x, pixel.y, width, height), k);
             }
             for (const int count : seen) ASSERT_EQ(count, 1) << width << " x " << height;
         }

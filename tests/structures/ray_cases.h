@@ -123,11 +123,12 @@ class RayMaker {
     RayMaker(uint32_t seed, const std::vector<Triangle>& triangles)
         : random_(seed), triangles_(triangles), bounds_(compute_bounds(triangles)) {}
 
-    /// From in or around the set, or (every eighth) from far away, towards a point in it.
+    /// From in or around the set, or (some) from far or very far away, towards a point in it.
     BoxRay make_general() {
         const Vec3f target = inside();
         Vec3f origin = inside();
-        const float away = random_() % 8 == 0 ? 50.0f : 1.0f;
+        const uint32_t place = random_() % 32;
+        const float away = place < 4 ? 50.0f : place < 5 ? 5000.0f : 1.0f;
         origin = target + (origin - target) * (2 * away);
         return make(origin, target - origin);
     }

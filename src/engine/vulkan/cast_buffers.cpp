@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "math/scalar.h"
-
 namespace relief::vulkan {
 
 namespace {
@@ -34,7 +32,7 @@ CastBuffers::CastBuffers(const Device& device, const TracerConfig& config, uint6
     BufferConfig on_host{"counters on the host", sizeof(scalar::CounterData), Purpose::staging};
     on_host.is_host_visible = true;
     counters_on_host = Buffer(device, on_host);
-    BufferConfig indirect{"arguments", scalar::kArgumentCount * 16, Purpose::ray_buffers};
+    BufferConfig indirect{"arguments", scalar::kArgumentCount * kArgumentBytes, Purpose::ray_buffers};
     indirect.is_indirect = true;
     arguments = Buffer(device, indirect);
     requests = make_array<scalar::RequestData>(device, "tile requests", kRequestCapacity);

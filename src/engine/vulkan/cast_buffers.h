@@ -3,6 +3,7 @@
 
 #include "engine/vulkan/commands.h"
 #include "engine/vulkan/tracer.h"
+#include "math/scalar.h"
 
 namespace relief::vulkan {
 
@@ -28,6 +29,9 @@ class CastBuffers {
     uint32_t pair_capacity_;
     uint32_t tree_capacity_ = 0, job_capacity_ = 0;
 };
+
+/// One entry of `arguments`.
+inline constexpr uint64_t kArgumentBytes = scalar::kArgumentWords * sizeof(uint32_t);
 
 /// Patches whose tiles can be asked for at once; more ask again.
 inline constexpr uint32_t kRequestCapacity = 4096;

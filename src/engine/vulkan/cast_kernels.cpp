@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace relief::vulkan {
 
@@ -21,6 +24,13 @@ std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
     return {4, 16, 64};
 }
 
+/// A kernel that walks trees: a dispatch, or fragments over the full screen.
+Kernel make_walk(const Device& device, RenderMethod method, const std::string& shader,
+                 std::vector<uint32_t> constants) {
+    if (method != RenderMethod::fragment) return Kernel(device, {shader, std::move(constants)});
+    return Kernel(device, {shader + "_fragment", std::move(constants), {}, kFullScreen});
+}
+
 } // namespace
 
 CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
@@ -29,7 +39,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     const uint32_t is_box = settings.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.bottom == BottomForm::fused;
-    scene_traversal = Kernel(device, {scene.traversal_kernel(), {kGroup, stack_size}});
+    scene_traversal = make_walk(device, settings.method, scene.traversal_kernel(), {kGroup, stack_size});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
@@ -45,7 +55,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
         arguments_push.builds_per_group[bin] = build_group / lanes[bin];
     }
     if (!is_fused) {
-        patch_traversal = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, 0}});
+        patch_traversal = make_walk(device, settings.method, "patch_traversal", {kGroup, 0, 0, 0, is_box, 0});
         return;
     }
     const uint32_t most_pairs = is_cpu ? kGroup * kSafePairsPerLane : kAll;

@@ -19,12 +19,22 @@ namespace {
 /// Changes of stage that one submission may have; one more runs what was recorded.
 constexpr uint32_t kMarkCount = 256;
 
+constexpr DrawSize kScreen = {scalar::kScreenColumns * scalar::kFragmentSquare,
+                              scalar::kScreenRows* scalar::kFragmentSquare};
+static_assert(kFragmentGroup == scalar::kFragmentSquare * scalar::kFragmentSquare);
+
+vk::PipelineStageFlags2 find_pipeline_stages(vk::ShaderStageFlags shaders) {
+    using Stage = vk::PipelineStageFlagBits2;
+    if (!(shaders & vk::ShaderStageFlagBits::eFragment)) return Stage::eComputeShader;
+    return Stage::eComputeShader | Stage::eVertexShader | Stage::eFragmentShader;
+}
+
 } // namespace
 
-void record_barrier(const vk::raii::CommandBuffer& commands) {
+void record_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders) {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
-    const vk::PipelineStageFlags2 work = Stage::eComputeShader | Stage::eAllTransfer;
+    const vk::PipelineStageFlags2 work = find_pipeline_stages(shaders) | Stage::eAllTransfer;
     const vk::MemoryBarrier2 barrier(work, Access::eShaderWrite | Access::eTransferWrite,
                                      work | Stage::eDrawIndirect,
                                      Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
@@ -32,10 +42,10 @@ void record_barrier(const vk::raii::CommandBuffer& commands) {
     commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
 }
 
-void record_host_barrier(const vk::raii::CommandBuffer& commands) {
+void record_host_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders) {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
-    const vk::MemoryBarrier2 barrier(Stage::eComputeShader | Stage::eAllTransfer,
+    const vk::MemoryBarrier2 barrier(find_pipeline_stages(shaders) | Stage::eAllTransfer,
                                      Access::eShaderWrite | Access::eTransferWrite, Stage::eHost,
                                      Access::eHostRead);
     commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
@@ -58,6 +68,10 @@ struct Commands::Implementation {
     void mark(std::optional<Stage> next);
     void prepare();
     void bind_kernel(const Kernel& kernel, std::span<const std::byte> push);
+    void begin_drawing(DrawSize size);
+    void dispatch(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    void draw_full_screen(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    [[noreturn]] void refuse_size(const Kernel& kernel, uint64_t groups) const;
     void read_marks();
     void run();
     std::string describe() const;
@@ -69,7 +83,11 @@ void Commands::Implementation::start() {
     marks.clear();
     kernel_names.clear();
     buffer.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    buffer.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *device.pipeline_layout, 0, *bindings.set, {});
+    const auto bind = [&](vk::PipelineBindPoint point) {
+        buffer.bindDescriptorSets(point, *device.pipeline_layout, 0, *bindings.set, {});
+    };
+    bind(vk::PipelineBindPoint::eCompute);
+    if (device.shader_stages & vk::ShaderStageFlagBits::eFragment) bind(vk::PipelineBindPoint::eGraphics);
     is_recording = true;
 }
 
@@ -83,18 +101,53 @@ void Commands::Implementation::prepare() {
     // The last mark belongs to the end of the submission.
     if (is_recording && marks.size() + 1 == kMarkCount && marks.back() != stage) run();
     if (!is_recording) start();
-    record_barrier(buffer);
+    record_barrier(buffer, device.shader_stages);
     if (*queries && (marks.empty() || marks.back() != stage)) mark(stage);
 }
 
 void Commands::Implementation::bind_kernel(const Kernel& kernel, std::span<const std::byte> push) {
     DCHECK(push.size() <= scalar::kMaxPushBytes && push.size() % 4 == 0);
     const Kernel::Implementation& used = kernel.internals();
-    buffer.bindPipeline(vk::PipelineBindPoint::eCompute, *used.pipeline);
-    (*buffer).pushConstants(*device.pipeline_layout, vk::ShaderStageFlagBits::eCompute, 0,
-                            uint32_t(push.size()), push.data(), *buffer.getDispatcher());
+    buffer.bindPipeline(used.is_drawn ? vk::PipelineBindPoint::eGraphics : vk::PipelineBindPoint::eCompute,
+                        *used.pipeline);
+    (*buffer).pushConstants(*device.pipeline_layout, device.shader_stages, 0, uint32_t(push.size()),
+                            push.data(), *buffer.getDispatcher());
     kernel_names.insert(used.name);
     ++dispatch_count;
+}
+
+void Commands::Implementation::begin_drawing(DrawSize size) {
+    const vk::Rect2D area({}, {size.width, size.height});
+    buffer.beginRendering(vk::RenderingInfo({}, area, 1));
+    buffer.setViewport(0, vk::Viewport(0, 0, float(size.width), float(size.height), 0, 1));
+    buffer.setScissor(0, area);
+}
+
+void Commands::Implementation::refuse_size(const Kernel& kernel, uint64_t groups) const {
+    throw Error(ErrorKind::failed, {fmt::format("{} cannot run {} groups of {} invocations at once",
+                                                kernel.internals().name, groups, kernel.group_size()),
+                                    "Vulkan", kUseCpu});
+}
+
+void Commands::Implementation::dispatch(const Kernel& kernel, uint64_t groups,
+                                        std::span<const std::byte> push) {
+    const uint64_t widest = device.limits.maxComputeWorkGroupCount[0];
+    const uint64_t rows = (groups + widest - 1) / widest;
+    if (rows > device.limits.maxComputeWorkGroupCount[1]) refuse_size(kernel, groups);
+    prepare();
+    bind_kernel(kernel, push);
+    buffer.dispatch(uint32_t((groups + rows - 1) / rows), uint32_t(rows), 1);
+}
+
+void Commands::Implementation::draw_full_screen(const Kernel& kernel, uint64_t groups,
+                                                std::span<const std::byte> push) {
+    const uint64_t rows = (groups + scalar::kScreenColumns - 1) / scalar::kScreenColumns;
+    if (rows > scalar::kScreenRows) refuse_size(kernel, groups);
+    prepare();
+    bind_kernel(kernel, push);
+    begin_drawing(kScreen);
+    buffer.draw(scalar::kScreenVertexCount, 1, uint32_t(rows) * scalar::kScreenVertexCount, 0);
+    buffer.endRendering();
 }
 
 void Commands::Implementation::read_marks() {
@@ -117,7 +170,7 @@ void Commands::Implementation::run() {
     is_recording = false;
     check_vulkan("running kernels", [&] {
         if (*queries) mark(std::nullopt);
-        record_host_barrier(buffer);
+        record_host_barrier(buffer, device.shader_stages);
         buffer.end();
         const auto begin = std::chrono::steady_clock::now();
         device.submit_and_wait(buffer, [this] { return describe(); });
@@ -157,16 +210,11 @@ void Commands::dispatch_bytes(const Kernel& kernel, uint64_t invocations, std::s
     if (invocations == 0) return;
     Implementation& own = *implementation_;
     const uint64_t groups = (invocations + kernel.group_size() - 1) / kernel.group_size();
-    const uint64_t widest = own.device.limits.maxComputeWorkGroupCount[0];
-    const uint64_t rows = (groups + widest - 1) / widest;
-    if (rows > own.device.limits.maxComputeWorkGroupCount[1])
-        throw Error(ErrorKind::failed, {fmt::format("{} cannot run {} invocations at once",
-                                                    kernel.internals().name, invocations),
-                                        "Vulkan", kUseCpu});
     check_vulkan("recording a dispatch", [&] {
-        own.prepare();
-        own.bind_kernel(kernel, push);
-        own.buffer.dispatch(uint32_t((groups + rows - 1) / rows), uint32_t(rows), 1);
+        if (kernel.is_drawn())
+            own.draw_full_screen(kernel, groups, push);
+        else
+            own.dispatch(kernel, groups, push);
     });
 }
 
@@ -177,7 +225,28 @@ void Commands::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& argum
     check_vulkan("recording a dispatch", [&] {
         own.prepare();
         own.bind_kernel(kernel, push);
-        own.buffer.dispatchIndirect(*arguments.internals().buffer, offset);
+        if (!kernel.is_drawn()) {
+            own.buffer.dispatchIndirect(*arguments.internals().buffer, offset);
+            return;
+        }
+        own.begin_drawing(kScreen);
+        const uint64_t draw_offset = offset + scalar::kArgumentDrawWord * sizeof(uint32_t);
+        own.buffer.drawIndirect(*arguments.internals().buffer, draw_offset, 1, 0);
+        own.buffer.endRendering();
+    });
+}
+
+void Commands::draw_bytes(const Kernel& kernel, DrawSize size, uint32_t vertex_count,
+                          std::span<const std::byte> push) {
+    if (vertex_count == 0) return;
+    Implementation& own = *implementation_;
+    DCHECK(kernel.is_drawn() && size.width > 0 && size.height > 0);
+    check_vulkan("recording a draw", [&] {
+        own.prepare();
+        own.bind_kernel(kernel, push);
+        own.begin_drawing(size);
+        own.buffer.draw(vertex_count, 1, 0, 0);
+        own.buffer.endRendering();
     });
 }
 

@@ -1,4 +1,5 @@
-// Records dispatches and runs them: one queue, one submission at a time, the time of each stage taken.
+// Records dispatches and draws and runs them: one queue, one submission at a time, the time of each stage
+// taken.
 #pragma once
 
 #include <array>
@@ -29,6 +30,10 @@ enum class Stage {
 };
 inline constexpr size_t kStageCount = 12;
 
+struct DrawSize {
+    uint32_t width = 0, height = 0; ///< pixels, at most Device::max_draw_size() each
+};
+
 /// One thread at a time. Every call after a dispatch sees what that dispatch wrote: a full memory barrier
 /// stands between any two of them.
 class Commands {
@@ -43,14 +48,22 @@ class Commands {
     void begin_stage(Stage stage);
 
     /// ceil(invocations / group size) groups, in two dimensions above 65535; kernels number their groups by
-    /// gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x and leave out what is beyond the end.
+    /// gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x and leave out what is beyond the end. A
+    /// kernel that is drawn with kFullScreen gets as many fragments and numbers them alike
+    /// (shaders/kernel.glsl).
     template <class Push> void dispatch(const Kernel& kernel, uint64_t invocations, const Push& push) {
         dispatch_bytes(kernel, invocations, std::as_bytes(std::span(&push, 1)));
     }
-    /// Group counts x, y, z are read at `offset` bytes of `arguments` (made with is_indirect).
+    /// Sizes are read at `offset` bytes of `arguments` (made with is_indirect): group counts x, y, z; for a
+    /// kernel that is drawn, those of a draw kArgumentDrawWord words further on.
     template <class Push>
     void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset, const Push& push) {
         dispatch_indirect_bytes(kernel, arguments, offset, std::as_bytes(std::span(&push, 1)));
+    }
+    /// Draws vertices of a kernel's own vertex shader as triangles over `size` pixels.
+    template <class Push>
+    void draw(const Kernel& kernel, DrawSize size, uint32_t vertex_count, const Push& push) {
+        draw_bytes(kernel, size, vertex_count, std::as_bytes(std::span(&push, 1)));
     }
     /// Writes `value` to every word of [offset, + bytes); both multiples of 4.
     void fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value);
@@ -71,6 +84,8 @@ class Commands {
     void dispatch_bytes(const Kernel& kernel, uint64_t invocations, std::span<const std::byte> push);
     void dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
                                  std::span<const std::byte> push);
+    void draw_bytes(const Kernel& kernel, DrawSize size, uint32_t vertex_count,
+                    std::span<const std::byte> push);
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };

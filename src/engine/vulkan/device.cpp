@@ -40,8 +40,16 @@ int rank_type(vk::PhysicalDeviceType type) {
     }
 }
 
-vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, int index,
+void require_drawing(const DeviceDescription& device, RenderMethod method) {
+    if (method == RenderMethod::compute || device.missing_to_draw.empty()) return;
+    refuse_device(fmt::format("device {} ({}) lacks {} for this method", device.index, device.name,
+                              fmt::join(device.missing_to_draw, ", ")),
+                  "use --method compute, or choose another device with --device");
+}
+
+vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, const Device::Config& config,
                                        DeviceDescription& description) {
+    const int index = config.index;
     vk::raii::PhysicalDevices devices(instance);
     if (devices.empty())
         refuse_device("there is no Vulkan device", "install a driver for it, or use --engine cpu");
@@ -51,7 +59,9 @@ vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, int i
     size_t chosen = size_t(std::max(index, 0));
     if (index < 0) {
         const auto rank = [&](size_t i) {
-            const bool is_usable = describe_device(devices[i], uint32_t(i)).missing.empty();
+            const DeviceDescription device = describe_device(devices[i], uint32_t(i));
+            const bool is_usable = device.missing.empty() &&
+                                   (config.method == RenderMethod::compute || device.missing_to_draw.empty());
             return std::pair(!is_usable, rank_type(devices[i].getProperties().deviceType));
         };
         for (size_t i = 1; i < devices.size(); ++i)
@@ -59,6 +69,7 @@ vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, int i
     }
     description = describe_device(devices[chosen], uint32_t(chosen));
     require_usable(description);
+    require_drawing(description, config.method);
     return std::move(devices[chosen]);
 }
 
@@ -92,7 +103,12 @@ void read_limits(Device::Implementation& d) {
         with_11.maxMemoryAllocationSize, chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
     d.max_buffer_bytes = std::min<uint64_t>(d.limits.maxStorageBufferRange, d.max_allocation_bytes);
     d.resident_group_count = count_resident_groups(d.physical, d.description.is_cpu);
-    d.family = find_compute_family(d.physical).value();
+    if (d.config.method == RenderMethod::compute) {
+        d.family = find_compute_family(d.physical).value();
+    } else {
+        d.family = find_drawing_family(d.physical).value();
+        d.shader_stages |= vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
+    }
     const uint32_t timestamp_bits = d.physical.getQueueFamilyProperties()[d.family].timestampValidBits;
     d.timestamp_period_s = timestamp_bits > 0 ? d.limits.timestampPeriod * 1e-9f : 0.0f;
     d.timestamp_mask = timestamp_bits < 64 ? (uint64_t(1) << timestamp_bits) - 1 : ~uint64_t(0);
@@ -100,12 +116,15 @@ void read_limits(Device::Implementation& d) {
 
 vk::raii::Device make_device(const Device::Implementation& d) {
     vk::PhysicalDeviceVulkan13Features with_13;
+    const bool is_drawing = d.config.method != RenderMethod::compute;
     with_13.synchronization2 = with_13.maintenance4 = true;
+    with_13.dynamicRendering = is_drawing;
     vk::PhysicalDeviceVulkan12Features with_12;
     with_12.shaderBufferInt64Atomics = with_12.scalarBlockLayout = with_12.hostQueryReset = true;
     with_12.pNext = &with_13;
     vk::PhysicalDeviceFeatures2 features;
     features.features.shaderInt64 = true;
+    features.features.fragmentStoresAndAtomics = is_drawing;
     features.pNext = &with_12;
     const std::array priority = {1.0f};
     const vk::DeviceQueueCreateInfo queue({}, d.family, priority);
@@ -115,23 +134,22 @@ vk::raii::Device make_device(const Device::Implementation& d) {
     return {d.physical, vk::DeviceCreateInfo({}, queue, {}, extensions, nullptr, &features)};
 }
 
-vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device) {
+vk::raii::DescriptorSetLayout make_set_layout(const Device::Implementation& d) {
     std::vector<vk::DescriptorSetLayoutBinding> bindings;
     const auto add = [&](uint32_t first, uint32_t count, vk::DescriptorType type) {
-        for (uint32_t i = 0; i < count; ++i)
-            bindings.emplace_back(first + i, type, 1, vk::ShaderStageFlagBits::eCompute);
+        for (uint32_t i = 0; i < count; ++i) bindings.emplace_back(first + i, type, 1, d.shader_stages);
     };
     add(0, scalar::kStorageBindingCount, vk::DescriptorType::eStorageBuffer);
     add(scalar::kFirstTexelBinding, scalar::kTexelBindingCount, vk::DescriptorType::eUniformTexelBuffer);
-    return {device, vk::DescriptorSetLayoutCreateInfo({}, bindings)};
+    return {d.device, vk::DescriptorSetLayoutCreateInfo({}, bindings)};
 }
 
 void make_shared_objects(Device::Implementation& d) {
     d.queue = vk::raii::Queue(d.device, d.family, 0);
     d.set_name(d.queue, "relief queue");
-    d.set_layout = make_set_layout(d.device);
+    d.set_layout = make_set_layout(d);
     d.set_name(d.set_layout, "relief bindings");
-    const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, scalar::kMaxPushBytes);
+    const vk::PushConstantRange push(d.shader_stages, 0, scalar::kMaxPushBytes);
     d.pipeline_layout =
         vk::raii::PipelineLayout(d.device, vk::PipelineLayoutCreateInfo({}, *d.set_layout, push));
     d.set_name(d.pipeline_layout, "relief pipeline layout");
@@ -166,7 +184,7 @@ Device::Implementation::Implementation(const Config& wanted)
       messages(wanted.is_validated ? std::make_unique<MessageLog>() : nullptr),
       instance(make_instance(messages.get())) {
     check_vulkan("making the device", [&] {
-        physical = choose_device(instance.handle, config.index, description);
+        physical = choose_device(instance.handle, config, description);
         read_limits(*this);
         device = make_device(*this);
         set_name(device, "relief device");
@@ -200,9 +218,9 @@ void Device::Implementation::run_once(const char* what,
         const vk::raii::CommandBuffer& commands = buffers.front();
         set_name(commands, what);
         commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-        record_barrier(commands);
+        record_barrier(commands, shader_stages);
         record(commands);
-        record_host_barrier(commands);
+        record_host_barrier(commands, shader_stages);
         commands.end();
         submit_and_wait(commands, [what] { return std::string(what); });
     });
@@ -229,6 +247,12 @@ uint32_t Device::max_group_size() const {
     return std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
 }
 uint32_t Device::resident_group_count() const { return implementation_->resident_group_count; }
+RenderMethod Device::method() const { return implementation_->config.method; }
+uint32_t Device::max_draw_size() const {
+    const vk::PhysicalDeviceLimits& limits = implementation_->limits;
+    return std::min({limits.maxFramebufferWidth, limits.maxFramebufferHeight, limits.maxViewportDimensions[0],
+                     limits.maxViewportDimensions[1]});
+}
 uint64_t Device::available_bytes() const { return implementation_->memory->available_bytes(); }
 uint64_t Device::allocated_bytes(Purpose purpose) const {
     return implementation_->memory->allocated_bytes(purpose);

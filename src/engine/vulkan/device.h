@@ -1,5 +1,5 @@
-// A Vulkan device made ready for compute: chosen, checked for what Relief needs, with its queue and pipeline
-// cache.
+// A Vulkan device made ready for a render method: chosen, checked for what Relief needs, with its queue and
+// pipeline cache.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "relief/render.h"
 
 namespace relief::vulkan {
 
@@ -22,6 +24,7 @@ struct DeviceDescription {
     bool is_cpu = false;
     uint64_t memory_bytes = 0;        ///< of its largest device-local heap
     std::vector<std::string> missing; ///< features and limits that Relief needs and it lacks; empty: usable
+    std::vector<std::string> missing_to_draw; ///< and for the methods fragment and hybrid, beyond `missing`
 };
 
 /// All devices of all drivers, in the loader's order; empty where there is no driver. Never throws for a
@@ -33,7 +36,8 @@ class Device {
   public:
     struct Config {
         int index = -1; ///< of list_devices(); -1: the first usable GPU, else the first usable device
-        std::filesystem::path pipeline_cache; ///< file; empty: nothing is kept between runs
+        RenderMethod method = RenderMethod::compute; ///< others need more of a device
+        std::filesystem::path pipeline_cache;        ///< file; empty: nothing is kept between runs
         /// Khronos validation with synchronisation validation; each message is kept, see
         /// validation_messages().
         bool is_validated = false;
@@ -49,12 +53,14 @@ class Device {
 
     const DeviceDescription& description() const;
     bool is_cpu() const { return description().is_cpu; }
+    RenderMethod method() const;
 
     /// Bytes that one storage buffer may have.
     uint64_t max_buffer_bytes() const;
     /// Texels that one texel buffer may have.
     uint64_t max_texel_count() const;
     uint32_t max_group_size() const; ///< invocations
+    uint32_t max_draw_size() const;  ///< pixels a side
     /// Work groups to keep the device busy with persistent kernels.
     uint32_t resident_group_count() const;
     /// Device memory that may still be allocated.

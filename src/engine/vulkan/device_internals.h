@@ -48,6 +48,7 @@ struct Device::Implementation {
     float timestamp_period_s = 0; ///< 0: the queue has none
     uint64_t timestamp_mask = 0;  ///< of the bits that a timestamp has
     uint32_t family = 0;
+    vk::ShaderStageFlags shader_stages = vk::ShaderStageFlagBits::eCompute; ///< that kernels may have
     vk::raii::Device device = nullptr;
     vk::raii::Queue queue = nullptr;
     vk::raii::PipelineCache pipeline_cache = nullptr;
@@ -71,9 +72,11 @@ struct Buffer::Implementation {
     vk::raii::BufferView texels = nullptr; ///< only with a format
 };
 
-/// The device's memory barrier between any two commands: compute, transfer and indirect arguments.
-void record_barrier(const vk::raii::CommandBuffer& commands);
+/// The device's memory barrier between any two commands: shaders of these stages, transfer and indirect
+/// arguments.
+void record_barrier(const vk::raii::CommandBuffer& commands,
+                    vk::ShaderStageFlags shaders = vk::ShaderStageFlagBits::eCompute);
 /// What the device wrote becomes visible to the host after the fence.
-void record_host_barrier(const vk::raii::CommandBuffer& commands);
+void record_host_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders);
 
 } // namespace relief::vulkan

@@ -48,6 +48,22 @@ void require_limits(const vk::PhysicalDeviceLimits& limits, std::vector<std::str
     require(limits.maxTexelBufferElements, kLeastTexelCount, "maxTexelBufferElements");
 }
 
+/// For the methods that draw, beyond what all need.
+std::vector<std::string> find_missing_to_draw(const vk::raii::PhysicalDevice& device) {
+    std::vector<std::string> missing;
+    const auto chain = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
+    if (!find_drawing_family(device)) missing.emplace_back("a queue with VK_QUEUE_GRAPHICS_BIT");
+    if (!chain.get<vk::PhysicalDeviceFeatures2>().features.fragmentStoresAndAtomics)
+        missing.emplace_back("fragmentStoresAndAtomics");
+    if (!chain.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering)
+        missing.emplace_back("dynamicRendering");
+    const uint32_t outputs = device.getProperties().limits.maxFragmentCombinedOutputResources;
+    if (outputs < scalar::kStorageBindingCount)
+        missing.push_back(fmt::format("maxFragmentCombinedOutputResources {} (has {})",
+                                      scalar::kStorageBindingCount, outputs));
+    return missing;
+}
+
 uint64_t largest_local_heap(const vk::raii::PhysicalDevice& device) {
     const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
     uint64_t largest = 0;
@@ -78,6 +94,7 @@ DeviceDescription describe_device(const vk::raii::PhysicalDevice& device, uint32
     if (!find_compute_family(device)) result.missing.emplace_back("a queue with VK_QUEUE_COMPUTE_BIT");
     require_features(device, result.missing);
     require_limits(core.limits, result.missing);
+    result.missing_to_draw = find_missing_to_draw(device);
     return result;
 }
 

@@ -109,4 +109,12 @@ std::optional<uint32_t> find_compute_family(const vk::raii::PhysicalDevice& devi
     return best;
 }
 
+std::optional<uint32_t> find_drawing_family(const vk::raii::PhysicalDevice& device) {
+    const vk::QueueFlags wanted = vk::QueueFlagBits::eCompute | vk::QueueFlagBits::eGraphics;
+    const std::vector<vk::QueueFamilyProperties> families = device.getQueueFamilyProperties();
+    for (uint32_t i = 0; i < families.size(); ++i)
+        if ((families[i].queueFlags & wanted) == wanted) return i;
+    return std::nullopt;
+}
+
 } // namespace relief::vulkan

@@ -46,4 +46,7 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name
 /// without one.
 std::optional<uint32_t> find_compute_family(const vk::raii::PhysicalDevice& device);
 
+/// The first family that computes and draws.
+std::optional<uint32_t> find_drawing_family(const vk::raii::PhysicalDevice& device);
+
 } // namespace relief::vulkan

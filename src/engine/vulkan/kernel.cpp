@@ -1,7 +1,10 @@
 #include "engine/vulkan/kernel.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "engine/vulkan/errors.h"
 #include "engine/vulkan/kernel_internals.h"
 #include "engine/vulkan/shader_table.h"
@@ -16,21 +19,57 @@ void check_config(const Device& device, const KernelConfig& config, std::span<co
         throw Error(ErrorKind::failed, {fmt::format("kernel {}: constant 0 is the group size, 1 to {}",
                                                     config.shader, device.max_group_size()),
                                         "Vulkan", ""});
+    DCHECK(config.vertex_shader.empty() || device.method() != RenderMethod::compute);
+    DCHECK(config.vertex_shader != kFullScreen || config.constants[0] == kFragmentGroup);
+}
+
+vk::raii::ShaderModule make_module(const Device::Implementation& device, const std::string& name,
+                                   std::span<const uint32_t> code) {
+    vk::raii::ShaderModule module(device.device,
+                                  vk::ShaderModuleCreateInfo({}, code.size_bytes(), code.data()));
+    device.set_name(module, name);
+    return module;
+}
+
+/// Triangles of either winding without attachments; where they lie is set when they are drawn.
+vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
+                                       const vk::PipelineShaderStageCreateInfo& fragment_stage) {
+    const vk::raii::ShaderModule module =
+        make_module(device, config.vertex_shader, find_shader(config.vertex_shader));
+    const std::array stages = {
+        vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *module, "main"),
+        fragment_stage};
+    const vk::PipelineVertexInputStateCreateInfo no_input;
+    const vk::PipelineInputAssemblyStateCreateInfo triangles({}, vk::PrimitiveTopology::eTriangleList);
+    const vk::PipelineViewportStateCreateInfo one_viewport({}, 1, nullptr, 1, nullptr);
+    vk::PipelineRasterizationStateCreateInfo raster;
+    raster.lineWidth = 1;
+    const vk::PipelineMultisampleStateCreateInfo one_sample({}, vk::SampleCountFlagBits::e1);
+    const std::array dynamic = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+    const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
+    const vk::PipelineColorBlendStateCreateInfo no_colors;
+    const vk::PipelineRenderingCreateInfo no_attachments;
+    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &triangles, nullptr, &one_viewport, &raster,
+                                        &one_sample, nullptr, &no_colors, &dynamic_state,
+                                        *device.pipeline_layout);
+    info.pNext = &no_attachments;
+    return {device.device, device.pipeline_cache, info};
 }
 
 vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const KernelConfig& config,
                                  std::span<const uint32_t> code) {
-    const vk::raii::ShaderModule module(device.device,
-                                        vk::ShaderModuleCreateInfo({}, code.size_bytes(), code.data()));
-    device.set_name(module, config.shader);
+    const vk::raii::ShaderModule module = make_module(device, config.shader, code);
     std::vector<vk::SpecializationMapEntry> entries;
     for (uint32_t i = 0; i < config.constants.size(); ++i)
         entries.emplace_back(i, uint32_t(i * sizeof(uint32_t)), sizeof(uint32_t));
     const vk::SpecializationInfo constants(uint32_t(entries.size()), entries.data(),
                                            config.constants.size() * sizeof(uint32_t),
                                            config.constants.data());
-    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
-                                                  &constants);
+    const bool is_drawn = !config.vertex_shader.empty();
+    const vk::PipelineShaderStageCreateInfo stage(
+        {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
+        "main", &constants);
+    if (is_drawn) return make_drawn_pipeline(device, config, stage);
     return {device.device, device.pipeline_cache,
             vk::ComputePipelineCreateInfo({}, stage, *device.pipeline_layout)};
 }
@@ -45,6 +84,7 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
     check_config(device, config, code);
     implementation_->name = config.shader;
     implementation_->group_size = config.constants[0];
+    implementation_->is_drawn = !config.vertex_shader.empty();
     check_vulkan("compiling " + config.shader, [&] {
         implementation_->pipeline = make_pipeline(device.internals(), config, code);
         device.internals().set_name(implementation_->pipeline, config.shader);
@@ -55,5 +95,6 @@ Kernel::Kernel(Kernel&&) noexcept = default;
 Kernel& Kernel::operator=(Kernel&&) noexcept = default;
 
 uint32_t Kernel::group_size() const { return implementation_->group_size; }
+bool Kernel::is_drawn() const { return implementation_->is_drawn; }
 
 } // namespace relief::vulkan

@@ -1,5 +1,5 @@
-// Compute pipelines over one common set of bindings (shared/bindings.h), so that buffers are bound once for
-// all.
+// Pipelines over one common set of bindings (shared/bindings.h), so that buffers are bound once for all:
+// compute shaders, and fragment shaders that write nothing but buffers.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,14 @@ struct KernelConfig {
     /// SPIR-V of a shader that is not in shaders/; empty: the one of that name. Read while the kernel is
     /// made.
     std::span<const uint32_t> code = {};
+    /// Not empty: `shader` is a fragment shader, drawn over the triangles of this vertex shader; the device
+    /// must have been made for a method that draws. With kFullScreen a launch is what a dispatch is to a
+    /// compute shader, in groups of kFragmentGroup.
+    std::string vertex_shader = {};
 };
+
+inline constexpr const char* kFullScreen = "full_screen";
+inline constexpr uint32_t kFragmentGroup = 64;
 
 /// One compiled shader with its constants. The device must outlive it.
 class Kernel {
@@ -32,6 +39,7 @@ class Kernel {
     Kernel& operator=(Kernel&&) noexcept;
 
     uint32_t group_size() const;
+    bool is_drawn() const;
 
     struct Implementation;
     const Implementation& internals() const { return *implementation_; }

@@ -12,6 +12,7 @@ namespace relief::vulkan {
 struct Kernel::Implementation {
     std::string name;
     uint32_t group_size = 0;
+    bool is_drawn = false;
     vk::raii::Pipeline pipeline = nullptr;
 };
 

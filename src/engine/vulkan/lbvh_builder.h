@@ -25,8 +25,9 @@ struct BuildReport {
     double primitives_per_second() const { return primitive_count / total_seconds(); }
 };
 
-/// Bytes a primitive of a build with codes of 30 bits that reads and writes no more than it has to, with a
-/// sort of one sweep a pass.
+/// Bytes a primitive that a build with codes of 30 bits has to read and write, with a sort that goes over its
+/// pairs once a pass: 18 for the box and 26 for the code of a triangle, 68 for four passes of eight bits, 24
+/// for links, 68 for leaves and 88 for inner nodes.
 inline constexpr double kLeastBuildBytes = 290;
 
 /// Share of the rate that memory traffic alone allows; `bandwidth` in bytes a second

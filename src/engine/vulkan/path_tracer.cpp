@@ -26,8 +26,11 @@ Kernel make_kernel(const Device& device, const char* shader) {
     return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
 }
 
-template <class T> Buffer make_buffer(const Device& device, const char* name, uint64_t count) {
-    return Buffer(device, {.name = name, .bytes = count * sizeof(T), .purpose = Purpose::ray_buffers});
+template <class T>
+Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint64_t least_bytes = 0) {
+    return Buffer(device, {.name = name,
+                           .bytes = std::max<uint64_t>(count * sizeof(T), least_bytes),
+                           .purpose = Purpose::ray_buffers});
 }
 
 FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
@@ -61,13 +64,26 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     bounce_ = make_kernel(device, "bounce");
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
+    make_buffers();
+    if (settings.method == RenderMethod::hybrid)
+        rasteriser_ =
+            std::make_unique<Rasteriser>(tracer, RasterBuffers{.vertices = &points_, .items = &shadow_list_});
+}
+
+void PathTracer::make_buffers() {
+    const Device& device = tracer_.device();
+    // First hits by drawing borrow what only shading needs.
+    const bool is_lent = settings_.method == RenderMethod::hybrid;
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
-    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_);
+    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
+                                                    is_lent ? RasterBuffers::kLeastVertexBytes : 0);
     film_sums_ = make_buffer<scalar::FilmSumsData>(device, "film_sums", capacity_);
     path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
-    next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_);
-    shadow_list_ = make_buffer<uint32_t>(device, "shadow_list", capacity_);
-    BindingTable& bindings = tracer.bindings();
+    next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_,
+                                            is_lent ? capacity_ * RasterBuffers::kNearestBytes : 0);
+    shadow_list_ =
+        make_buffer<uint32_t>(device, "shadow_list", capacity_, is_lent ? RasterBuffers::kLeastItemBytes : 0);
+    BindingTable& bindings = tracer_.bindings();
     lights_.bind(bindings);
     bindings.bind(scalar::kBindPaths, paths_);
     bindings.bind(scalar::kBindPoints, points_);
@@ -126,7 +142,8 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     scalar::PathPush push = make_push(sample_index);
     push.count = uint32_t(pixels.count);
     for (; push.count > 0; ++push.depth) {
-        CastStatistics cast = tracer_.closest_hits(path_list_, push.count);
+        CastStatistics cast = rasteriser_ && push.depth == 0 ? rasteriser_->first_hits(camera)
+                                                             : tracer_.closest_hits(path_list_, push.count);
         cast.depth = int(push.depth);
         add_cast(batch_casts_, cast);
         const NextRays next = shade_depth(push);

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/vulkan/device_lights.h"
+#include "engine/vulkan/rasteriser.h"
 #include "engine/vulkan/tracer.h"
 #include "film/film.h"
 #include "relief/render.h"
@@ -47,6 +49,7 @@ class PathTracer {
         uint32_t path_count, shadow_count;
     };
     void trace_batch(Film& film, PixelRange pixels, SampleRange samples);
+    void make_buffers();
     void trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index);
     NextRays shade_depth(const scalar::PathPush& push);
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
@@ -61,6 +64,7 @@ class PathTracer {
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_,
         shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
+    std::unique_ptr<Rasteriser> rasteriser_;          ///< of the hybrid method
     std::vector<CastStatistics> casts_, batch_casts_; ///< of whole batches; of the one under way
     double film_s_ = 0;                               ///< of the host, for sums that come back
 };

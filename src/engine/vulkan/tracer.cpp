@@ -202,7 +202,8 @@ void Tracer::Implementation::sort_pairs() {
     const uint64_t most_pairs = uint64_t(push.count) * push.slots;
     sort.record(commands, most_pairs, uint32_t(std::bit_width(tree_count())), kPairCountWord);
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
-    commands.dispatch_indirect(kernels.find_jobs, buffers.arguments, 16 * scalar::kArgumentsPairs, push);
+    commands.dispatch_indirect(kernels.find_jobs, buffers.arguments, kArgumentBytes * scalar::kArgumentsPairs,
+                               push);
 }
 
 /// Jobs in waves, as many at a time as the pool has room for; then the rays take their hits.
@@ -230,15 +231,16 @@ void Tracer::Implementation::build_and_trace() {
     clear(wave_counts, offsetof(CounterData, path_count) - wave_counts);
     cache.begin_wave(push, buffers.counters, commands);
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
-    commands.dispatch_indirect(kernels.bottom_cache, buffers.arguments, 16 * scalar::kArgumentsJobs, push);
+    commands.dispatch_indirect(kernels.bottom_cache, buffers.arguments,
+                               kArgumentBytes * scalar::kArgumentsJobs, push);
     if (kernels.is_fused) return run_fused();
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin)
         commands.dispatch_indirect(kernels.bottom_build[bin], buffers.arguments,
-                                   16 * (scalar::kArgumentsBuilds + bin), push);
+                                   kArgumentBytes * (scalar::kArgumentsBuilds + bin), push);
     commands.begin_stage(Stage::bottom_traversal);
-    commands.dispatch_indirect(kernels.patch_traversal, buffers.arguments, 16 * scalar::kArgumentsPairs,
-                               push);
+    commands.dispatch_indirect(kernels.patch_traversal, buffers.arguments,
+                               kArgumentBytes * scalar::kArgumentsPairs, push);
 }
 
 /// Resident groups work off the queue of jobs; a device that bounds loops gets as many launches as it takes.
@@ -256,7 +258,8 @@ void Tracer::Implementation::run_fused() {
         } while (counters.next_job < counters.job_count);
     }
     if (kernels.has_leftover)
-        commands.dispatch_indirect(kernels.leftover, buffers.arguments, 16 * scalar::kArgumentsPairs, push);
+        commands.dispatch_indirect(kernels.leftover, buffers.arguments,
+                                   kArgumentBytes * scalar::kArgumentsPairs, push);
 }
 
 /// Every ray walked to its end, every pair traced, every job served: a device that drops work must not go

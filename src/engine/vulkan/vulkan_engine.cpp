@@ -7,10 +7,13 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/timer.h"
 #include "engine/vulkan/path_tracer.h"
 #include "engine/vulkan/ray_batch.h"
 #include "engine/vulkan/station.h"
+#include "relief/error.h"
 
 namespace relief {
 
@@ -41,6 +44,7 @@ class VulkanEngine final : public Engine {
     std::unique_ptr<Tracer> make_tracer(uint32_t rays, uint32_t share) const;
     Station<RayBatch>& batches() const;
     uint64_t count_rays() const;
+    void require_drawable(const Window& window) const;
     bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
 
     std::shared_ptr<const PreparedScene> scene_;
@@ -65,8 +69,20 @@ std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share)
     return std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
 }
 
+/// Before the hybrid method draws into a window.
+void VulkanEngine::require_drawable(const Window& window) const {
+    const uint32_t most = device_->max_draw_size();
+    if (settings_.method != RenderMethod::hybrid ||
+        (uint32_t(window.x1 - window.x0) <= most && uint32_t(window.y1 - window.y0) <= most))
+        return;
+    throw Error(ErrorKind::usage,
+                {fmt::format("the hybrid method draws at most {} pixels a side on this device", most),
+                 device_->description().name, "--crop or --tile, or --method compute or fragment"});
+}
+
 bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     const Window& window = film.window();
+    require_drawable(window);
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
     const Timer set_up;
     // Every path has a ray and a shadow ray.
@@ -164,7 +180,8 @@ std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
 
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings) {
-    const vulkan::Device::Config config{.index = settings.device, .pipeline_cache = settings.pipeline_cache};
+    const vulkan::Device::Config config{
+        .index = settings.device, .method = settings.method, .pipeline_cache = settings.pipeline_cache};
     return vulkan::make_engine_on(std::make_unique<vulkan::Device>(config), std::move(scene), settings);
 }
 

@@ -133,9 +133,13 @@ struct Feature {
 #name, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,                                        \
             offsetof(VkPhysicalDeviceVulkan13Features, name)                                                 \
     }
-constexpr Feature kFeatures[] = {CORE_FEATURE(shaderInt64),     FEATURE_12(shaderBufferInt64Atomics),
-                                 FEATURE_12(scalarBlockLayout), FEATURE_12(hostQueryReset),
-                                 FEATURE_13(synchronization2),  FEATURE_13(maintenance4)};
+constexpr Feature kFeatures[] = {CORE_FEATURE(shaderInt64),
+                                 FEATURE_12(shaderBufferInt64Atomics),
+                                 FEATURE_12(scalarBlockLayout),
+                                 FEATURE_12(hostQueryReset),
+                                 FEATURE_13(synchronization2),
+                                 FEATURE_13(maintenance4),
+                                 CORE_FEATURE(fragmentStoresAndAtomics)};
 
 VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* features) {
     next_of_instances.find(device).get_features(device, features);

@@ -37,6 +37,8 @@ struct AllStructs {
     WalkPush walk_push;
     BuildState build_state;
     BuildPush build_push;
+    RasterItem raster_item;
+    RasterPush raster_push;
 };
 
 // clang-format off
@@ -147,6 +149,12 @@ struct AllStructs {
     FIELD(s.upper[0]) FIELD(s.upper[1]) FIELD(s.upper[2])
 #define FIELDS_BUILD_PUSH(s) \
     FIELD(s.primitive_count) FIELD(s.max_leaf_size) FIELD(s.level) FIELD(s.step)
+#define FIELDS_RASTER_ITEM(s) \
+    FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.first_row) FIELD(s.first_vertex) FIELD(s.first_cell)
+#define FIELDS_RASTER_PUSH(s) \
+    FIELD3(s.origin) FIELD3(s.corner) FIELD3(s.step_x) FIELD3(s.step_y) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) \
+    FIELD(s.height) FIELD(s.first_pixel) FIELD(s.count) FIELD(s.first_row) FIELD(s.row_count) FIELD(s.item_count) \
+    FIELD(s.vertex_count)
 #define ALL_FIELDS(s) \
     FIELDS_INSTANCE(s.instance) \
     FIELDS_SURFACE(s.surface) \
@@ -184,5 +192,7 @@ struct AllStructs {
     FIELDS_WALK_STATE(s.walk_state) \
     FIELDS_WALK_PUSH(s.walk_push) \
     FIELDS_BUILD_STATE(s.build_state) \
-    FIELDS_BUILD_PUSH(s.build_push)
+    FIELDS_BUILD_PUSH(s.build_push) \
+    FIELDS_RASTER_ITEM(s.raster_item) \
+    FIELDS_RASTER_PUSH(s.raster_push)
 // clang-format on

@@ -24,14 +24,6 @@ CandidateData find_ranked(uint place, uint rank) {
     return candidates[place * push.slots];
 }
 
-/// Ties go to the lower instance, then the lower patch, then the lower cell.
-bool is_better(HitData a, HitData b) {
-    if (b.instance == kNone || a.t != b.t) return b.instance == kNone || a.t < b.t;
-    if (a.instance != b.instance) return a.instance < b.instance;
-    if (a.patch_index != b.patch_index) return a.patch_index < b.patch_index;
-    return a.cell < b.cell;
-}
-
 void take_hit(uint ray_index, uint place) {
     uint64_t packed_hit = nearest[place];
     uint rank = uint(packed_hit);

@@ -32,14 +32,13 @@ void main() {
     SurfaceData s = surfaces[instance.surface];
     if (s.map == kNone) return; // a polygon knows already
     uvec2 cell = uvec2(cell_column(hit.cell), cell_row(hit.cell));
-    precise float cell_size = 1.0 / float(1u << packed_patch_level(hit.levels));
     vec2 within = vec2(0.5);
     if (kIsBoxLeaf == 0u) {
         uint is_upper = cell_is_upper(hit.cell);
-        vec2 w = find_weights(s, hit, enter_object(rays[ray_index], instance), cell, is_upper);
-        within = is_upper != 0u ? vec2(w.x, w.x + w.y) : vec2(w.x + w.y, w.y);
+        vec2 weights = find_weights(s, hit, enter_object(rays[ray_index], instance), cell, is_upper);
+        within = place_in_cell(weights, is_upper);
     }
-    precise vec2 uv = (vec2(cell) + within) * cell_size;
+    vec2 uv = place_on_patch(hit.cell, packed_patch_level(hit.levels), within);
     hits[ray_index].u = uv.x;
     hits[ray_index].v = uv.y;
 }

@@ -19,11 +19,6 @@ layout(scalar, set = 0, binding = kBindBuildBoxes) buffer Boxes { float boxes[];
 layout(set = 0, binding = kBindPairs) buffer Pairs { uvec2 pairs[]; };             ///< (code, primitive), sorted
 layout(set = 0, binding = kBindSortedPairs) buffer SortedCodes { uvec2 sorted_codes[]; }; ///< of 63 bits
 
-uint invocation_index() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-}
-
 struct NodeBox {
     vec3 lower, upper;
 };

@@ -13,6 +13,7 @@
 #include "shared/path.h"
 #include "shared/surface_point.h"
 #include "shared/device_rays.h"
+#include "shared/pixel_order.h"
 #include "shared/device_paths.h"
 
 layout(scalar, set = 0, binding = kBindMaterials) readonly buffer Materials { MaterialData materials[]; };

@@ -1,4 +1,4 @@
-// Group counts of the launches that follow, from what was counted on the device.
+// Sizes of the launches that follow, as work groups and as full-screen draws, from what was counted on the device.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engine/vulkan/shaders/kernel.glsl"
@@ -15,9 +15,16 @@ const uint kMostGroups = 65535u;
 void write_groups(uint place, uint items, uint items_per_group) {
     uint groups = (items + items_per_group - 1u) / items_per_group;
     uint rows = (groups + kMostGroups - 1u) / kMostGroups;
-    arguments[4u * place] = rows > 1u ? kMostGroups : groups;
-    arguments[4u * place + 1u] = rows;
-    arguments[4u * place + 2u] = groups > 0u ? 1u : 0u;
+    uint word = kArgumentWords * place;
+    arguments[word] = rows > 1u ? kMostGroups : groups;
+    arguments[word + 1u] = rows;
+    arguments[word + 2u] = groups > 0u ? 1u : 0u;
+    uint screen_rows = (groups + kScreenColumns - 1u) / kScreenColumns;
+    uint draw = word + kArgumentDrawWord;
+    arguments[draw] = kScreenVertexCount;
+    arguments[draw + 1u] = 1u;
+    arguments[draw + 2u] = kScreenVertexCount * screen_rows;
+    arguments[draw + 3u] = 0u;
 }
 
 void main() {

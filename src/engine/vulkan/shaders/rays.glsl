@@ -28,4 +28,24 @@ ObjectRay enter_object(RayData ray, InstanceData instance) {
 uint64_t make_nearest(float t, uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }
 float nearest_distance(uint64_t packed_hit) { return unorder_float(uint(packed_hit >> 32)); }
 
+/// Ties go to the lower instance, then the lower patch, then the lower cell.
+bool is_better(HitData a, HitData b) {
+    if (b.instance == kNone || a.t != b.t) return b.instance == kNone || a.t < b.t;
+    if (a.instance != b.instance) return a.instance < b.instance;
+    if (a.patch_index != b.patch_index) return a.patch_index < b.patch_index;
+    return a.cell < b.cell;
+}
+
+/// Place in a cell of weights (b, c) of its lower triangle 00 10 11 or its upper one 00 11 01.
+vec2 place_in_cell(vec2 weights, uint is_upper) {
+    return is_upper != 0u ? vec2(weights.x, weights.x + weights.y) : vec2(weights.x + weights.y, weights.y);
+}
+
+/// Place on a patch of `level` of a place in one of its cells.
+vec2 place_on_patch(uint cell, uint level, vec2 within) {
+    precise float cell_size = 1.0 / float(1u << level);
+    precise vec2 uv = (vec2(cell_column(cell), cell_row(cell)) + within) * cell_size;
+    return uv;
+}
+
 #endif

@@ -33,12 +33,6 @@ layout(set = 0, binding = kBindHalfTexels) uniform samplerBuffer half_texels;
 #define kInfinity uintBitsToFloat(0x7f800000u)
 const uint kNoTile = 255u;
 
-/// Number of this invocation in a launch of one or two dimensions.
-uint invocation_index() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-}
-
 vec3 load_position(SurfaceData s, uint vertex) {
     int first = int(3u * (s.first_vertex + vertex));
     return vec3(texelFetch(positions, first).x, texelFetch(positions, first + 1).x,

@@ -145,8 +145,9 @@ void offer_triangle(uint patch_index, vec3 a, vec3 b, vec3 c, uint is_upper) {
     best.t = found.t;
     best.instance = instance_index;
     best.patch_index = patch_index;
-    best.u = is_upper != 0u ? found.weight_b : found.weight_b + found.weight_c;
-    best.v = is_upper != 0u ? found.weight_b + found.weight_c : found.weight_c;
+    vec2 uv = place_in_cell(vec2(found.weight_b, found.weight_c), is_upper);
+    best.u = uv.x;
+    best.v = uv.y;
     best.cell = is_upper;
     best.levels = 0u;
 }

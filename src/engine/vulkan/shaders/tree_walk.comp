@@ -30,8 +30,7 @@ void keep_leaf(uint ray) {}
 #endif
 
 void main() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    uint ray = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+    uint ray = invocation_index();
     if (ray >= push.ray_count) return;
     begin_walk(rays[ray]);
     choose_start(ray);
