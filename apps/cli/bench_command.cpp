@@ -15,6 +15,7 @@
 
 #include "bench/paper1.h"
 #include "bench/paper2.h"
+#include "bench/paper3.h"
 #include "commands.h"
 #include "engine_options.h"
 #include "exit_codes.h"
@@ -28,8 +29,6 @@ namespace {
 
 constexpr int kMaxRuns = 1000;
 constexpr int64_t kMaxLimitMegabytes = int64_t(1) << 30;
-
-constexpr std::array<std::string_view, 2> kSuites = {"paper1", "paper2"};
 
 struct BenchOptions {
     std::string suite = "paper1";
@@ -90,7 +89,8 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
 
 SuiteResult run_paper1_suite(const BenchOptions& o, const bench::Report& report) {
     if (!o.meshes.empty())
-        throw Error(ErrorKind::usage, {"paper1 measures scenes of its own", "--mesh", "paper2 takes meshes"});
+        throw Error(ErrorKind::usage,
+                    {"paper1 measures scenes of its own", "--mesh", "paper2 and paper3 take meshes"});
     bench::Paper1Options options = o.paper1;
     const int level = options.settings.level;
     options.settings = make_settings(o, 1280, 720);
@@ -108,6 +108,7 @@ void refuse_choices(const BenchOptions& o) {
     if (s.structure != plain.structure) option = "--structure";
     if (s.traversal != plain.traversal) option = "--traversal";
     if (s.bottom != plain.bottom) option = "--bottom";
+    if (s.method != plain.method) option = "--method";
     if (s.isa != plain.isa) option = "--isa";
     if (!o.paper1_only.empty()) option = o.paper1_only.front();
     if (option)
@@ -126,16 +127,46 @@ SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report)
     return {result, bench::make_paper2_files(result)};
 }
 
-SuiteResult run_suite(const BenchOptions& o, const bench::Report& report) {
-    if (o.suite == "paper1") return run_paper1_suite(o, report);
-    return run_paper2_suite(o, report);
+SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report) {
+    refuse_choices(o);
+    bench::Paper3Options options;
+    options.settings = make_settings(o, 640, 360);
+    options.scenes = check_scenes(o, bench::paper3_scenes());
+    options.meshes = load_meshes(o);
+    options.runs = o.runs.value_or(options.runs);
+    const auto result = bench::run_paper3(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_paper3_files(result)};
+}
+
+struct Suite {
+    std::string_view name, help;
+    SuiteResult (*run)(const BenchOptions& options, const bench::Report& report);
+};
+
+constexpr std::array<Suite, 3> kSuites = {
+    {{"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
+     {"paper2", "builders and traversals over triangle meshes", run_paper2_suite},
+     {"paper3", "structures, traversals and render methods of GRAPP 2019", run_paper3_suite}}};
+
+const Suite& find_suite(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Suite& suite : kSuites) {
+        if (suite.name == name) return suite;
+        names.push_back(suite.name);
+    }
+    throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}', known: {}", name, fmt::join(names, ", ")),
+                                   "", suggest_word(name, names)});
+}
+
+std::string describe_suites() {
+    std::string text;
+    for (const Suite& suite : kSuites)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
+    return text;
 }
 
 int run_bench(const BenchOptions& options) {
-    if (std::find(kSuites.begin(), kSuites.end(), options.suite) == kSuites.end())
-        throw Error(ErrorKind::usage,
-                    {fmt::format("unknown suite '{}', known: {}", options.suite, fmt::join(kSuites, ", ")),
-                     "", suggest_word(options.suite, kSuites)});
+    const Suite& suite = find_suite(options.suite);
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
@@ -143,12 +174,12 @@ int run_bench(const BenchOptions& options) {
     const bench::Report report = [&](const std::string& line) {
         if (!options.is_quiet) fmt::print(stderr, "relief bench: {}\n", line);
     };
-    const SuiteResult suite = run_suite(options, report);
-    for (const bench::ReportFile& file : suite.files) {
+    const SuiteResult outcome = suite.run(options, report);
+    for (const bench::ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
         fmt::print("wrote {}\n", (folder / file.name).string());
     }
-    print_goals(suite.result["goals"]);
+    print_goals(outcome.result["goals"]);
     return kExitDone;
 }
 
@@ -158,12 +189,15 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
     };
     add("--runs", "N", "that count, after one to warm up; default 5",
         [&o](const std::string& text) { o.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
-    add("--scenes", "LIST", "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; default: all",
+    add("--scenes", "LIST",
+        "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
+        "default: all",
         [&o](const std::string& text) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
         });
-    verb.add_option("--mesh", o.meshes, "paper2: measure this mesh, too; may be repeated")->type_name("FILE");
+    verb.add_option("--mesh", o.meshes, "paper2 and paper3: measure this mesh, too; may be repeated")
+        ->type_name("FILE");
     add("--tessellated-limit", "MB", "leave out pre-tessellated scenes above; default 4096",
         [&o](const std::string& text) {
             o.paper1_only.push_back("--tessellated-limit");
@@ -178,7 +212,7 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
     const auto add = [&](const char* name, const char* value, const char* help, auto parse) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
-    add("--size", "WxH", "pixels; default 1280x720 for paper1, 320x180 for paper2",
+    add("--size", "WxH", "pixels; default 1280x720, 320x180 and 640x360 for paper1, 2 and 3",
         [&o](const std::string& text) {
             const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
             o.size = {int(size[0]), int(size[1])};
@@ -194,9 +228,7 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
 
 Command add_bench(CLI::App& verb) {
     const auto options = std::make_shared<BenchOptions>();
-    verb.add_option("suite", options->suite,
-                    "paper1: table and figures of Harada 2015 (default); paper2: trees and traversals")
-        ->type_name("SUITE");
+    verb.add_option("suite", options->suite, describe_suites())->type_name("SUITE");
     verb.add_option("-o", options->folder, "folder for JSON, CSV and charts; default: the suite's name")
         ->type_name("DIR");
     add_run_options(verb, *options);
