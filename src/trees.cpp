@@ -23,6 +23,25 @@ std::unique_ptr<TreeWorkshop> make_workshop(TriangleSoup soup, const RenderSetti
 #endif
 }
 
+void refuse(std::string message, const char* hint) {
+    throw Error(ErrorKind::usage, {std::move(message), "trees over a mesh", hint});
+}
+
+void check_cast(std::optional<TreeKind> kind, const TreeQuery& query, const TreeCastData& data) {
+    if (!kind) refuse("there is no tree yet", "build one first");
+    const std::vector<TraversalKind> valid = tree_traversals(*kind);
+    if (std::find(valid.begin(), valid.end(), query.traversal) == valid.end())
+        refuse(fmt::format("{} does not walk the tree {}", traversal_name(query.traversal), tree_name(*kind)),
+               "choose one of tree_traversals()");
+    if (data.hits.size() != data.rays.size() || (!data.keys.empty() && data.keys.size() != data.rays.size()))
+        refuse(fmt::format("{} rays but room for {} hits and {} keys", data.rays.size(), data.hits.size(),
+                           data.keys.size()),
+               "give spans of equal length");
+    const bool is_trail =
+        query.traversal == TraversalKind::trail || query.traversal == TraversalKind::pair_trail;
+    if (!data.keys.empty() && !is_trail) refuse("only trails start at a key", "leave the keys out");
+}
+
 } // namespace
 
 std::vector<TreeKind> tree_kinds() {
@@ -80,17 +99,18 @@ uint32_t MeshTrees::triangle_count() const { return workshop_->soup().triangle_c
 const std::string& MeshTrees::device_name() const { return workshop_->device_name(); }
 double MeshTrees::copy_bandwidth() const { return workshop_->copy_bandwidth(); }
 
-TreeBuild MeshTrees::build(TreeKind kind) {
+TreeBuild MeshTrees::build(TreeKind kind, int heap_levels) {
+    if (heap_levels < 0 || heap_levels > DenseHeap::kMaxLevels)
+        refuse(fmt::format("a heap of {} levels", heap_levels), "0 to 26");
     TreeBuild report;
-    with_threads(threads_, [&] { report = workshop_->build(kind); });
+    kind_.reset();
+    with_threads(threads_, [&] { report = workshop_->build(kind, heap_levels); });
+    kind_ = kind;
     return report;
 }
 
 TreeCast MeshTrees::cast(const TreeQuery& query, const TreeCastData& data) {
-    if (data.hits.size() != data.rays.size() || (!data.keys.empty() && data.keys.size() != data.rays.size()))
-        throw Error(ErrorKind::usage, {fmt::format("{} rays but room for {} hits and {} keys",
-                                                   data.rays.size(), data.hits.size(), data.keys.size()),
-                                       "", "give spans of equal length"});
+    check_cast(kind_, query, data);
     TreeCast result;
     with_threads(threads_, [&] { result = workshop_->cast(query, data); });
     return result;

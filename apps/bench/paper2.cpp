@@ -89,6 +89,9 @@ class MeshMeasure {
     }
 
     Json run(const std::string& name) {
+        for (const Paper2Model& model : kPaper2Models)
+            if (model.stands_for == name && options_.detail == MeshDetail::full)
+                heap_levels_ = int(model.levels);
         Json builds = Json::array();
         for (const TreeKind kind : tree_kinds()) builds.push_back(measure_tree(kind));
         Json rays;
@@ -106,11 +109,11 @@ class MeshMeasure {
   private:
     Json measure_tree(TreeKind kind) {
         report_(fmt::format("build {}", tree_name(kind)));
-        trees_.build(kind); // warms up
+        trees_.build(kind, heap_levels_); // warms up
         std::vector<TreeBuild> builds;
         double spent = 0;
         do {
-            builds.push_back(trees_.build(kind));
+            builds.push_back(trees_.build(kind, heap_levels_));
             spent += builds.back().seconds;
         } while (int(builds.size()) < options_.runs && spent < kBuildBudgetSeconds);
         for (const TraversalKind traversal : tree_traversals(kind)) {
@@ -197,6 +200,7 @@ class MeshMeasure {
     std::vector<std::vector<TreeHit>> expected_;
     TreeCast counts_; ///< of the last cast
     int combinations_ = 0;
+    int heap_levels_ = 0; ///< those of the paper where it has such a mesh
     Json casts_ = Json::array();
 };
 
@@ -218,7 +222,7 @@ Json make_head(const Paper2Options& options) {
         head["paper_models"].push_back({{"stands_for", m.stands_for},
                                         {"model", m.model},
                                         {"triangles", m.triangles},
-                                        {"heap_levels", m.depth},
+                                        {"heap_levels", m.levels},
                                         {"frames_per_s", m.frames_per_second},
                                         {"triangles_a_leaf", m.triangles_a_leaf},
                                         {"used_share", m.used_share},

@@ -13,7 +13,7 @@ namespace relief::bench {
 /// are worked out from the paper's figures.
 struct Paper2Model {
     std::string_view stands_for, model;
-    double triangles, depth, frames_per_second, triangles_a_leaf, used_share, heap_bytes;
+    double triangles, levels, frames_per_second, triangles_a_leaf, used_share, heap_bytes;
 };
 
 /// 0 frames a second: the paper prints a bar without a number.

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -101,10 +103,12 @@ class MeshTrees {
     uint32_t triangle_count() const;
     const std::string& device_name() const;
 
-    /// Takes the place of the tree before. Trees deeper than 62 levels are cut off there.
-    TreeBuild build(TreeKind kind);
+    /// Takes the place of the tree before. Trees deeper than 62 levels are cut off there. `heap_levels`, of
+    /// TreeKind::heap alone: 2^heap_levels slots, [1, 26]; 0: about four slots a triangle.
+    TreeBuild build(TreeKind kind, int heap_levels = 0);
 
-    /// Throws Error{usage} for a traversal that is not among tree_traversals of the tree built last.
+    /// Throws Error{usage} where nothing is built, for a traversal that is not among tree_traversals of the
+    /// tree, and for spans of other lengths.
     TreeCast cast(const TreeQuery& query, const TreeCastData& data);
 
     /// Bytes a second that copies read and write in the device's memory; 0 for the CPU engine.
@@ -112,6 +116,7 @@ class MeshTrees {
 
   private:
     std::unique_ptr<TreeWorkshop> workshop_;
+    std::optional<TreeKind> kind_; ///< of the tree built last
     int threads_ = 0;
 };
 

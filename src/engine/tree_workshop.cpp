@@ -51,7 +51,7 @@ SahBvhBuilder::Config make_wide_config() {
     return config;
 }
 
-HostTree build_tree(std::span<const Box> boxes, TreeKind kind) {
+HostTree build_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) {
     switch (kind) {
     case TreeKind::sah:
         return link(build_sah(boxes, {}));
@@ -62,7 +62,7 @@ HostTree build_tree(std::span<const Box> boxes, TreeKind kind) {
     case TreeKind::lbvh63:
         return link(build_linear(boxes, 63));
     case TreeKind::heap:
-        return LbvhBuilder::build_heap(boxes, {});
+        return LbvhBuilder::build_heap(boxes, {30, heap_levels});
     case TreeKind::succinct_lbvh:
         return pack(build_linear(boxes, 30));
     case TreeKind::succinct_sah:
@@ -138,9 +138,9 @@ std::vector<Box> compute_triangle_boxes(const TriangleSoup& soup) {
     return boxes;
 }
 
-BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind) {
+BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) {
     const Timer timer;
-    BuiltTree built{build_tree(boxes, kind), {}};
+    BuiltTree built{build_tree(boxes, kind, heap_levels), {}};
     const double seconds = timer.seconds();
     built.report = std::visit([](const auto& tree) { return describe(tree); }, built.tree);
     built.report.seconds = seconds;

@@ -33,7 +33,7 @@ class TreeWorkshop {
     const std::string& device_name() const { return device_name_; }
     double copy_bandwidth() const { return copy_bandwidth_; }
 
-    virtual TreeBuild build(TreeKind kind) = 0;
+    virtual TreeBuild build(TreeKind kind, int heap_levels) = 0;
     /// The traversal is one of tree_traversals.
     virtual TreeCast cast(const TreeQuery& query, const TreeCastData& data) = 0;
 
@@ -53,7 +53,7 @@ struct BuiltTree {
     HostTree tree;
     TreeBuild report;
 };
-BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind);
+BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels);
 
 /// The name that the walks of structures/walks.h have.
 Traversal get_walk(TraversalKind traversal);

@@ -193,9 +193,9 @@ class CpuTreeWorkshop final : public TreeWorkshop {
         device_name_ = processor_name();
     }
 
-    TreeBuild build(TreeKind kind) override {
+    TreeBuild build(TreeKind kind, int heap_levels) override {
         tree_ = {}; // makes room
-        BuiltTree built = build_host_tree(boxes_, kind);
+        BuiltTree built = build_host_tree(boxes_, kind, heap_levels);
         tree_ = std::move(built.tree);
         return built.report;
     }

@@ -39,7 +39,7 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         copy_bandwidth_ = measure_copy_bandwidth(device_);
     }
 
-    TreeBuild build(TreeKind kind) override {
+    TreeBuild build(TreeKind kind, int heap_levels) override {
         tree_.reset(); // makes room
         if (kind == TreeKind::lbvh30 || kind == TreeKind::lbvh63) {
             LbvhBuilder::Config config;
@@ -48,10 +48,10 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
             return describe();
         }
         if (kind == TreeKind::heap) {
-            tree_ = builder_.build_heap(mesh_, {});
+            tree_ = builder_.build_heap(mesh_, {30, heap_levels});
             return describe();
         }
-        const BuiltTree built = build_host_tree(boxes_, kind);
+        const BuiltTree built = build_host_tree(boxes_, kind, heap_levels);
         tree_ = std::visit([this](const auto& tree) { return upload_tree(device_, tree); }, built.tree);
         return built.report;
     }
