@@ -85,12 +85,13 @@ std::string describe(const RenderSettings& s) {
                        method_name(s.method));
 }
 
+/// Runs below 0 warm up.
 void render_way(const Scene& scene, Way& way, int run) {
     if (!way.refusal.empty()) return;
     try {
         RenderResult result = render(scene, way.settings);
-        if (run > 0) way.runs.push_back(std::move(result.statistics));
-        if (run == 0) way.picture = std::move(result.image);
+        if (run >= 0) way.runs.push_back(std::move(result.statistics));
+        if (!way.picture) way.picture = std::move(result.image);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::out_of_memory && error.kind() != ErrorKind::device_missing) throw;
         way.refusal = error.what();
@@ -142,7 +143,7 @@ Json make_head(const Paper3Options& options) {
                         {"spp", 1},
                         {"bounces", 0},
                         {"runs", options.runs},
-                        {"warm_up_runs", 1},
+                        {"warm_up_runs", options.warm_up_runs},
                         {"meshes", options.detail == MeshDetail::full ? "full" : "reduced"},
                         {"scenes", options.scenes}};
     head["comparable"] = kComparable;
@@ -185,10 +186,10 @@ class Paper3 {
         RenderSettings base = options_.settings;
         base.spp = 1, base.bounces = 0;
         std::vector<Way> ways = list_ways(base);
-        for (int run = 0; run <= options_.runs; ++run)
+        for (int run = -options_.warm_up_runs; run < options_.runs; ++run)
             for (Way& way : ways) {
                 report_(fmt::format("{}: {}, {}", name, describe(way.settings),
-                                    run == 0 ? std::string("warm-up") : fmt::format("run {}", run)));
+                                    run < 0 ? std::string("warm-up") : fmt::format("run {}", run + 1)));
                 render_way(scene, way, run);
             }
         Json entry = {{"scene", name}, {"ways", Json::array()}};
@@ -212,7 +213,7 @@ std::vector<std::string> paper3_scenes() { return {"body", "hall", "knot", "pump
 
 Paper3Options make_quick_options(Paper3Options options) {
     options.settings.width = 32, options.settings.height = 18;
-    options.runs = 1;
+    options.runs = 1, options.warm_up_runs = 0;
     options.detail = MeshDetail::reduced;
     return options;
 }

@@ -19,7 +19,8 @@ std::vector<std::string> paper3_scenes();
 
 struct Paper3Options {
     RenderSettings settings; ///< engine, device, size, threads; all else is the suite's
-    int runs = 5;            ///< that count, after one that does not; >= 1
+    int runs = 5;            ///< that count; >= 1
+    int warm_up_runs = 1;    ///< before them
     std::vector<std::string> scenes = paper3_scenes();
     std::vector<Scene> meshes; ///< the user's
     MeshDetail detail = MeshDetail::full;
