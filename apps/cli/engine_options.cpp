@@ -40,15 +40,6 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
             s.bottom = parse_word("--bottom", text, words);
             o.vulkan_only.push_back("--bottom");
         });
-    add("--method", "NAME",
-        "of the Vulkan engine: compute (default), fragment, or hybrid: first hits are drawn",
-        [&o, &s](const std::string& text) {
-            constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
-                                                               {"fragment", RenderMethod::fragment},
-                                                               {"hybrid", RenderMethod::hybrid}}};
-            s.method = parse_word("--method", text, words);
-            o.vulkan_only.push_back("--method");
-        });
     add("--threads", "N", "0: all cores (default)",
         [&s](const std::string& text) { s.threads = int(parse_integer("--threads", text, 0, kMaxThreads)); });
     add("--isa", "NAME", "of the CPU engine: best (default), avx512, avx2, sse4, neon, scalar",

@@ -16,7 +16,7 @@ struct EngineOptions {
     std::vector<std::string> vulkan_only, cpu_only;
 };
 
-/// Adds --engine, --device, --bottom, --method, --threads and --isa; both structures must outlive the
+/// Adds --engine, --device, --bottom, --threads and --isa; both structures must outlive the
 /// parsing.
 void add_engine_options(CLI::App& verb, EngineOptions& options, RenderSettings& settings);
 

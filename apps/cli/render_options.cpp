@@ -132,6 +132,15 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
 
 void add_machine_options(CLI::App& verb, RenderOptions& o) {
     add_engine_options(verb, o.engine, o.settings);
+    add(verb, "--method", "NAME",
+        "of the Vulkan engine: compute (default), fragment, or hybrid: first hits are drawn",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
+                                                               {"fragment", RenderMethod::fragment},
+                                                               {"hybrid", RenderMethod::hybrid}}};
+            o.settings.method = parse_word("--method", text, words);
+            o.engine.vulkan_only.push_back("--method");
+        });
     add(verb, "--structure", "NAME", "of the scene: bvh", [](const std::string& text) {
         parse_word("--structure", text, std::array<Word<int>, 1>{{{"bvh", 0}}});
     });
