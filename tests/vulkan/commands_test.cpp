@@ -137,8 +137,8 @@ TEST_F(FullScreen, runs_every_invocation_once) {
     }
 }
 
-TEST_F(FullScreen, reads_its_rows_from_the_arguments_of_an_indirect_launch) {
-    constexpr uint32_t kRow = scalar::kScreenColumns * kFragmentGroup;
+TEST_F(FullScreen, reads_its_groups_from_the_arguments_of_an_indirect_launch) {
+    constexpr uint32_t kRow = scalar::kScreenColumns * kFragmentGroup, kRun = 300 * kFragmentGroup;
     const Buffer values(device_, {.name = "values", .bytes = 3 * kRow * 4});
     const Buffer arguments(device_, {.name = "arguments", .bytes = 64, .is_indirect = true});
     BindingTable bindings(device_);
@@ -147,13 +147,33 @@ TEST_F(FullScreen, reads_its_rows_from_the_arguments_of_an_indirect_launch) {
     commands.fill(values, 0, 3 * kRow * 4, 3);
     const uint64_t draw = 32 + scalar::kArgumentDrawWord * 4;
     commands.fill(arguments, 0, 64, 0);
-    commands.fill(arguments, draw, 4, scalar::kScreenVertexCount);
+    commands.fill(arguments, draw, 4, 300);
     commands.fill(arguments, draw + 4, 4, 1);
-    commands.fill(arguments, draw + 8, 4, 2 * scalar::kScreenVertexCount);
     commands.dispatch_indirect(kernel_, arguments, 32, AddIndexPush{3 * kRow, 2});
     commands.run();
     const std::vector<uint32_t> result = values.download<uint32_t>(3 * kRow);
-    for (uint32_t i = 0; i < 3 * kRow; ++i) ASSERT_EQ(result[i], i < 2 * kRow ? 6 + i : 3);
+    for (uint32_t i = 0; i < 3 * kRow; ++i) ASSERT_EQ(result[i], i < kRun ? 6 + i : 3);
+}
+
+/// Fragments that only complete a block read zeros, for ever, and take the loops of their neighbours on
+/// lavapipe.
+TEST_F(FullScreen, has_no_fragments_beside_its_own) {
+    constexpr uint32_t kCount = 3 * scalar::kScreenColumns * kFragmentGroup;
+    Buffer next(device_, {.name = "next", .bytes = kCount * 4});
+    const Buffer steps(device_, {.name = "steps", .bytes = kCount * 4});
+    std::vector<uint32_t> list(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) list[i] = i % 5 == 0 ? scalar::kNone : i - 1;
+    next.upload(list);
+    BindingTable bindings(device_);
+    bindings.bind(scalar::kBindFilm, next);
+    bindings.bind(scalar::kBindPaths, steps);
+    const Kernel kernel(device_,
+                        {"walk_list", {kFragmentGroup}, find_shader("walk_list_fragment"), kFullScreen});
+    vulkan::Commands commands(device_, bindings);
+    commands.dispatch(kernel, kCount, kCount);
+    commands.run();
+    const std::vector<uint32_t> result = steps.download<uint32_t>(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], i % 5) << i;
 }
 
 TEST_F(FullScreen, refuses_more_than_the_screen_holds) {
