@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/measure.h"
+#include "bench/report_file.h"
 #include "relief/render.h"
 
 namespace relief::bench {
@@ -32,10 +33,6 @@ Paper1Options make_quick_options(Paper1Options options);
 /// Error{usage} for a scene that is none of the paper's, and what rendering throws, apart from what is
 /// refused for want of memory: that is a result.
 nlohmann::ordered_json run_paper1(const Paper1Options& options, const Report& report);
-
-struct ReportFile {
-    std::string name, text;
-};
 
 /// paper1.json, paper1.csv and a chart for the table, each figure and, of the Vulkan engine, the forms of its
 /// bottom level.

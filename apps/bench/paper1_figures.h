@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "bench/paper_statement.h"
+
 namespace relief::bench {
 
 /// Table 1.1: memory of geometry and acceleration structure, bytes; decimal, as printed.
@@ -17,11 +19,7 @@ inline constexpr std::array<PaperMemory, 4> kPaperMemory = {
 
 inline constexpr double kPaperPartyFrameMilliseconds = 77;
 
-/// Statements to compare with, by the figure that they are about.
-struct PaperStatement {
-    std::string_view about, text;
-};
-
+/// By the figure that they are about.
 inline constexpr std::array<PaperStatement, 7> kPaperStatements = {
     {{"figure1_1", "Party renders in 77 ms a frame on an AMD FirePro W9100"},
      {"figure1_7", "pre-tessellation is faster only for Pumpkin, and slower for Bark"},

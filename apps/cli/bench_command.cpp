@@ -4,12 +4,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bench/paper1.h"
+#include "bench/paper2.h"
+#include "bench/paper3.h"
 #include "commands.h"
 #include "engine_options.h"
 #include "exit_codes.h"
@@ -28,7 +34,13 @@ struct BenchOptions {
     std::string suite = "paper1";
     std::filesystem::path folder;
     EngineOptions engine;
+    RenderSettings settings; ///< of the engine; the size is below
+    std::optional<std::pair<int, int>> size;
+    std::vector<std::string> scenes; ///< none: all of the suite
+    std::vector<std::string> meshes; ///< files
+    std::optional<int> runs;
     bench::Paper1Options paper1;
+    std::vector<const char*> paper1_only; ///< options given that only paper1 has
     bool is_quick = false, is_quiet = false;
 };
 
@@ -39,12 +51,122 @@ void print_goals(const nlohmann::ordered_json& goals) {
                    goal["unit"].get<std::string>(), goal["goal"].get<double>());
 }
 
-int run_bench(const BenchOptions& options) {
-    if (options.suite != "paper1") {
-        constexpr std::array<std::string_view, 1> suites = {"paper1"};
-        throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}'", options.suite), "",
-                                       suggest_word(options.suite, suites)});
+struct SuiteResult {
+    nlohmann::ordered_json result;
+    std::vector<bench::ReportFile> files;
+};
+
+/// The settings for a suite whose pictures are of that size unless the command says otherwise.
+RenderSettings make_settings(const BenchOptions& o, int width, int height) {
+    RenderSettings settings = o.settings;
+    std::tie(settings.width, settings.height) = o.size.value_or(std::pair(width, height));
+    return settings;
+}
+
+std::vector<std::string> check_scenes(const BenchOptions& o, const std::vector<std::string>& all) {
+    const std::vector<std::string_view> known(all.begin(), all.end());
+    for (const std::string& scene : o.scenes)
+        if (std::find(known.begin(), known.end(), scene) == known.end())
+            throw Error(ErrorKind::usage,
+                        {fmt::format("'{}' is not one of: {}", scene, fmt::join(known, ", ")), "--scenes",
+                         suggest_word(scene, known)});
+    return o.scenes.empty() ? all : o.scenes;
+}
+
+/// Meshes of files come with a camera; they are measured under the sun of our own scenes.
+std::vector<Scene> load_meshes(const BenchOptions& o) {
+    std::vector<Scene> scenes;
+    for (const std::string& file : o.meshes) {
+        Scene scene = load_mesh_scene(file, {});
+        scene.meshes.resize(1), scene.objects.resize(1);
+        scene.meshes[0].name = std::filesystem::path(file).filename().string();
+        scene.environment.reset();
+        scene.lights = make_structure_scene("body", MeshDetail::reduced).lights;
+        scenes.push_back(std::move(scene));
     }
+    return scenes;
+}
+
+SuiteResult run_paper1_suite(const BenchOptions& o, const bench::Report& report) {
+    if (!o.meshes.empty())
+        throw Error(ErrorKind::usage,
+                    {"paper1 measures scenes of its own", "--mesh", "paper2 and paper3 take meshes"});
+    bench::Paper1Options options = o.paper1;
+    const int level = options.settings.level;
+    options.settings = make_settings(o, 1280, 720);
+    options.settings.level = level;
+    options.scenes = check_scenes(o, bench::kPaper1Scenes);
+    options.runs = o.runs.value_or(options.runs);
+    const auto result = bench::run_paper1(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_paper1_files(result)};
+}
+
+/// Suites that measure all structures and traversals leave nothing of them to choose.
+void refuse_choices(const BenchOptions& o) {
+    const RenderSettings &s = o.settings, plain;
+    const char* option = nullptr;
+    if (s.structure != plain.structure) option = "--structure";
+    if (s.traversal != plain.traversal) option = "--traversal";
+    if (s.bottom != plain.bottom) option = "--bottom";
+    if (s.method != plain.method) option = "--method";
+    if (s.isa != plain.isa) option = "--isa";
+    if (!o.paper1_only.empty()) option = o.paper1_only.front();
+    if (option)
+        throw Error(ErrorKind::usage,
+                    {fmt::format("{} has no such option", o.suite), option, "it is one of paper1"});
+}
+
+SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report) {
+    refuse_choices(o);
+    bench::Paper2Options options;
+    options.settings = make_settings(o, 320, 180);
+    options.scenes = check_scenes(o, structure_scene_names());
+    options.meshes = load_meshes(o);
+    options.runs = o.runs.value_or(options.runs);
+    const auto result = bench::run_paper2(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_paper2_files(result)};
+}
+
+SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report) {
+    refuse_choices(o);
+    bench::Paper3Options options;
+    options.settings = make_settings(o, 640, 360);
+    options.scenes = check_scenes(o, bench::paper3_scenes());
+    options.meshes = load_meshes(o);
+    options.runs = o.runs.value_or(options.runs);
+    const auto result = bench::run_paper3(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_paper3_files(result)};
+}
+
+struct Suite {
+    std::string_view name, help;
+    SuiteResult (*run)(const BenchOptions& options, const bench::Report& report);
+};
+
+constexpr std::array<Suite, 3> kSuites = {
+    {{"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
+     {"paper2", "builders and traversals over triangle meshes", run_paper2_suite},
+     {"paper3", "structures, traversals and render methods of GRAPP 2019", run_paper3_suite}}};
+
+const Suite& find_suite(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Suite& suite : kSuites) {
+        if (suite.name == name) return suite;
+        names.push_back(suite.name);
+    }
+    throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}', known: {}", name, fmt::join(names, ", ")),
+                                   "", suggest_word(name, names)});
+}
+
+std::string describe_suites() {
+    std::string text;
+    for (const Suite& suite : kSuites)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
+    return text;
+}
+
+int run_bench(const BenchOptions& options) {
+    const Suite& suite = find_suite(options.suite);
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
@@ -52,26 +174,13 @@ int run_bench(const BenchOptions& options) {
     const bench::Report report = [&](const std::string& line) {
         if (!options.is_quiet) fmt::print(stderr, "relief bench: {}\n", line);
     };
-    const auto result =
-        bench::run_paper1(options.is_quick ? make_quick_options(options.paper1) : options.paper1, report);
-    for (const bench::ReportFile& file : bench::make_paper1_files(result)) {
+    const SuiteResult outcome = suite.run(options, report);
+    for (const bench::ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
         fmt::print("wrote {}\n", (folder / file.name).string());
     }
-    print_goals(result["goals"]);
+    print_goals(outcome.result["goals"]);
     return kExitDone;
-}
-
-std::vector<std::string> parse_scenes(const std::string& text) {
-    const std::vector<std::string_view> known(bench::kPaper1Scenes.begin(), bench::kPaper1Scenes.end());
-    const std::vector<std::string> scenes = split(text, ',');
-    for (const std::string& scene : scenes)
-        if (std::find(known.begin(), known.end(), scene) == known.end())
-            throw Error(ErrorKind::usage,
-                        {fmt::format("'{}' is not one of: {}", scene, fmt::join(known, ", ")), "--scenes",
-                         suggest_word(scene, known)});
-    if (scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
-    return scenes;
 }
 
 void add_run_options(CLI::App& verb, BenchOptions& o) {
@@ -79,43 +188,54 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
     add("--runs", "N", "that count, after one to warm up; default 5",
-        [&o](const std::string& text) { o.paper1.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
-    add("--scenes", "LIST", "of party,bark,barks,pumpkin; default: all",
-        [&o](const std::string& text) { o.paper1.scenes = parse_scenes(text); });
+        [&o](const std::string& text) { o.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
+    add("--scenes", "LIST",
+        "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
+        "default: all",
+        [&o](const std::string& text) {
+            o.scenes = split(text, ',');
+            if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
+        });
+    verb.add_option("--mesh", o.meshes, "paper2 and paper3: measure this mesh, too; may be repeated")
+        ->type_name("FILE");
     add("--tessellated-limit", "MB", "leave out pre-tessellated scenes above; default 4096",
         [&o](const std::string& text) {
+            o.paper1_only.push_back("--tessellated-limit");
             o.paper1.tessellated_limit_bytes =
                 uint64_t(parse_integer("--tessellated-limit", text, 0, kMaxLimitMegabytes)) << 20;
         });
-    verb.add_flag("--quick", o.is_quick, "64x36 pixels, one run: only shows that it works");
+    verb.add_flag("--quick", o.is_quick, "tiny pictures and meshes, one run: only shows that it works");
     verb.add_flag("-q", o.is_quiet, "no progress on stderr");
 }
 
-void add_setting_options(CLI::App& verb, RenderSettings& s) {
+void add_setting_options(CLI::App& verb, BenchOptions& o) {
     const auto add = [&](const char* name, const char* value, const char* help, auto parse) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
-    add("--size", "WxH", "pixels; default 1280x720", [&s](const std::string& text) {
-        const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
-        s.width = int(size[0]), s.height = int(size[1]);
-    });
-    add("--level", "auto|N", "from the size on screen (default), or 2^N cells a side",
-        [&s](const std::string& text) { s.level = parse_level(text); });
+    add("--size", "WxH", "pixels; default 1280x720, 320x180 and 640x360 for paper1, 2 and 3",
+        [&o](const std::string& text) {
+            const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
+            o.size = {int(size[0]), int(size[1])};
+        });
+    add("--level", "auto|N", "paper1: from the size on screen (default), or 2^N cells a side",
+        [&o](const std::string& text) {
+            o.paper1_only.push_back("--level");
+            o.paper1.settings.level = parse_level(text);
+        });
 }
 
 } // namespace
 
 Command add_bench(CLI::App& verb) {
     const auto options = std::make_shared<BenchOptions>();
-    verb.add_option("suite", options->suite, "paper1: table and figures of Harada 2015 (default)")
-        ->type_name("SUITE");
+    verb.add_option("suite", options->suite, describe_suites())->type_name("SUITE");
     verb.add_option("-o", options->folder, "folder for JSON, CSV and charts; default: the suite's name")
         ->type_name("DIR");
     add_run_options(verb, *options);
-    add_setting_options(verb, options->paper1.settings);
-    add_engine_options(verb, options->engine, options->paper1.settings);
+    add_setting_options(verb, *options);
+    add_engine_options(verb, options->engine, options->settings);
     return [options] {
-        complete_engine_options(options->engine, options->paper1.settings);
+        complete_engine_options(options->engine, options->settings);
         return run_bench(*options);
     };
 }

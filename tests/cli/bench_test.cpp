@@ -42,6 +42,52 @@ TEST_F(Bench, a_pre_tessellated_scene_above_the_limit_is_shown_with_its_bytes) {
     EXPECT_NE(read("paper1/paper1_figure1_7.svg").find("not made"), std::string::npos);
 }
 
+TEST_F(Bench, paper2_measures_a_mesh_of_the_user) {
+    write("plate.obj",
+          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+    const CommandResult result =
+        run({"bench", "paper2", "--quick", "--scenes", "body", "--mesh", "plate.obj", "-q", "-o", "p2"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    const json s = json::parse(read("p2/paper2.json"));
+    for (const char* key :
+         {"/build/commit", "/machine/processor", "/settings/runs", "/comparable/0", "/paper_says/0/text",
+          "/paper_models/2/bytes_a_triangle", "/meshes/0/builds/4/used_share",
+          "/meshes/0/builds/0/seconds/median", "/meshes/0/casts/0/seconds/lowest",
+          "/meshes/0/casts/0/restarts_a_ray", "/goals/0/reached"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    EXPECT_EQ(s["meshes"][1]["mesh"], "plate.obj");
+    EXPECT_EQ(s["meshes"][1]["triangles"], 4);
+    EXPECT_EQ(read("p2/paper2.csv").rfind("mesh,part,tree,", 0), 0u);
+    for (const char* chart : {"builds", "bytes", "body_primary", "body_diffuse", "mesh1_shadow"})
+        EXPECT_EQ(test::find_xml_fault(read(std::string("p2/paper2_") + chart + ".svg")), "") << chart;
+}
+
+TEST_F(Bench, paper3_measures_the_four_pairs) {
+    const CommandResult result = run({"bench", "paper3", "--quick", "--scenes", "body", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("paper3/paper3.json"));
+    EXPECT_EQ(s["scenes"][0]["ways"].size(), 4u);
+    EXPECT_EQ(s["goals"][0]["reached"], 0);
+    for (const char* key : {"/device/engine", "/comparable/0", "/paper_says/0/text",
+                            "/scenes/0/ways/3/frame_s/median", "/scenes/0/ways/3/structures_bytes"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    for (const char* chart : {"bytes", "body"})
+        EXPECT_EQ(test::find_xml_fault(read(std::string("paper3/paper3_") + chart + ".svg")), "") << chart;
+}
+
+TEST_F(Bench, options_of_other_suites_are_refused) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"paper2", "--level", "3"},
+                                                  {"paper3", "--structure", "lbvh"},
+                                                  {"paper2", "--scenes", "bark"},
+                                                  {"paper1", "--mesh", "a.obj"},
+                                                  {"paper3", "--tessellated-limit", "7"}}) {
+        std::vector<std::string> all = {"bench", "--quick"};
+        all.insert(all.end(), words.begin(), words.end());
+        EXPECT_EQ(run(all).exit_code, 2) << words[1];
+    }
+}
+
 TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     const CommandResult suite = run({"bench", "paper7"});
     EXPECT_EQ(suite.exit_code, 2);

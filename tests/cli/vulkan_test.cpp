@@ -243,6 +243,32 @@ TEST_F(FaultyVulkan, memory_that_ends_on_the_way_costs_a_fresh_start_and_nothing
     EXPECT_GE(refusals.size(), 2u);
 }
 
+TEST_F(Vulkan, measures_trees_that_the_device_builds_and_walks) {
+    const CommandResult result =
+        run({"bench", "paper2", "--quick", "--engine", "vulkan", "--scenes", "body", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json mesh = json::parse(read("paper2/paper2.json"))["meshes"][0];
+    EXPECT_EQ(mesh["combinations_that_agree"], mesh["casts"].size());
+    int built = 0;
+    for (const json& build : mesh["builds"]) {
+        if (build["built_on"] != "device") continue;
+        ++built;
+        EXPECT_EQ(build["parts"].size(), 5u);
+        EXPECT_GT(build["share_of_bandwidth_bound"]["median"], 0);
+    }
+    EXPECT_EQ(built, 3);
+}
+
+TEST_F(Vulkan, measures_the_three_methods) {
+    const CommandResult result =
+        run({"bench", "paper3", "--quick", "--engine", "vulkan", "--scenes", "body", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("paper3/paper3.json"));
+    EXPECT_EQ(s["scenes"][0]["ways"].size(), 12u);
+    for (const json& way : s["scenes"][0]["ways"])
+        if (way["outcome"] == "measured") EXPECT_EQ(way["pixels_that_differ"], 0) << way["method"];
+}
+
 #else
 
 TEST_F(Vulkan, is_missing_in_a_build_without_it) {

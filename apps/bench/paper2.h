@@ -1,0 +1,34 @@
+// Builders and traversals over triangle meshes, side by side: what Murguia et al. 2013 (Bit-Trail Traversal
+// for Stackless LBVH on DirectCompute) measure, and what stands beside it today.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/measure.h"
+#include "bench/report_file.h"
+#include "relief/render.h"
+#include "relief/structure_scenes.h"
+
+namespace relief::bench {
+
+struct Paper2Options {
+    RenderSettings settings; ///< engine, device, threads, and width and height of the grid of primary rays
+    int runs = 5;            ///< that count, after one that does not; >= 1
+    std::vector<std::string> scenes = structure_scene_names();
+    std::vector<Scene> meshes; ///< the user's: each with one mesh or more, of which the first is measured
+    MeshDetail detail = MeshDetail::full;
+};
+
+/// Options of a run that only shows that everything works.
+Paper2Options make_quick_options(Paper2Options options);
+
+/// Throws Error{failed} where any two combinations disagree about a hit: then nothing is reported.
+nlohmann::ordered_json run_paper2(const Paper2Options& options, const Report& report);
+
+/// paper2.json, paper2.csv, charts of builds and bytes, and of each mesh and kind of rays.
+std::vector<ReportFile> make_paper2_files(const nlohmann::ordered_json& result);
+
+} // namespace relief::bench

@@ -1,0 +1,222 @@
+#include "bench/paper3.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/machine.h"
+#include "bench/paper_statement.h"
+#include "relief/error.h"
+#include "relief/samples.h"
+
+namespace relief::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<PaperStatement, 2> kStatements = {
+    {{"methods", "the hybrid method is the best on mobile devices"},
+     {"structures",
+      "structures that take less memory bandwidth and arithmetic win; wider, shallower trees do"}}};
+
+constexpr std::array<std::string_view, 4> kComparable = {
+    "The text that we have prints no figures, and which pair was best on which device is not in it.",
+    "The paper's trees are built with the costs 3.0 and 1.5; so is our kd-tree. The bvh of a render has the "
+    "costs 1 "
+    "and 1; paper2 measures both.",
+    "A frame is one primary ray and one shadow ray a pixel, as in the paper. It includes shading and film.",
+    "The paper's fragment and hybrid methods do all their work in one shader; ours trace in fragments and "
+    "share the "
+    "other kernels with the compute method."};
+
+struct Pair {
+    StructureKind structure;
+    TraversalKind traversal;
+};
+
+/// In the paper's order.
+constexpr std::array<Pair, 4> kPairs = {{{StructureKind::kdtree, TraversalKind::push_down},
+                                         {StructureKind::kdtree, TraversalKind::backtrack},
+                                         {StructureKind::bvh, TraversalKind::restart_trail},
+                                         {StructureKind::bvh, TraversalKind::parent_link}}};
+
+const char* method_name(RenderMethod method) {
+    switch (method) {
+    case RenderMethod::compute:
+        return "compute";
+    case RenderMethod::fragment:
+        return "fragment";
+    case RenderMethod::hybrid:
+        return "hybrid";
+    }
+    return "";
+}
+
+/// One way to render a scene, its frames and its picture.
+struct Way {
+    RenderSettings settings;
+    std::vector<Statistics> runs;
+    std::optional<Image> picture;
+    std::string refusal;
+};
+
+std::vector<Way> list_ways(const RenderSettings& base) {
+    std::vector<RenderMethod> methods = {RenderMethod::compute};
+    if (base.engine == EngineKind::vulkan)
+        methods = {RenderMethod::compute, RenderMethod::fragment, RenderMethod::hybrid};
+    std::vector<Way> ways;
+    for (const Pair& pair : kPairs)
+        for (const RenderMethod method : methods) {
+            Way way{base, {}, {}, {}};
+            way.settings.structure = pair.structure, way.settings.traversal = pair.traversal;
+            way.settings.method = method;
+            ways.push_back(std::move(way));
+        }
+    return ways;
+}
+
+std::string describe(const RenderSettings& s) {
+    return fmt::format("{} {}, {}", structure_name(s.structure), traversal_name(s.traversal),
+                       method_name(s.method));
+}
+
+void render_way(const Scene& scene, Way& way, int run) {
+    if (!way.refusal.empty()) return;
+    try {
+        RenderResult result = render(scene, way.settings);
+        if (run > 0) way.runs.push_back(std::move(result.statistics));
+        if (run == 0) way.picture = std::move(result.image);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::out_of_memory && error.kind() != ErrorKind::device_missing) throw;
+        way.refusal = error.what();
+        way.runs.clear();
+    }
+}
+
+Json describe_way(const Way& way, const Way& reference) {
+    Json entry = {{"structure", structure_name(way.settings.structure)},
+                  {"traversal", traversal_name(way.settings.traversal)},
+                  {"method", method_name(way.settings.method)},
+                  {"outcome", way.refusal.empty() ? "measured" : "refused"}};
+    if (!way.refusal.empty()) {
+        entry["reason"] = way.refusal;
+        return entry;
+    }
+    entry.update(describe_frames(way.runs));
+    entry["camera_rays"] = way.runs.back().camera_rays;
+    entry["shadow_rays"] = way.runs.back().shadow_rays;
+    if (reference.picture)
+        entry["pixels_that_differ"] = compare_images(*way.picture, *reference.picture, "", 0).over_threshold;
+    return entry;
+}
+
+/// Goals of the pictures and, of the Vulkan engine, of the methods.
+Json make_goals(const Json& result) {
+    Json goals = Json::array();
+    for (const Json& scene : result["scenes"]) {
+        double different = 0;
+        for (const Json& way : scene["ways"])
+            if (way.contains("pixels_that_differ"))
+                different = std::max(different, way["pixels_that_differ"].get<double>());
+        goals.push_back(
+            {{"name", scene["scene"].get<std::string>() + ", pixels that differ between any two ways"},
+             {"goal", 0},
+             {"reached", different},
+             {"unit", "pixels"},
+             {"met", different <= 0}});
+    }
+    return goals;
+}
+
+Json make_head(const Paper3Options& options) {
+    const RenderSettings& s = options.settings;
+    Json head = {{"suite", "paper3"}, {"build", describe_build()}, {"machine", describe_machine()}};
+    head["settings"] = {{"engine", s.engine == EngineKind::cpu ? "cpu" : "vulkan"},
+                        {"width", s.width},
+                        {"height", s.height},
+                        {"spp", 1},
+                        {"bounces", 0},
+                        {"runs", options.runs},
+                        {"warm_up_runs", 1},
+                        {"meshes", options.detail == MeshDetail::full ? "full" : "reduced"},
+                        {"scenes", options.scenes}};
+    head["comparable"] = kComparable;
+    for (const PaperStatement& statement : kStatements)
+        head["paper_says"].push_back({{"about", statement.about}, {"text", statement.text}});
+    return head;
+}
+
+/// One primary and one shadow ray a pixel: of several lights the first stays.
+Scene light_once(Scene scene) {
+    if (scene.lights.empty()) return scene;
+    scene.lights.resize(1);
+    scene.environment.reset();
+    return scene;
+}
+
+class Paper3 {
+  public:
+    Paper3(const Paper3Options& options, const Report& report) : options_(options), report_(report) {}
+
+    Json run() {
+        result_ = make_head(options_);
+        result_["scenes"] = Json::array();
+        const std::vector<std::string> structure_scenes = structure_scene_names();
+        for (const std::string& name : options_.scenes) {
+            report_("making the scene " + name);
+            const bool is_mesh =
+                std::find(structure_scenes.begin(), structure_scenes.end(), name) != structure_scenes.end();
+            measure(name, is_mesh ? make_structure_scene(name, options_.detail)
+                                  : make_sample_scene(name, Instancing::none));
+        }
+        for (const Scene& scene : options_.meshes) measure(scene.meshes.at(0).name, scene);
+        result_["goals"] = make_goals(result_);
+        return std::move(result_);
+    }
+
+  private:
+    void measure(const std::string& name, Scene scene) {
+        scene = light_once(std::move(scene));
+        RenderSettings base = options_.settings;
+        base.spp = 1, base.bounces = 0;
+        std::vector<Way> ways = list_ways(base);
+        for (int run = 0; run <= options_.runs; ++run)
+            for (Way& way : ways) {
+                report_(fmt::format("{}: {}, {}", name, describe(way.settings),
+                                    run == 0 ? std::string("warm-up") : fmt::format("run {}", run)));
+                render_way(scene, way, run);
+            }
+        Json entry = {{"scene", name}, {"ways", Json::array()}};
+        for (const Way& way : ways) {
+            entry["ways"].push_back(describe_way(way, ways.front()));
+            if (way.runs.empty()) continue;
+            entry["patches"] = way.runs.back().patches, entry["triangles"] = way.runs.back().triangles;
+            if (!result_.contains("device")) result_["device"] = describe_device(way.runs.back());
+        }
+        result_["scenes"].push_back(std::move(entry));
+    }
+
+    const Paper3Options& options_;
+    const Report& report_;
+    Json result_;
+};
+
+} // namespace
+
+std::vector<std::string> paper3_scenes() { return {"body", "hall", "knot", "pumpkin", "bark"}; }
+
+Paper3Options make_quick_options(Paper3Options options) {
+    options.settings.width = 32, options.settings.height = 18;
+    options.runs = 1;
+    options.detail = MeshDetail::reduced;
+    return options;
+}
+
+Json run_paper3(const Paper3Options& options, const Report& report) { return Paper3(options, report).run(); }
+
+} // namespace relief::bench

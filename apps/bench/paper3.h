@@ -1,0 +1,37 @@
+// Structures, traversals and render methods of the paper on ray tracing for mobile devices (GRAPP 2019), on
+// triangle meshes and on displaced surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/measure.h"
+#include "bench/report_file.h"
+#include "relief/render.h"
+#include "relief/structure_scenes.h"
+
+namespace relief::bench {
+
+/// Triangle meshes, then sample scenes with displaced surfaces.
+std::vector<std::string> paper3_scenes();
+
+struct Paper3Options {
+    RenderSettings settings; ///< engine, device, size, threads; all else is the suite's
+    int runs = 5;            ///< that count, after one that does not; >= 1
+    std::vector<std::string> scenes = paper3_scenes();
+    std::vector<Scene> meshes; ///< the user's
+    MeshDetail detail = MeshDetail::full;
+};
+
+/// Options of a run that only shows that everything works.
+Paper3Options make_quick_options(Paper3Options options);
+
+/// What a device cannot do, or has no memory for, is a result: the reason stands in the place of figures.
+nlohmann::ordered_json run_paper3(const Paper3Options& options, const Report& report);
+
+/// paper3.json, paper3.csv and a chart of the frames and the bytes of each scene.
+std::vector<ReportFile> make_paper3_files(const nlohmann::ordered_json& result);
+
+} // namespace relief::bench

@@ -1,0 +1,173 @@
+#include "engine/tree_workshop.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "structures/lbvh.h"
+#include "structures/sah_bvh.h"
+
+namespace relief {
+
+namespace {
+
+constexpr int kMostLevels = int(scalar::kTrailLevels64);
+
+struct Binary {
+    Bvh bvh;
+    std::vector<uint8_t> axes;
+};
+
+/// Not deeper than a trail reaches.
+Binary make_shallow(Bvh bvh, std::vector<uint8_t> axes) {
+    if (compute_depth(bvh) <= kMostLevels) return {std::move(bvh), std::move(axes)};
+    bvh = limit_depth(bvh, kMostLevels);
+    axes = compute_axes(bvh);
+    return {std::move(bvh), std::move(axes)};
+}
+
+Binary build_sah(std::span<const Box> boxes, SahBvhBuilder::Config config) {
+    config.max_depth = kMostLevels;
+    Bvh bvh = SahBvhBuilder::build(boxes, config);
+    std::vector<uint8_t> axes = compute_axes(bvh);
+    return {std::move(bvh), std::move(axes)};
+}
+
+Binary build_linear(std::span<const Box> boxes, int code_bits) {
+    LbvhBuilder::Config config;
+    config.code_bits = code_bits;
+    Lbvh lbvh = LbvhBuilder::build(boxes, config);
+    return make_shallow(std::move(lbvh.bvh), std::move(lbvh.axes));
+}
+
+LinkedBvh link(const Binary& binary) { return make_linked_bvh(binary.bvh, binary.axes); }
+SuccinctHeap pack(const Binary& binary) { return make_succinct_heap(binary.bvh, binary.axes); }
+
+SahBvhBuilder::Config make_wide_config() {
+    SahBvhBuilder::Config config;
+    config.method = SahBvhBuilder::Method::sweep;
+    config.traversal_cost = 3.0f, config.intersection_cost = 1.5f;
+    config.max_leaf_size = 8;
+    return config;
+}
+
+HostTree build_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) {
+    switch (kind) {
+    case TreeKind::sah:
+        return link(build_sah(boxes, {}));
+    case TreeKind::sah_wide:
+        return link(build_sah(boxes, make_wide_config()));
+    case TreeKind::lbvh30:
+        return link(build_linear(boxes, 30));
+    case TreeKind::lbvh63:
+        return link(build_linear(boxes, 63));
+    case TreeKind::heap:
+        return LbvhBuilder::build_heap(boxes, {30, heap_levels});
+    case TreeKind::succinct_lbvh:
+        return pack(build_linear(boxes, 30));
+    case TreeKind::succinct_sah:
+        return pack(build_sah(boxes, {}));
+    case TreeKind::kdtree:
+        break;
+    }
+    SahKdTreeBuilder::Config config;
+    config.cells = SahKdTreeBuilder::Cells::kept;
+    return SahKdTreeBuilder::build(boxes, config);
+}
+
+TreeBuild describe(const LinkedBvh& tree) {
+    TreeBuild report;
+    report.bytes = tree.byte_count();
+    report.link_bytes = tree.parents.size() * sizeof(uint32_t);
+    report.slots = report.used = tree.nodes.size();
+    report.entries = tree.primitive_ids.size();
+    report.depth = tree.depth;
+    return report;
+}
+
+TreeBuild describe(const DenseHeap& tree) {
+    TreeBuild report;
+    report.bytes = tree.byte_count();
+    report.slots = tree.slots.size(), report.used = count_used_slots(tree);
+    report.entries = tree.primitive_ids.size();
+    report.depth = std::max(tree.levels - 1, 0);
+    return report;
+}
+
+TreeBuild describe(const SuccinctHeap& tree) {
+    TreeBuild report;
+    report.bytes = tree.byte_count();
+    report.slots = tree.nodes.size(), report.used = tree.nodes.size() - 1;
+    report.entries = tree.primitive_ids.size();
+    report.depth = tree.depth;
+    return report;
+}
+
+TreeBuild describe(const KdTree& tree) {
+    TreeBuild report;
+    report.link_bytes = tree.cells.size() * sizeof(scalar::KdBox);
+    report.bytes = tree.byte_count() - report.link_bytes;
+    report.slots = report.used = tree.nodes.size();
+    report.entries = tree.primitive_ids.size();
+    report.depth = tree.depth;
+    return report;
+}
+
+} // namespace
+
+TriangleSoup make_soup(const Mesh& mesh) {
+    TriangleSoup soup;
+    soup.positions = mesh.positions;
+    size_t first = 0;
+    for (const uint32_t corners : mesh.face_sizes) {
+        for (uint32_t k = 2; k < corners; ++k)
+            for (const size_t corner : {first, first + k - 1, first + k})
+                soup.indices.push_back(mesh.position_indices[corner]);
+        first += corners;
+    }
+    return soup;
+}
+
+std::vector<Box> compute_triangle_boxes(const TriangleSoup& soup) {
+    std::vector<Box> boxes(soup.triangle_count());
+    parallel_for("triangle_boxes", boxes.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k)
+            for (size_t corner = 0; corner < 3; ++corner)
+                boxes[k].extend(soup.positions[soup.indices[3 * k + corner]]);
+    });
+    return boxes;
+}
+
+BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) {
+    const Timer timer;
+    BuiltTree built{build_tree(boxes, kind, heap_levels), {}};
+    const double seconds = timer.seconds();
+    built.report = std::visit([](const auto& tree) { return describe(tree); }, built.tree);
+    built.report.seconds = seconds;
+    return built;
+}
+
+Traversal get_walk(TraversalKind traversal) {
+    switch (traversal) {
+    case TraversalKind::restart_trail:
+        return Traversal::restart_trail;
+    case TraversalKind::parent_link:
+        return Traversal::parent_link;
+    case TraversalKind::skip_link:
+        return Traversal::skip_link;
+    case TraversalKind::trail:
+        return Traversal::trail;
+    case TraversalKind::pair_trail:
+        return Traversal::pair_trail;
+    case TraversalKind::restart:
+        return Traversal::kd_restart;
+    case TraversalKind::push_down:
+        return Traversal::kd_push_down;
+    case TraversalKind::backtrack:
+        return Traversal::kd_backtrack;
+    default:
+        return Traversal::stack;
+    }
+}
+
+} // namespace relief
