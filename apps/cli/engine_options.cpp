@@ -40,32 +40,6 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
             s.bottom = parse_word("--bottom", text, words);
             o.vulkan_only.push_back("--bottom");
         });
-    add("--structure", "NAME", "over meshes and their patches: bvh (default), lbvh, kdtree",
-        [&s](const std::string& text) {
-            constexpr std::array<Word<StructureKind>, 3> words{{{"bvh", StructureKind::bvh},
-                                                                {"lbvh", StructureKind::lbvh},
-                                                                {"kdtree", StructureKind::kdtree}}};
-            s.structure = parse_word("--structure", text, words);
-        });
-    add("--traversal", "NAME",
-        "how rays walk it: auto (default), wide, stack, restart-trail, parent-link, skip-link, trail, "
-        "pair-trail; "
-        "kdtree: push-down, restart, backtrack",
-        [&s](const std::string& text) {
-            std::array<Word<TraversalKind>, 11> words;
-            for (size_t k = 0; k < words.size(); ++k)
-                words[k] = {traversal_name(TraversalKind(k)), TraversalKind(k)};
-            s.traversal = parse_word("--traversal", text, words);
-        });
-    add("--method", "NAME",
-        "of the Vulkan engine: compute (default), fragment, or hybrid: first hits are drawn",
-        [&o, &s](const std::string& text) {
-            constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
-                                                               {"fragment", RenderMethod::fragment},
-                                                               {"hybrid", RenderMethod::hybrid}}};
-            s.method = parse_word("--method", text, words);
-            o.vulkan_only.push_back("--method");
-        });
     add("--threads", "N", "0: all cores (default)",
         [&s](const std::string& text) { s.threads = int(parse_integer("--threads", text, 0, kMaxThreads)); });
     add("--isa", "NAME", "of the CPU engine: best (default), avx512, avx2, sse4, neon, scalar",

@@ -16,8 +16,8 @@ struct EngineOptions {
     std::vector<std::string> vulkan_only, cpu_only;
 };
 
-/// Adds --engine, --device, --bottom, --structure, --traversal, --method, --threads and --isa; both
-/// structures must outlive the parsing.
+/// Adds --engine, --device, --bottom, --threads and --isa; both structures must outlive the
+/// parsing.
 void add_engine_options(CLI::App& verb, EngineOptions& options, RenderSettings& settings);
 
 /// Refuses options of the other engine; gives the Vulkan engine its file of compiled kernels.

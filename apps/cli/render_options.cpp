@@ -132,6 +132,31 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
 
 void add_machine_options(CLI::App& verb, RenderOptions& o) {
     add_engine_options(verb, o.engine, o.settings);
+    add(verb, "--method", "NAME",
+        "of the Vulkan engine: compute (default), fragment, or hybrid: first hits are drawn",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
+                                                               {"fragment", RenderMethod::fragment},
+                                                               {"hybrid", RenderMethod::hybrid}}};
+            o.settings.method = parse_word("--method", text, words);
+            o.engine.vulkan_only.push_back("--method");
+        });
+    add(verb, "--structure", "NAME", "over meshes and their patches: bvh (default), lbvh, kdtree",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<StructureKind>, 3> words{{{"bvh", StructureKind::bvh},
+                                                                {"lbvh", StructureKind::lbvh},
+                                                                {"kdtree", StructureKind::kdtree}}};
+            o.settings.structure = parse_word("--structure", text, words);
+        });
+    add(verb, "--traversal", "NAME",
+        "how rays walk it: auto (default), wide, stack, restart-trail, parent-link, skip-link, trail, "
+        "pair-trail; kdtree: push-down, restart, backtrack",
+        [&o](const std::string& text) {
+            std::array<Word<TraversalKind>, 11> words;
+            for (size_t k = 0; k < words.size(); ++k)
+                words[k] = {traversal_name(TraversalKind(k)), TraversalKind(k)};
+            o.settings.traversal = parse_word("--traversal", text, words);
+        });
     add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 256",
         [&o](const std::string& text) {
             o.settings.bottom_cache_bytes =

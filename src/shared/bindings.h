@@ -82,8 +82,6 @@ const uint kArgumentDrawWord = 4u;
 const uint kFragmentSquare = 8u;  ///< pixels a side
 const uint kScreenColumns = 256u; ///< squares
 const uint kScreenRows = 512u;    ///< squares
-const uint kScreenVertexCount =
-    6u; ///< full_screen.vert reads the rows to be drawn from the first one's number
 
 const uint kMaxPushBytes = 128u;
 const uint kNone = 0xffffffffu;

@@ -109,5 +109,81 @@ TEST_F(Commands, unknown_shaders_and_group_sizes_are_refused) {
     EXPECT_THROW(make_test_kernel(device(), "add_index", {1u << 20}), Error);
 }
 
+/// On a device that draws.
+class FullScreen : public testing::Test {
+  protected:
+    void TearDown() override {
+        for (const std::string& message : device_.validation_messages()) ADD_FAILURE() << message;
+    }
+
+    const Device device_{
+        {.index = get_test_device_index(), .method = RenderMethod::fragment, .is_validated = true}};
+    const Kernel kernel_{device_,
+                         {"add_index", {kFragmentGroup}, find_shader("add_index_fragment"), kFullScreen}};
+};
+
+TEST_F(FullScreen, runs_every_invocation_once) {
+    constexpr uint32_t kMost = 70'000; // more rows of squares than one
+    const Buffer values(device_, {.name = "values", .bytes = kMost * 4});
+    BindingTable bindings(device_);
+    bindings.bind(scalar::kBindFilm, values);
+    vulkan::Commands commands(device_, bindings);
+    for (const uint32_t count : {1u, 63u, 64u, 65u, 1000u, 16384u, 16385u, kMost}) {
+        commands.fill(values, 0, kMost * 4, 3);
+        commands.dispatch(kernel_, count, AddIndexPush{count, 2});
+        commands.run();
+        const std::vector<uint32_t> result = values.download<uint32_t>(kMost);
+        for (uint32_t i = 0; i < kMost; ++i) ASSERT_EQ(result[i], i < count ? 6 + i : 3) << count;
+    }
+}
+
+TEST_F(FullScreen, reads_its_groups_from_the_arguments_of_an_indirect_launch) {
+    constexpr uint32_t kRow = scalar::kScreenColumns * kFragmentGroup, kRun = 300 * kFragmentGroup;
+    const Buffer values(device_, {.name = "values", .bytes = 3 * kRow * 4});
+    const Buffer arguments(device_, {.name = "arguments", .bytes = 64, .is_indirect = true});
+    BindingTable bindings(device_);
+    bindings.bind(scalar::kBindFilm, values);
+    vulkan::Commands commands(device_, bindings);
+    commands.fill(values, 0, 3 * kRow * 4, 3);
+    const uint64_t draw = 32 + scalar::kArgumentDrawWord * 4;
+    commands.fill(arguments, 0, 64, 0);
+    commands.fill(arguments, draw, 4, 300);
+    commands.fill(arguments, draw + 4, 4, 1);
+    commands.dispatch_indirect(kernel_, arguments, 32, AddIndexPush{3 * kRow, 2});
+    commands.run();
+    const std::vector<uint32_t> result = values.download<uint32_t>(3 * kRow);
+    for (uint32_t i = 0; i < 3 * kRow; ++i) ASSERT_EQ(result[i], i < kRun ? 6 + i : 3);
+}
+
+/// Fragments that only complete a block read zeros, for ever, and take the loops of their neighbours on
+/// lavapipe.
+TEST_F(FullScreen, has_no_fragments_beside_its_own) {
+    constexpr uint32_t kCount = 3 * scalar::kScreenColumns * kFragmentGroup;
+    Buffer next(device_, {.name = "next", .bytes = kCount * 4});
+    const Buffer steps(device_, {.name = "steps", .bytes = kCount * 4});
+    std::vector<uint32_t> list(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) list[i] = i % 5 == 0 ? scalar::kNone : i - 1;
+    next.upload(list);
+    BindingTable bindings(device_);
+    bindings.bind(scalar::kBindFilm, next);
+    bindings.bind(scalar::kBindPaths, steps);
+    const Kernel kernel(device_,
+                        {"walk_list", {kFragmentGroup}, find_shader("walk_list_fragment"), kFullScreen});
+    vulkan::Commands commands(device_, bindings);
+    commands.dispatch(kernel, kCount, kCount);
+    commands.run();
+    const std::vector<uint32_t> result = steps.download<uint32_t>(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], i % 5) << i;
+}
+
+TEST_F(FullScreen, refuses_more_than_the_screen_holds) {
+    const BindingTable bindings(device_);
+    vulkan::Commands commands(device_, bindings);
+    const uint64_t all = uint64_t(scalar::kScreenColumns) * scalar::kScreenRows * kFragmentGroup;
+    EXPECT_THROW(commands.dispatch(kernel_, all + 1, AddIndexPush{0, 0}), Error);
+    commands.dispatch(kernel_, all, AddIndexPush{0, 0});
+    commands.run();
+}
+
 } // namespace
 } // namespace relief::vulkan::tests

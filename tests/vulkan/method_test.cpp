@@ -114,6 +114,25 @@ TEST_P(Methods, find_the_same_bits) {
     }
 }
 
+/// The four pairs of Sousa et al. 2019, by each of their methods.
+TEST(PairsOfStructureAndTraversal, make_one_picture_by_every_method) {
+    const Scene scene = make_scene(DisplacementSpace::tangent);
+    RenderSettings settings = make_settings();
+    settings.spp = 1;
+    const Picture expected = render_with(RenderMethod::compute, scene, settings);
+    const std::pair<StructureKind, TraversalKind> pairs[] = {
+        {StructureKind::kdtree, TraversalKind::push_down},
+        {StructureKind::kdtree, TraversalKind::backtrack},
+        {StructureKind::bvh, TraversalKind::restart_trail},
+        {StructureKind::bvh, TraversalKind::parent_link}};
+    for (const auto& [structure, traversal] : pairs) {
+        settings.structure = structure, settings.traversal = traversal;
+        for (const RenderMethod method :
+             {RenderMethod::compute, RenderMethod::fragment, RenderMethod::hybrid})
+            expect_same_bits(render_with(method, scene, settings).image, expected.image);
+    }
+}
+
 class HybridMethod : public testing::Test {
   protected:
     /// One device and many ways to use it.

@@ -141,12 +141,11 @@ void Commands::Implementation::dispatch(const Kernel& kernel, uint64_t groups,
 
 void Commands::Implementation::draw_full_screen(const Kernel& kernel, uint64_t groups,
                                                 std::span<const std::byte> push) {
-    const uint64_t rows = (groups + scalar::kScreenColumns - 1) / scalar::kScreenColumns;
-    if (rows > scalar::kScreenRows) refuse_size(kernel, groups);
+    if (groups > uint64_t(scalar::kScreenColumns) * scalar::kScreenRows) refuse_size(kernel, groups);
     prepare();
     bind_kernel(kernel, push);
     begin_drawing(kScreen);
-    buffer.draw(scalar::kScreenVertexCount, 1, uint32_t(rows) * scalar::kScreenVertexCount, 0);
+    buffer.draw(uint32_t(groups), 1, 0, 0);
     buffer.endRendering();
 }
 

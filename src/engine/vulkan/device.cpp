@@ -124,7 +124,7 @@ vk::raii::Device make_device(const Device::Implementation& d) {
     with_12.pNext = &with_13;
     vk::PhysicalDeviceFeatures2 features;
     features.features.shaderInt64 = true;
-    features.features.fragmentStoresAndAtomics = is_drawing;
+    features.features.fragmentStoresAndAtomics = features.features.largePoints = is_drawing;
     features.pNext = &with_12;
     const std::array priority = {1.0f};
     const vk::DeviceQueueCreateInfo queue({}, d.family, priority);

@@ -53,14 +53,19 @@ std::vector<std::string> find_missing_to_draw(const vk::raii::PhysicalDevice& de
     std::vector<std::string> missing;
     const auto chain = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
     if (!find_drawing_family(device)) missing.emplace_back("a queue with VK_QUEUE_GRAPHICS_BIT");
-    if (!chain.get<vk::PhysicalDeviceFeatures2>().features.fragmentStoresAndAtomics)
-        missing.emplace_back("fragmentStoresAndAtomics");
+    const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
+    if (!core.fragmentStoresAndAtomics) missing.emplace_back("fragmentStoresAndAtomics");
+    if (!core.largePoints) missing.emplace_back("largePoints");
     if (!chain.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering)
         missing.emplace_back("dynamicRendering");
-    const uint32_t outputs = device.getProperties().limits.maxFragmentCombinedOutputResources;
+    const vk::PhysicalDeviceLimits limits = device.getProperties().limits;
+    const uint32_t outputs = limits.maxFragmentCombinedOutputResources;
     if (outputs < scalar::kStorageBindingCount)
         missing.push_back(fmt::format("maxFragmentCombinedOutputResources {} (has {})",
                                       scalar::kStorageBindingCount, outputs));
+    if (limits.pointSizeRange[1] < float(scalar::kFragmentSquare))
+        missing.push_back(
+            fmt::format("pointSizeRange[1] {} (has {})", scalar::kFragmentSquare, limits.pointSizeRange[1]));
     return missing;
 }
 

@@ -31,7 +31,8 @@ vk::raii::ShaderModule make_module(const Device::Implementation& device, const s
     return module;
 }
 
-/// Triangles of either winding without attachments; where they lie is set when they are drawn.
+/// Points of the full screen, or triangles of either winding, without attachments; where they lie is set when
+/// they are drawn.
 vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
                                        const vk::PipelineShaderStageCreateInfo& fragment_stage) {
     const vk::raii::ShaderModule module =
@@ -40,7 +41,9 @@ vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, con
         vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *module, "main"),
         fragment_stage};
     const vk::PipelineVertexInputStateCreateInfo no_input;
-    const vk::PipelineInputAssemblyStateCreateInfo triangles({}, vk::PrimitiveTopology::eTriangleList);
+    const vk::PipelineInputAssemblyStateCreateInfo topology({}, config.vertex_shader == kFullScreen
+                                                                    ? vk::PrimitiveTopology::ePointList
+                                                                    : vk::PrimitiveTopology::eTriangleList);
     const vk::PipelineViewportStateCreateInfo one_viewport({}, 1, nullptr, 1, nullptr);
     vk::PipelineRasterizationStateCreateInfo raster;
     raster.lineWidth = 1;
@@ -49,7 +52,7 @@ vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, con
     const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
     const vk::PipelineColorBlendStateCreateInfo no_colors;
     const vk::PipelineRenderingCreateInfo no_attachments;
-    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &triangles, nullptr, &one_viewport, &raster,
+    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
                                         &one_sample, nullptr, &no_colors, &dynamic_state,
                                         *device.pipeline_layout);
     info.pNext = &no_attachments;

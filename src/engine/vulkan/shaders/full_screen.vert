@@ -1,16 +1,13 @@
-// A rectangle over the first rows of squares of the screen, for fragments that stand for the invocations of a
-// kernel (GRAPP 2019, section 3.3, fragment shaders). How many rows is told by the number of the first
-// vertex, which an indirect draw can set too.
+// The screen in squares, for fragments that stand for the invocations of a kernel (GRAPP 2019, section 3.3, fragment
+// shaders): a point as large as a square takes the place of a work group. Not two triangles: along their common edge
+// fragments that only complete blocks would run as well, and lavapipe's loops wait for those.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared/lang.h"
 #include "shared/bindings.h"
 
 void main() {
-    uint rows = uint(gl_VertexIndex) / kScreenVertexCount;
-    uint corner = uint(gl_VertexIndex) % kScreenVertexCount;
-    bool is_right = corner == 1u || corner == 2u || corner == 4u;
-    bool is_lower = corner == 2u || corner == 4u || corner == 5u;
-    float y = is_lower ? float(rows) / float(kScreenRows) : 0.0;
-    gl_Position = vec4(is_right ? 1.0 : -1.0, 2.0 * y - 1.0, 0.0, 1.0);
+    uvec2 square = uvec2(uint(gl_VertexIndex) % kScreenColumns, uint(gl_VertexIndex) / kScreenColumns);
+    gl_Position = vec4((vec2(square) + 0.5) / vec2(kScreenColumns, kScreenRows) * 2.0 - 1.0, 0.0, 1.0);
+    gl_PointSize = float(kFragmentSquare);
 }

@@ -19,12 +19,10 @@ void write_groups(uint place, uint items, uint items_per_group) {
     arguments[word] = rows > 1u ? kMostGroups : groups;
     arguments[word + 1u] = rows;
     arguments[word + 2u] = groups > 0u ? 1u : 0u;
-    uint screen_rows = (groups + kScreenColumns - 1u) / kScreenColumns;
-    uint draw = word + kArgumentDrawWord;
-    arguments[draw] = kScreenVertexCount;
+    uint draw = word + kArgumentDrawWord; // vertices, instances, and the first of each
+    arguments[draw] = groups;
     arguments[draw + 1u] = 1u;
-    arguments[draw + 2u] = kScreenVertexCount * screen_rows;
-    arguments[draw + 3u] = 0u;
+    arguments[draw + 2u] = arguments[draw + 3u] = 0u;
 }
 
 void main() {

@@ -1,4 +1,5 @@
-// The ray of a pixel against the two triangles of a cell that may be there, by the tracer's own test.
+// The ray of a pixel against the two triangles of a cell that may be there, by the tracer's own test. No loops:
+// fragments that only complete a block run too, and would spend those of their neighbours on lavapipe.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
