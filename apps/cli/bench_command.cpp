@@ -101,14 +101,11 @@ SuiteResult run_paper1_suite(const BenchOptions& o, const bench::Report& report)
     return {result, bench::make_paper1_files(result)};
 }
 
-/// Suites that measure all structures and traversals leave nothing of them to choose.
-void refuse_choices(const BenchOptions& o) {
+/// What only paper1 has.
+void refuse_options_of_paper1(const BenchOptions& o) {
     const RenderSettings &s = o.settings, plain;
     const char* option = nullptr;
-    if (s.structure != plain.structure) option = "--structure";
-    if (s.traversal != plain.traversal) option = "--traversal";
     if (s.bottom != plain.bottom) option = "--bottom";
-    if (s.method != plain.method) option = "--method";
     if (s.isa != plain.isa) option = "--isa";
     if (!o.paper1_only.empty()) option = o.paper1_only.front();
     if (option)
@@ -117,7 +114,7 @@ void refuse_choices(const BenchOptions& o) {
 }
 
 SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report) {
-    refuse_choices(o);
+    refuse_options_of_paper1(o);
     bench::Paper2Options options;
     options.settings = make_settings(o, 320, 180);
     options.scenes = check_scenes(o, structure_scene_names());
@@ -128,7 +125,7 @@ SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report)
 }
 
 SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report) {
-    refuse_choices(o);
+    refuse_options_of_paper1(o);
     bench::Paper3Options options;
     options.settings = make_settings(o, 640, 360);
     options.scenes = check_scenes(o, bench::paper3_scenes());
