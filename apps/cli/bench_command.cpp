@@ -1,15 +1,16 @@
 // bench: the suites of measurements.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bench/paper1.h"
+#include "bench/triangles.h"
 #include "commands.h"
 #include "engine_options.h"
 #include "exit_codes.h"
@@ -29,6 +30,7 @@ struct BenchOptions {
     std::filesystem::path folder;
     EngineOptions engine;
     bench::Paper1Options paper1;
+    std::vector<std::string> mesh_files;
     bool is_quick = false, is_quiet = false;
 };
 
@@ -39,12 +41,60 @@ void print_goals(const nlohmann::ordered_json& goals) {
                    goal["unit"].get<std::string>(), goal["goal"].get<double>());
 }
 
-int run_bench(const BenchOptions& options) {
-    if (options.suite != "paper1") {
-        constexpr std::array<std::string_view, 1> suites = {"paper1"};
-        throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}'", options.suite), "",
-                                       suggest_word(options.suite, suites)});
+struct Outcome {
+    nlohmann::ordered_json result;
+    std::vector<bench::ReportFile> files;
+};
+
+Outcome run_paper1_suite(const BenchOptions& options, const bench::Report& report) {
+    const auto result =
+        bench::run_paper1(options.is_quick ? make_quick_options(options.paper1) : options.paper1, report);
+    return {result, bench::make_paper1_files(result)};
+}
+
+#ifdef RELIEF_EMBREE
+Outcome run_triangles_suite(const BenchOptions& options, const bench::Report& report) {
+    bench::TrianglesOptions triangles;
+    triangles.runs = options.paper1.runs;
+    triangles.isa = options.paper1.settings.isa;
+    for (const std::string& file : options.mesh_files)
+        triangles.meshes.push_back(bench::make_triangle_mesh(file, load_mesh(file)));
+    const auto result =
+        bench::run_triangles(options.is_quick ? make_quick_options(triangles) : triangles, report);
+    return {result, bench::make_triangles_files(result)};
+}
+#endif
+
+struct Suite {
+    std::string_view name, help;
+    Outcome (*run)(const BenchOptions& options, const bench::Report& report);
+};
+
+constexpr Suite kSuites[] = {
+    {"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
+#ifdef RELIEF_EMBREE
+    {"triangles", "plain triangle meshes against Embree", run_triangles_suite},
+#endif
+};
+
+const Suite& find_suite(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Suite& suite : kSuites) {
+        if (suite.name == name) return suite;
+        names.push_back(suite.name);
     }
+    throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}'", name), "", suggest_word(name, names)});
+}
+
+std::string describe_suites() {
+    std::string text;
+    for (const Suite& suite : kSuites)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
+    return text;
+}
+
+int run_bench(const BenchOptions& options) {
+    const Suite& suite = find_suite(options.suite);
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
@@ -52,13 +102,12 @@ int run_bench(const BenchOptions& options) {
     const bench::Report report = [&](const std::string& line) {
         if (!options.is_quiet) fmt::print(stderr, "relief bench: {}\n", line);
     };
-    const auto result =
-        bench::run_paper1(options.is_quick ? make_quick_options(options.paper1) : options.paper1, report);
-    for (const bench::ReportFile& file : bench::make_paper1_files(result)) {
+    const Outcome outcome = suite.run(options, report);
+    for (const bench::ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
         fmt::print("wrote {}\n", (folder / file.name).string());
     }
-    print_goals(result["goals"]);
+    print_goals(outcome.result["goals"]);
     return kExitDone;
 }
 
@@ -87,6 +136,10 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
             o.paper1.tessellated_limit_bytes =
                 uint64_t(parse_integer("--tessellated-limit", text, 0, kMaxLimitMegabytes)) << 20;
         });
+#ifdef RELIEF_EMBREE
+    verb.add_option("--mesh", o.mesh_files, "triangles: measured besides; may be given again")
+        ->type_name("FILE");
+#endif
     verb.add_flag("--quick", o.is_quick, "64x36 pixels, one run: only shows that it works");
     verb.add_flag("-q", o.is_quiet, "no progress on stderr");
 }
@@ -107,8 +160,7 @@ void add_setting_options(CLI::App& verb, RenderSettings& s) {
 
 Command add_bench(CLI::App& verb) {
     const auto options = std::make_shared<BenchOptions>();
-    verb.add_option("suite", options->suite, "paper1: table and figures of Harada 2015 (default)")
-        ->type_name("SUITE");
+    verb.add_option("suite", options->suite, describe_suites())->type_name("SUITE");
     verb.add_option("-o", options->folder, "folder for JSON, CSV and charts; default: the suite's name")
         ->type_name("DIR");
     add_run_options(verb, *options);

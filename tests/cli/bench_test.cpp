@@ -42,6 +42,26 @@ TEST_F(Bench, a_pre_tessellated_scene_above_the_limit_is_shown_with_its_bytes) {
     EXPECT_NE(read("paper1/paper1_figure1_7.svg").find("not made"), std::string::npos);
 }
 
+#ifdef RELIEF_EMBREE
+TEST_F(Bench, triangles_compares_hits_and_times_with_embree) {
+    const CommandResult result = run({"bench", "triangles", "--quick", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("triangles/triangles.json"));
+    ASSERT_EQ(s["meshes"].size(), 2u);
+    for (const json& mesh : s["meshes"]) {
+        EXPECT_GT(mesh["build"]["ratio"].get<double>(), 0);
+        for (const json& cast : mesh["casts"]) {
+            EXPECT_GT(cast["hits"].get<size_t>(), cast["count"].get<size_t>() / 5);
+            EXPECT_LE(cast["differences_from_embree_robust"].get<size_t>(),
+                      cast["count"].get<size_t>() / 200);
+            EXPECT_EQ(cast["differences_of_packets"], 0);
+        }
+    }
+    EXPECT_EQ(s["goals"].size(), 6u);
+    EXPECT_EQ(read("triangles/triangles.csv").rfind("mesh,triangles,part,", 0), 0u);
+}
+#endif
+
 TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     const CommandResult suite = run({"bench", "paper7"});
     EXPECT_EQ(suite.exit_code, 2);
