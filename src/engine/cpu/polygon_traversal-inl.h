@@ -1,0 +1,133 @@
+// One ray through the tree of a surface without displacement.
+#if defined(RELIEF_POLYGON_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_POLYGON_TRAVERSAL_INL_H
+#undef RELIEF_POLYGON_TRAVERSAL_INL_H
+#else
+#define RELIEF_POLYGON_TRAVERSAL_INL_H
+#endif
+
+#include "base/check.h"
+#include "engine/cpu/polygon_tree.h"
+#include "engine/cpu/ray_state-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Depth of a binary tree is bounded far below this, and so is that of the wide one.
+inline constexpr uint32_t kStackSize = 1024;
+
+struct StackEntry {
+    uint32_t child;
+    float entry;
+};
+
+/// The place of a hit on its polygon from the weights of corners b and c.
+HWY_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
+    hit.is_upper = is_upper;
+    hit.u = is_upper ? weight_b : weight_b + weight_c;
+    hit.v = is_upper ? weight_b + weight_c : weight_c;
+}
+
+/// Eight triangles at once. Returns whether any was met; Query::closest takes over the nearest.
+template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleBlock& block, RayState& ray) {
+    Lanes8 x[3], y[3], z[3];
+    for (int corner = 0; corner < 3; ++corner) {
+        const auto& coordinates = block.corner[corner];
+        z[corner] = Lanes8::load(coordinates[ray.axis[2]]) - Lanes8(ray.origin[ray.axis[2]]);
+        x[corner] = (Lanes8::load(coordinates[ray.axis[0]]) - Lanes8(ray.origin[ray.axis[0]])) -
+                    Lanes8(ray.shear[0]) * z[corner];
+        y[corner] = (Lanes8::load(coordinates[ray.axis[1]]) - Lanes8(ray.origin[ray.axis[1]])) -
+                    Lanes8(ray.shear[1]) * z[corner];
+    }
+    TriangleTest<8> test;
+    if (!test_edges(x, y, test)) return false;
+    test_distances(z, ray, test);
+    if (!test.mask) return false;
+    if constexpr (kQuery == Query::closest)
+        offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+            hit.patch = block.triangle[lane] / 2;
+            locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
+        });
+    return true;
+}
+
+/// Puts the children of `mask` on the stack, the nearest on top.
+HWY_INLINE void push_children(const cpu::PolygonNode& node, LaneMask mask, const float* distance,
+                              StackEntry* stack, uint32_t& size) {
+    const uint32_t base = size;
+    for (; mask; mask &= mask - 1) {
+        const uint32_t k = uint32_t(__builtin_ctz(mask));
+        uint32_t slot = size++;
+        for (; slot > base && stack[slot - 1].entry < distance[k]; --slot) stack[slot] = stack[slot - 1];
+        stack[slot] = {node.child[k], distance[k]};
+    }
+}
+
+/// Boxes of a node; which of two planes a ray meets first is known from its direction.
+HWY_INLINE LaneMask test_node(const cpu::PolygonNode& node, const RayState& ray, const int (&near_plane)[3],
+                              Lanes8& entry) {
+    Lanes8 near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+        const Lanes8 reciprocal(ray.reciprocal[k]);
+        const bool is_negative = near_plane[k] > k;
+        near[k] = (Lanes8::load(node.bounds[near_plane[k]]) -
+                   Lanes8(is_negative ? ray.upper_origin[k] : ray.lower_origin[k])) *
+                  reciprocal;
+        far[k] = (Lanes8::load(node.bounds[2 * k + 3 - near_plane[k]]) -
+                  Lanes8(is_negative ? ray.lower_origin[k] : ray.upper_origin[k])) *
+                 reciprocal;
+    }
+    entry = max(max(near[0], near[1]), max(near[2], Lanes8(ray.t_min)));
+    const Lanes8 exit = min(min(far[0], far[1]), min(far[2], Lanes8(ray.t_max)));
+    return less_equal(entry, exit * Lanes8(kBoxSlack));
+}
+
+/// The subtree of `root` (a child word; 0 is the whole tree), nearest first. Query::any: true at the first
+/// hit.
+template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32_t root, RayState& ray) {
+    if (tree.nodes.empty()) return false;
+    const cpu::PolygonNode* const nodes = tree.nodes.data();
+    const cpu::TriangleBlock* const blocks = tree.blocks.data();
+    int near_plane[3];
+    for (int k = 0; k < 3; ++k) near_plane[k] = ray.reciprocal[k] < 0 ? 3 + k : k;
+    StackEntry stack[kStackSize];
+    stack[0] = {root, ray.t_min};
+    uint32_t size = 1;
+    while (size > 0) {
+        const StackEntry top = stack[--size];
+        if (top.entry > ray.t_max * kBoxSlack) continue;
+        uint32_t child = top.child;
+        while (!cpu::PolygonNode::is_leaf(child)) {
+            const cpu::PolygonNode& node = nodes[child];
+            Lanes8 entry;
+            LaneMask mask = test_node(node, ray, near_plane, entry);
+            if (mask == 0) break;
+            const uint32_t first = uint32_t(__builtin_ctz(mask));
+            child = node.child[first];
+            mask &= mask - 1;
+            if (mask == 0) continue;
+            alignas(32) float distance[8];
+            entry.store(distance);
+            const uint32_t second = uint32_t(__builtin_ctz(mask));
+            if ((mask & (mask - 1)) == 0) {
+                const bool is_first_nearer = distance[first] <= distance[second];
+                const uint32_t far = is_first_nearer ? second : first;
+                stack[size++] = {node.child[far], distance[far]};
+                child = node.child[is_first_nearer ? first : second];
+                continue;
+            }
+            DCHECK(size + 8 <= kStackSize);
+            push_children(node, mask | 1u << first, distance, stack, size);
+            child = stack[--size].child;
+        }
+        if (!cpu::PolygonNode::is_leaf(child)) continue;
+        const bool has_hit = intersect_triangles<kQuery>(blocks[cpu::PolygonNode::leaf_block(child)], ray);
+        if (kQuery == Query::any && has_hit) return true;
+    }
+    return false;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
