@@ -14,14 +14,13 @@ namespace {
 
 constexpr size_t kMaxPolygonCount = size_t(1) << 28;
 
-/// A block is tested at once, however full it is, and no dearer than a node: sets that fit one are split only
-/// where their halves are far apart.
+/// A block is tested at once, however full it is, and no dearer than a node: what fits one is not split.
 SahBvhBuilder::Config choose_config(const Surface& surface) {
     const bool has_quads = std::any_of(surface.quads.begin(), surface.quads.end(),
                                        [](const Quad& quad) { return !quad.is_triangle(); });
     SahBvhBuilder::Config config;
     config.max_leaf_size = has_quads ? TriangleBlock::kWidth / 2 : TriangleBlock::kWidth;
-    config.intersection_cost = 0.15f;
+    config.intersection_cost = config.traversal_cost / TriangleBlock::kWidth;
     return config;
 }
 
