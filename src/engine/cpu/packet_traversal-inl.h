@@ -194,9 +194,9 @@ HWY_INLINE uint32_t count_children(const cpu::PolygonNode& node) {
 
 /// Walks a tree of wide nodes with the packet. visit_leaf(child, mask) takes the leaves, go_alone(child,
 /// lane) a subtree that few rays enter.
-template <class Node, class VisitLeaf, class GoAlone>
-void walk_packet(const std::vector<Node>& nodes, Packet& packet, LaneMask mask, VisitLeaf visit_leaf,
-                 GoAlone go_alone) {
+template <class Nodes, class VisitLeaf, class GoAlone>
+void walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
+    using Node = typename Nodes::value_type;
     if (nodes.empty()) return;
     PacketEntry stack[kStackSize];
     uint32_t size = 0;

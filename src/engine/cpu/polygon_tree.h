@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "surface/surface.h"
 
 namespace relief::cpu {
@@ -34,8 +35,9 @@ struct alignas(64) TriangleBlock {
 };
 
 struct PolygonTree {
-    std::vector<PolygonNode> nodes; ///< node 0 is the root; empty: no polygons
-    std::vector<TriangleBlock> blocks;
+    std::vector<PolygonNode, HugePageAllocator<PolygonNode>>
+        nodes; ///< node 0 is the root; empty: no polygons
+    std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> blocks;
     Box bounds; ///< exact union of the boxes of the polygons
 
     size_t byte_count() const {
