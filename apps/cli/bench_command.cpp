@@ -95,6 +95,9 @@ std::string describe_suites() {
 
 int run_bench(const BenchOptions& options) {
     const Suite& suite = find_suite(options.suite);
+    if (!options.mesh_files.empty() && suite.name != "triangles")
+        throw Error(ErrorKind::usage, {fmt::format("the suite '{}' takes no meshes", suite.name), "--mesh",
+                                       "bench triangles does"});
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);

@@ -69,6 +69,7 @@ TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     EXPECT_EQ(run({"bench", "--scenes", "pumpkim"}).exit_code, 2);
     EXPECT_EQ(run({"bench", "--scenes", ""}).exit_code, 2);
     EXPECT_EQ(run({"bench", "--runs", "0"}).exit_code, 2);
+    EXPECT_EQ(run({"bench", "paper1", "--mesh", "a.obj"}).exit_code, 2);
 }
 
 } // namespace

@@ -131,8 +131,8 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
 template <Query kQuery>
-bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
-               RayState& ray) {
+HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                          RayState& ray) {
     ray.t_min = world.t_min, ray.t_max = world.t_max;
     if (scene.instance_count != 1) {
         enter_object(world, Affine{}, ray);
@@ -140,6 +140,9 @@ bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cp
     }
     ray.instance = 0;
     enter_object(world, scene.instances[0].object_from_world, ray);
+    const uint32_t surface = scene.instances[0].surface;
+    if (!scene.surfaces[surface].has_displacement)
+        return trace_polygons<kQuery>(scene.polygon_trees[surface], 0, ray);
     return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 
