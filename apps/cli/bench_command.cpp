@@ -16,6 +16,7 @@
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
+#include "bench/triangles.h"
 #include "commands.h"
 #include "engine_options.h"
 #include "exit_codes.h"
@@ -135,15 +136,35 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report)
     return {result, bench::make_paper3_files(result)};
 }
 
+#ifdef RELIEF_EMBREE
+/// One thread of the CPU engine; its own meshes are always measured.
+SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
+    if (!o.scenes.empty() || o.size || !o.paper1_only.empty() || o.settings.engine != EngineKind::cpu)
+        throw Error(ErrorKind::usage,
+                    {"the suite triangles takes --runs, --mesh, --isa and --quick", "", ""});
+    bench::TrianglesOptions options;
+    options.runs = o.runs.value_or(options.runs);
+    options.isa = o.settings.isa;
+    for (const std::string& file : o.meshes)
+        options.meshes.push_back(bench::make_triangle_mesh(file, load_mesh(file)));
+    const auto result = bench::run_triangles(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_triangles_files(result)};
+}
+#endif
+
 struct Suite {
     std::string_view name, help;
     SuiteResult (*run)(const BenchOptions& options, const bench::Report& report);
 };
 
-constexpr std::array<Suite, 3> kSuites = {
-    {{"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
-     {"paper2", "builders and traversals over triangle meshes", run_paper2_suite},
-     {"paper3", "structures, traversals and render methods of GRAPP 2019", run_paper3_suite}}};
+constexpr Suite kSuites[] = {
+    {"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
+    {"paper2", "builders and traversals over triangle meshes", run_paper2_suite},
+    {"paper3", "structures, traversals and render methods of GRAPP 2019", run_paper3_suite},
+#ifdef RELIEF_EMBREE
+    {"triangles", "plain triangle meshes on the CPU against Embree", run_triangles_suite},
+#endif
+};
 
 const Suite& find_suite(const std::string& name) {
     std::vector<std::string_view> names;
@@ -193,7 +214,7 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
         });
-    verb.add_option("--mesh", o.meshes, "paper2 and paper3: measure this mesh, too; may be repeated")
+    verb.add_option("--mesh", o.meshes, "not for paper1: measure this mesh, too; may be repeated")
         ->type_name("FILE");
     add("--tessellated-limit", "MB", "leave out pre-tessellated scenes above; default 4096",
         [&o](const std::string& text) {

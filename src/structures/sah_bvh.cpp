@@ -1,7 +1,9 @@
 #include "structures/sah_bvh.h"
 
+#include <algorithm>
 #include <array>
-#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -36,6 +38,9 @@ struct Subtree {
     uint32_t count() const { return end - begin; }
 };
 
+/// Fewer bins for smaller sets: most of the time of a build goes into sets of a few dozen.
+int choose_bin_count(uint32_t count, int most) { return std::min(most, 4 + int(std::min(count, 1024u) / 8)); }
+
 class SahBuild {
   public:
     SahBuild(std::span<const Box> boxes, const SahBvhBuilder::Config& config)
@@ -43,40 +48,45 @@ class SahBuild {
 
     Bvh run() {
         const uint32_t count = uint32_t(boxes_.size());
-        bvh_.primitive_ids.resize(count);
-        std::iota(bvh_.primitive_ids.begin(), bvh_.primitive_ids.end(), 0u);
+        SetBounds bounds;
+        refs_.reserve(count);
+        for (uint32_t id = 0; id < count; ++id) {
+            refs_.push_back(make_box_ref(boxes_[id], id));
+            bounds.extend(refs_.back());
+        }
         bvh_.nodes.resize(2 * size_t(count) - 1);
-        if (config_.method == SahBvhBuilder::Method::sweep) scratch_.resize(count);
-        build_subtree({0, count, 0, 1, 0});
+        if (config_.method == SahBvhBuilder::Method::sweep) {
+            sweep_entries_.resize(count);
+            sweep_refs_.resize(count);
+        }
+        build_subtree({0, count, 0, 1, 0}, bounds);
+        bvh_.primitive_ids.reserve(count);
+        for (const BoxRef& ref : refs_) bvh_.primitive_ids.push_back(ref.id);
         remove_unused_slots();
         return std::move(bvh_);
     }
 
   private:
-    void build_subtree(const Subtree& tree) {
-        Box box;
-        SplitInput input{boxes_, std::span(bvh_.primitive_ids).subspan(tree.begin, tree.count()), {}};
-        for (const uint32_t id : input.ids) {
-            box.extend(boxes_[id]);
-            input.centroids.extend(compute_centroid(boxes_[id]));
-        }
+    void build_subtree(const Subtree& tree, const SetBounds& bounds) {
         BvhNode& node = bvh_.nodes[tree.root_slot];
+        const Box box = bounds.box.to_box();
         node.lower = box.lower, node.upper = box.upper;
-        const uint32_t left_count = split(tree, input, compute_half_area(box));
-        if (left_count == 0) {
+        const SplitSets sets = split(tree, bounds);
+        if (sets.left_count == 0) {
             node.first = tree.begin, node.primitive_count = tree.count();
             return;
         }
         node.first = tree.free_slot;
-        const uint32_t middle = tree.begin + left_count;
+        const uint32_t middle = tree.begin + sets.left_count;
         const uint32_t slot = tree.free_slot;
         const Subtree left{tree.begin, middle, slot, slot + 2, tree.depth + 1};
-        const Subtree right{middle, tree.end, slot + 1, slot + 2 * left_count, tree.depth + 1};
+        const Subtree right{middle, tree.end, slot + 1, slot + 2 * sets.left_count, tree.depth + 1};
         if (tree.count() >= kParallelCount) {
-            parallel_invoke([&] { build_subtree(left); }, [&] { build_subtree(right); });
+            parallel_invoke([&] { build_subtree(left, sets.bounds[0]); },
+                            [&] { build_subtree(right, sets.bounds[1]); });
         } else {
-            build_subtree(left);
-            build_subtree(right);
+            build_subtree(left, sets.bounds[0]);
+            build_subtree(right, sets.bounds[1]);
         }
     }
 
@@ -86,28 +96,34 @@ class SahBuild {
         return count <= uint64_t(config_.max_leaf_size) << levels;
     }
 
-    /// Size of the left side, which is then at the front of the ids; 0: make a leaf.
-    uint32_t split(const Subtree& tree, const SplitInput& input, double half_area) {
+    /// Nothing on the left side: make a leaf.
+    SplitSets split(const Subtree& tree, const SetBounds& bounds) {
         const uint32_t count = tree.count();
-        if (count == 1 || tree.depth == config_.max_depth) return 0;
+        if (count == 1 || tree.depth == config_.max_depth) return {};
         const bool may_be_leaf = count <= config_.max_leaf_size;
+        const double leaf_cost = double(config_.intersection_cost) * count;
+        if (may_be_leaf && leaf_cost <= config_.traversal_cost) return {};
+        const SplitInput input{std::span(refs_).subspan(tree.begin, count), bounds.centroids};
         const bool is_swept = config_.method == SahBvhBuilder::Method::sweep || count <= kSmallCount;
-        std::array<SweepEntry, kSmallCount> small;
-        std::span<SweepEntry> scratch;
+        std::array<SweepEntry, kSmallCount> small_entries;
+        std::array<BoxRef, kSmallCount> small_refs;
+        SweepScratch scratch;
         if (count <= kSmallCount)
-            scratch = std::span(small).first(count);
+            scratch = {std::span(small_entries).first(count), small_refs};
         else if (is_swept)
-            scratch = std::span(scratch_).subspan(tree.begin, count);
+            scratch = {std::span(sweep_entries_).subspan(tree.begin, count),
+                       std::span(sweep_refs_).subspan(tree.begin, count)};
+        const int bin_count = choose_bin_count(count, config_.bin_count);
+        const double half_area = bounds.box.half_area();
         SahSplit best;
         if (tree.depth < kMaxSahDepth && half_area > 0)
-            best = is_swept ? find_sweep_split(input, scratch) : find_binned_split(input, config_.bin_count);
+            best = is_swept ? find_sweep_split(input, scratch) : find_binned_split(input, bin_count);
         if (!best.is_valid() || !fits(best.imbalance, tree.depth + 1))
-            return may_be_leaf ? 0 : apply_median_split(input);
-        const double leaf_cost = double(config_.intersection_cost) * count;
+            return may_be_leaf ? SplitSets{} : apply_median_split(input);
         const double split_cost = config_.traversal_cost + config_.intersection_cost * best.cost / half_area;
-        if (may_be_leaf && leaf_cost <= split_cost) return 0;
+        if (may_be_leaf && leaf_cost <= split_cost) return {};
         return is_swept ? apply_sweep_split(input, best, scratch)
-                        : apply_binned_split(input, best, config_.bin_count);
+                        : apply_binned_split(input, best, bin_count);
     }
 
     void remove_unused_slots() {
@@ -133,7 +149,9 @@ class SahBuild {
 
     std::span<const Box> boxes_;
     const SahBvhBuilder::Config& config_;
-    std::vector<SweepEntry> scratch_;
+    std::vector<BoxRef> refs_;
+    std::vector<SweepEntry> sweep_entries_;
+    std::vector<BoxRef> sweep_refs_;
     Bvh bvh_;
 };
 

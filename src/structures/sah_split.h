@@ -1,18 +1,17 @@
 // Where to cut a set of boxes in two by the surface-area heuristic: binned or by a full sweep.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
 
-#include "math/box.h"
+#include "structures/box_ref.h"
 
 namespace relief {
 
 /// Widths are taken in double precision: the area of a box of size 1e30 or 1e-30 is no float.
 double compute_half_area(const Box& box);
-
-inline Vec3f compute_centroid(const Box& box) { return box.lower * 0.5f + box.upper * 0.5f; }
 
 struct SahSplit {
     double cost =
@@ -27,32 +26,42 @@ struct SahSplit {
     }
 };
 
-/// Primitives `ids` of `boxes`, and the box of their centroids.
+/// A set, and the box of its centroids.
 struct SplitInput {
-    std::span<const Box> boxes;
-    std::span<uint32_t> ids;
-    Box centroids;
+    std::span<BoxRef> refs;
+    Box4 centroids;
+};
+
+/// The two halves of a set that was cut: the left one stands first.
+struct SplitSets {
+    uint32_t left_count = 0; ///< 0: not cut
+    std::array<SetBounds, 2> bounds;
 };
 
 inline constexpr int kMaxBinCount = 64;
 
 /// Bins centroids on all three axes (Wald 2007). Invalid when all centroids coincide.
 SahSplit find_binned_split(const SplitInput& input, int bin_count);
-/// Moves the left side to the front of `ids`; returns its size.
-uint32_t apply_binned_split(const SplitInput& input, const SahSplit& split, int bin_count);
+SplitSets apply_binned_split(const SplitInput& input, const SahSplit& split, int bin_count);
 
 struct SweepEntry {
     float centroid = 0;
-    uint32_t id = 0;
+    uint32_t place = 0; ///< in the set
     double right_area = 0;
 };
 
-/// Tries every cut between neighbours in the order of centroids (MacDonald and Booth 1990). `scratch` is as
-/// long as `ids`. Invalid when all centroids coincide.
-SahSplit find_sweep_split(const SplitInput& input, std::span<SweepEntry> scratch);
-uint32_t apply_sweep_split(const SplitInput& input, const SahSplit& split, std::span<SweepEntry> scratch);
+/// As long as the set.
+struct SweepScratch {
+    std::span<SweepEntry> entries;
+    std::span<BoxRef> refs;
+};
+
+/// Tries every cut between neighbours in the order of centroids (MacDonald and Booth 1990). Invalid when all
+/// centroids coincide.
+SahSplit find_sweep_split(const SplitInput& input, const SweepScratch& scratch);
+SplitSets apply_sweep_split(const SplitInput& input, const SahSplit& split, const SweepScratch& scratch);
 
 /// Halves the set along the longest axis of the centroids, for sets that the heuristic cannot split.
-uint32_t apply_median_split(const SplitInput& input);
+SplitSets apply_median_split(const SplitInput& input);
 
 } // namespace relief

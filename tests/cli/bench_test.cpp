@@ -88,6 +88,26 @@ TEST_F(Bench, options_of_other_suites_are_refused) {
     }
 }
 
+#ifdef RELIEF_EMBREE
+TEST_F(Bench, triangles_compares_hits_and_times_with_embree) {
+    const CommandResult result = run({"bench", "triangles", "--quick", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("triangles/triangles.json"));
+    ASSERT_EQ(s["meshes"].size(), 2u);
+    for (const json& mesh : s["meshes"]) {
+        EXPECT_GT(mesh["build"]["ratio"].get<double>(), 0);
+        for (const json& cast : mesh["casts"]) {
+            EXPECT_GT(cast["hits"].get<size_t>(), cast["count"].get<size_t>() / 5);
+            EXPECT_LE(cast["differences_from_embree_robust"].get<size_t>(),
+                      cast["count"].get<size_t>() / 200);
+            EXPECT_EQ(cast["differences_of_packets"], 0);
+        }
+    }
+    EXPECT_EQ(s["goals"].size(), 6u);
+    EXPECT_EQ(read("triangles/triangles.csv").rfind("mesh,triangles,part,", 0), 0u);
+}
+#endif
+
 TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     const CommandResult suite = run({"bench", "paper7"});
     EXPECT_EQ(suite.exit_code, 2);
@@ -95,6 +115,7 @@ TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     EXPECT_EQ(run({"bench", "--scenes", "pumpkim"}).exit_code, 2);
     EXPECT_EQ(run({"bench", "--scenes", ""}).exit_code, 2);
     EXPECT_EQ(run({"bench", "--runs", "0"}).exit_code, 2);
+    EXPECT_EQ(run({"bench", "paper1", "--mesh", "a.obj"}).exit_code, 2);
 }
 
 } // namespace

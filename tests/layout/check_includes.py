@@ -31,6 +31,7 @@ LIBRARIES = {
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps"],
     r"CLI/": ["apps"],
+    r"embree3/": ["apps/bench"],
     r"fmt/": ["src", "apps"],
     r"vulkan/": ["src/engine/vulkan"],
     r"immintrin\.h|.*mmintrin\.h|arm_neon\.h": [],

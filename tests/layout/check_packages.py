@@ -16,6 +16,8 @@ PACKAGES = {
     "assimp": ["libassimp-dev"],
     "CLI11": ["libcli11-dev"],
     "GTest": ["libgtest-dev"],
+    # Only `relief bench triangles` needs it.
+    "embree": ["libembree-dev"],
     "Python3": ["python3"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.
     "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],

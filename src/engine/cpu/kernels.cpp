@@ -44,8 +44,8 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
         } else {
             for (size_t k = 0; k < size; ++k) {
                 const cpu::TraceRay& world = rays[begin + k];
-                RayState ray = start_ray(world);
-                const bool has_hit = trace_scene<kQuery>(scene, context, world, 0, ray);
+                RayState ray;
+                const bool has_hit = trace_ray<kQuery>(scene, context, world, ray);
                 store(begin + k, ray.hit, has_hit);
             }
         }

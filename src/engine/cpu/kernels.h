@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/cpu/bottom_cache.h"
+#include "engine/cpu/polygon_tree.h"
 #include "engine/cpu/tracer.h"
 #include "structures/wide_bvh.h"
 
@@ -14,8 +15,10 @@ namespace relief::cpu {
 struct SceneView {
     const Instance* instances = nullptr;
     const Surface* surfaces = nullptr;
-    const WideBvh* surface_trees = nullptr; ///< one a surface, over its patches
-    const WideBvh* instance_tree = nullptr; ///< over the instances
+    uint32_t instance_count = 0;
+    const WideBvh* surface_trees = nullptr; ///< one a surface, over its patches; empty without displacement
+    const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
+    const WideBvh* instance_tree = nullptr;     ///< over the instances
     BottomCache* cache = nullptr;
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;

@@ -168,11 +168,36 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
             timer->seconds() - (context.counters.bottom_build_s - built_before);
 }
 
-/// Walks a wide tree with the packet. visit_leaf(primitive, mask) takes the leaves, go_alone(child, lane) a
-/// subtree that few rays enter.
-template <class VisitLeaf, class GoAlone>
-void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
-    if (tree.nodes.empty()) return;
+/// Calls visit(primitive, mask) for what a leaf of a wide tree holds.
+template <class Visit>
+HWY_INLINE void visit_primitives(const WideBvh& tree, uint32_t leaf, const Packet& packet, LaneMask mask,
+                                 Visit visit) {
+    const uint32_t first = WideNode::leaf_first(leaf), count = WideNode::leaf_count(leaf);
+    for (uint32_t k = 0; k < count; ++k)
+        if (const LaneMask left = mask & packet.active) visit(tree.primitive_at(first + k), left);
+}
+
+HWY_INLINE LaneMask test_child(const WideNode& node, uint32_t k, const Packet& packet, LaneMask mask,
+                               float& nearest) {
+    const Box box = node.child_box(int(k));
+    const float lower[3] = {box.lower.x, box.lower.y, box.lower.z};
+    const float upper[3] = {box.upper.x, box.upper.y, box.upper.z};
+    return test_box(lower, upper, packet, mask, nearest);
+}
+
+HWY_INLINE uint32_t count_children(const WideNode& node) { return node.child_count; }
+HWY_INLINE uint32_t count_children(const cpu::PolygonNode& node) {
+    uint32_t count = 0;
+    while (count < 8 && node.child[count] != cpu::PolygonNode::kNoChild) ++count;
+    return count;
+}
+
+/// Walks a tree of wide nodes with the packet. visit_leaf(child, mask) takes the leaves, go_alone(child,
+/// lane) a subtree that few rays enter.
+template <class Nodes, class VisitLeaf, class GoAlone>
+void walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
+    using Node = typename Nodes::value_type;
+    if (nodes.empty()) return;
     PacketEntry stack[kStackSize];
     uint32_t size = 0;
     stack[size++] = {0, mask, 0};
@@ -186,28 +211,53 @@ void walk_packet(const WideBvh& tree, Packet& packet, LaneMask mask, VisitLeaf v
                 go_alone(top.child, uint32_t(__builtin_ctz(left)));
             continue;
         }
-        if (WideNode::is_leaf(top.child)) {
-            const uint32_t first = WideNode::leaf_first(top.child), count = WideNode::leaf_count(top.child);
-            for (uint32_t k = 0; k < count; ++k)
-                if (const LaneMask left = top.mask & packet.active)
-                    visit_leaf(tree.primitive_at(first + k), left);
+        if (Node::is_leaf(top.child)) {
+            visit_leaf(top.child, top.mask);
             continue;
         }
-        const WideNode& node = tree.nodes[top.child];
-        const uint32_t base = size;
+        const Node& node = nodes[top.child];
+        const uint32_t base = size, count = count_children(node);
         DCHECK(size + 8 <= kStackSize);
-        for (uint32_t k = 0; k < node.child_count; ++k) {
-            const Box box = node.child_box(int(k));
-            const float lower[3] = {box.lower.x, box.lower.y, box.lower.z};
-            const float upper[3] = {box.upper.x, box.upper.y, box.upper.z};
+        for (uint32_t k = 0; k < count; ++k) {
             float nearest = 0;
-            const LaneMask entered = test_box(lower, upper, packet, top.mask, nearest);
+            const LaneMask entered = test_child(node, k, packet, top.mask, nearest);
             if (!entered) continue;
             uint32_t slot = size++;
             for (; slot > base && stack[slot - 1].entry < nearest; --slot) stack[slot] = stack[slot - 1];
             stack[slot] = {node.child[k], entered, nearest};
         }
     }
+}
+
+/// Everything of one instance for the lanes of `mask`.
+template <Query kQuery>
+HWY_INLINE void walk_surface(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t surface,
+                             Packet& packet, LaneMask mask) {
+    const auto take_hit = [&](uint32_t lane, bool has_hit) {
+        packet.t_max[lane] = packet.ray[lane].t_max;
+        if (kQuery == Query::any && has_hit) packet.active &= ~(1u << lane);
+    };
+    const auto go_alone = [&](uint32_t child, uint32_t lane) {
+        take_hit(lane, trace_instance<kQuery>(scene, context, packet.world[lane], child, packet.ray[lane]));
+    };
+    if (!scene.surfaces[surface].has_displacement) {
+        const cpu::PolygonTree& tree = scene.polygon_trees[surface];
+        const auto visit_block = [&](uint32_t leaf, LaneMask entered) {
+            const cpu::TriangleBlock& block = tree.blocks[cpu::PolygonNode::leaf_block(leaf)];
+            for (entered &= packet.active; entered; entered &= entered - 1) {
+                const uint32_t lane = uint32_t(__builtin_ctz(entered));
+                take_hit(lane, intersect_triangles<kQuery>(block, packet.ray[lane]));
+            }
+        };
+        return walk_packet(tree.nodes, packet, mask, visit_block, go_alone);
+    }
+    const WideBvh& tree = scene.surface_trees[surface];
+    const auto visit_leaf = [&](uint32_t leaf, LaneMask entered) {
+        visit_primitives(tree, leaf, packet, entered, [&](uint32_t patch, LaneMask left) {
+            trace_patch<kQuery>(scene, context, patch, packet, left);
+        });
+    };
+    walk_packet(tree.nodes, packet, mask, visit_leaf, go_alone);
 }
 
 /// The instance for the lanes of `mask`; results go back to the packet of world rays.
@@ -224,24 +274,7 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
         enter_object(world.world[lane], placed.object_from_world, local.ray[lane]);
     }
     local.load_lanes();
-    const Surface& surface = scene.surfaces[placed.surface];
-    const auto go_alone = [&](uint32_t child, uint32_t lane) {
-        RayState& ray = local.ray[lane];
-        const bool has_hit = trace_instance<kQuery>(scene, context, world.world[lane], child, ray);
-        local.t_max[lane] = ray.t_max;
-        if (kQuery == Query::any && has_hit) local.active &= ~(1u << lane);
-    };
-    const auto visit_leaf = [&](uint32_t patch, LaneMask entered) {
-        if (surface.has_displacement) return trace_patch<kQuery>(scene, context, patch, local, entered);
-        for (; entered; entered &= entered - 1) {
-            const uint32_t lane = uint32_t(__builtin_ctz(entered));
-            RayState& ray = local.ray[lane];
-            const bool has_hit = trace_polygon<kQuery>(surface, patch, ray);
-            local.t_max[lane] = ray.t_max;
-            if (kQuery == Query::any && has_hit) local.active &= ~(1u << lane);
-        }
-    };
-    walk_packet(scene.surface_trees[placed.surface], local, mask, visit_leaf, go_alone);
+    walk_surface<kQuery>(scene, context, placed.surface, local, mask);
     for (LaneMask left = mask; left; left &= left - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(left));
         world.ray[lane].hit = local.ray[lane].hit;
@@ -258,10 +291,13 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
     for (int lane = 0; lane < 16; ++lane) packet.ray[lane] = start_ray(rays[lane]);
     packet.load_lanes();
     packet.active = 0xffff;
+    const WideBvh& tree = *scene.instance_tree;
     walk_packet(
-        *scene.instance_tree, packet, 0xffff,
-        [&](uint32_t instance, LaneMask mask) {
-            trace_instance<kQuery>(scene, context, instance, packet, mask);
+        tree.nodes, packet, 0xffff,
+        [&](uint32_t leaf, LaneMask mask) {
+            visit_primitives(tree, leaf, packet, mask, [&](uint32_t instance, LaneMask left) {
+                trace_instance<kQuery>(scene, context, instance, packet, left);
+            });
         },
         [&](uint32_t child, uint32_t lane) {
             RayState& ray = packet.ray[lane];

@@ -53,8 +53,11 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
         ray.upper_origin[k] = ray.origin[k] - margin;
     }
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-    const int major = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
-    ray.axis[2] = major, ray.axis[0] = (major + 1) % 3, ray.axis[1] = (major + 2) % 3;
+    // Choices of values and a table: no processor foresees which axis it will be.
+    static constexpr int kMinorAxes[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+    const int wider = ax > ay ? 0 : 1;
+    const int major = (ax > ay ? ax : ay) > az ? wider : 2;
+    ray.axis[2] = major, ray.axis[0] = kMinorAxes[major][0], ray.axis[1] = kMinorAxes[major][1];
     ray.shear[2] = 1.0f / ray.direction[major];
     ray.shear[0] = ray.direction[ray.axis[0]] * ray.shear[2];
     ray.shear[1] = ray.direction[ray.axis[1]] * ray.shear[2];

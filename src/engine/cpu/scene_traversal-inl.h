@@ -10,17 +10,10 @@
 #include "base/check.h"
 #include "base/timer.h"
 #include "engine/cpu/patch_traversal-inl.h"
+#include "engine/cpu/polygon_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
-
-/// Depth of a binary tree is bounded far below this, and so is that of the wide one.
-inline constexpr uint32_t kStackSize = 1024;
-
-struct StackEntry {
-    uint32_t child;
-    float entry;
-};
 
 HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8& entry) {
     Lanes8 bound[6];
@@ -85,9 +78,7 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
     if constexpr (kQuery == Query::closest)
         offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
             hit.patch = patch;
-            hit.is_upper = uint8_t(lane);
-            hit.u = lane ? weight_b : weight_b + weight_c;
-            hit.v = lane ? weight_b + weight_c : weight_c;
+            locate_on_polygon(lane != 0, weight_b, weight_c, hit);
         });
     return true;
 }
@@ -112,7 +103,10 @@ HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& 
 template <Query kQuery>
 bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                     uint32_t root, RayState& ray) {
-    const WideBvh& tree = scene.surface_trees[scene.instances[ray.instance].surface];
+    const uint32_t surface = scene.instances[ray.instance].surface;
+    if (!scene.surfaces[surface].has_displacement)
+        return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
+    const WideBvh& tree = scene.surface_trees[surface];
     return walk_tree(tree, root, ray, [&](uint32_t patch, float) {
         const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
@@ -133,6 +127,23 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
         best.hit = ray.hit;
         return is_hit;
     });
+}
+
+/// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
+template <Query kQuery>
+HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                          RayState& ray) {
+    ray.t_min = world.t_min, ray.t_max = world.t_max;
+    if (scene.instance_count != 1) {
+        enter_object(world, Affine{}, ray);
+        return trace_scene<kQuery>(scene, context, world, 0, ray);
+    }
+    ray.instance = 0;
+    enter_object(world, scene.instances[0].object_from_world, ray);
+    const uint32_t surface = scene.instances[0].surface;
+    if (!scene.surfaces[surface].has_displacement)
+        return trace_polygons<kQuery>(scene.polygon_trees[surface], 0, ray);
+    return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 
 /// A ray as the instance tree sees it, with nothing hit yet.

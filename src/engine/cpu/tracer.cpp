@@ -133,6 +133,7 @@ struct Tracer::Implementation {
     WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
     WalkTrees walk_trees;
     std::vector<WideBvh> surface_trees;
+    std::vector<PolygonTree> polygon_trees;
     WideBvh instance_tree;
     std::unique_ptr<BottomCache> cache;
     SceneView view;
@@ -149,8 +150,13 @@ struct Tracer::Implementation {
         }
         std::vector<Box> boxes;
         for (const Surface& surface : scene.surfaces) {
-            surface_trees.push_back(make_wide_bvh(build_surface_bvh(surface)));
-            boxes.push_back(surface_trees.back().bounds);
+            surface_trees.emplace_back(), polygon_trees.emplace_back();
+            if (surface.has_displacement)
+                surface_trees.back() = make_wide_bvh(build_surface_bvh(surface));
+            else
+                polygon_trees.back() = build_polygon_tree(surface);
+            boxes.push_back(surface.has_displacement ? surface_trees.back().bounds
+                                                     : polygon_trees.back().bounds);
         }
         instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
     }
@@ -208,7 +214,9 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view = {scene_->instances.data(),
                  scene_->surfaces.data(),
+                 uint32_t(scene_->instances.size()),
                  self.surface_trees.data(),
+                 self.polygon_trees.data(),
                  &self.instance_tree,
                  self.cache.get(),
                  settings.leaf,
@@ -275,6 +283,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
     self.add_casts(statistics);
     statistics.structures_bytes += self.instance_tree.byte_count() + self.walk_trees.byte_count();
     for (const WideBvh& tree : self.surface_trees) statistics.structures_bytes += tree.byte_count();
+    for (const PolygonTree& tree : self.polygon_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();
     for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();
     for (const Instance& instance : scene_->instances)

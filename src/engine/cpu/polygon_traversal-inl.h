@@ -1,0 +1,167 @@
+// One ray through the tree of a surface without displacement.
+#if defined(RELIEF_POLYGON_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_POLYGON_TRAVERSAL_INL_H
+#undef RELIEF_POLYGON_TRAVERSAL_INL_H
+#else
+#define RELIEF_POLYGON_TRAVERSAL_INL_H
+#endif
+
+#include "base/check.h"
+#include "engine/cpu/polygon_tree.h"
+#include "engine/cpu/ray_state-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Depth of a binary tree is bounded far below this, and so is that of the wide one.
+inline constexpr uint32_t kStackSize = 1024;
+
+struct StackEntry {
+    uint32_t child;
+    float entry;
+};
+
+/// Puts the nearer one second, without a branch to guess wrong.
+HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
+    const bool is_in_order = a.entry >= b.entry;
+    const StackEntry farther = is_in_order ? a : b, nearer = is_in_order ? b : a;
+    a = farther, b = nearer;
+}
+
+/// The place of a hit on its polygon from the weights of corners b and c.
+HWY_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
+    hit.is_upper = is_upper;
+    hit.u = is_upper ? weight_b : weight_b + weight_c;
+    hit.v = is_upper ? weight_b + weight_c : weight_c;
+}
+
+/// Eight triangles at once. Returns whether any was met; Query::closest takes over the nearest.
+template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleBlock& block, RayState& ray) {
+    Lanes8 x[3], y[3], z[3];
+    for (int corner = 0; corner < 3; ++corner) {
+        const auto& coordinates = block.corner[corner];
+        z[corner] = Lanes8::load(coordinates[ray.axis[2]]) - Lanes8(ray.origin[ray.axis[2]]);
+        x[corner] = (Lanes8::load(coordinates[ray.axis[0]]) - Lanes8(ray.origin[ray.axis[0]])) -
+                    Lanes8(ray.shear[0]) * z[corner];
+        y[corner] = (Lanes8::load(coordinates[ray.axis[1]]) - Lanes8(ray.origin[ray.axis[1]])) -
+                    Lanes8(ray.shear[1]) * z[corner];
+    }
+    TriangleTest<8> test;
+    if (!test_edges(x, y, test)) return false;
+    test_distances(z, ray, test);
+    if (!test.mask) return false;
+    if constexpr (kQuery == Query::closest)
+        offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+            hit.patch = block.triangle[lane] / 2;
+            locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
+        });
+    return true;
+}
+
+/// Puts the children of `mask`, at least three, on the stack, the nearest on top.
+HWY_INLINE void push_children(const cpu::PolygonNode& node, LaneMask mask, const float* distance,
+                              StackEntry* stack, uint32_t& size) {
+    const auto take = [&] {
+        const uint32_t k = uint32_t(__builtin_ctz(mask));
+        mask &= mask - 1;
+        return StackEntry{node.child[k], distance[k]};
+    };
+    StackEntry a = take(), b = take(), c = take();
+    order_entries(a, b), order_entries(b, c), order_entries(a, b);
+    StackEntry* const base = stack + size;
+    base[0] = a, base[1] = b, base[2] = c;
+    size += 3;
+    while (mask) {
+        const StackEntry next = take();
+        StackEntry* slot = stack + size++;
+        for (; slot > base && slot[-1].entry < next.entry; --slot) *slot = slot[-1];
+        *slot = next;
+    }
+}
+
+/// What boxes are tested with. Which of two planes a ray meets first is known from its direction; the
+/// widening by kBoxSlack is part of the far factors.
+struct BoxTest {
+    Lanes8 near_origin[3], far_origin[3], near_factor[3], far_factor[3], t_min;
+    int near_plane[3];
+
+    HWY_INLINE explicit BoxTest(const RayState& ray) : t_min(ray.t_min) {
+        for (int k = 0; k < 3; ++k) {
+            const bool is_negative = ray.reciprocal[k] < 0;
+            near_plane[k] = is_negative ? 3 + k : k;
+            near_origin[k] = Lanes8(is_negative ? ray.upper_origin[k] : ray.lower_origin[k]);
+            far_origin[k] = Lanes8(is_negative ? ray.lower_origin[k] : ray.upper_origin[k]);
+            near_factor[k] = Lanes8(ray.reciprocal[k]);
+            far_factor[k] = Lanes8(ray.reciprocal[k] * kBoxSlack);
+        }
+    }
+
+    /// Children met before `reach`, and where.
+    HWY_INLINE LaneMask run(const cpu::PolygonNode& node, float reach, Lanes8& entry) const {
+        Lanes8 near[3], far[3];
+        for (int k = 0; k < 3; ++k) {
+            near[k] = (Lanes8::load(node.bounds[near_plane[k]]) - near_origin[k]) * near_factor[k];
+            far[k] = (Lanes8::load(node.bounds[2 * k + 3 - near_plane[k]]) - far_origin[k]) * far_factor[k];
+        }
+        entry = max(max(near[0], near[1]), max(near[2], t_min));
+        return less_equal(entry, min(min(far[0], far[1]), min(far[2], Lanes8(reach))));
+    }
+};
+
+/// The nearest leaf below `child`, kNoChild: none that begins before `reach`. What else is met waits on the
+/// stack.
+HWY_INLINE uint32_t find_leaf(const cpu::PolygonNode* nodes, uint32_t child, const BoxTest& test, float reach,
+                              StackEntry* stack, uint32_t& size) {
+    while (!cpu::PolygonNode::is_leaf(child)) {
+        const cpu::PolygonNode& node = nodes[child];
+        Lanes8 entry;
+        LaneMask mask = test.run(node, reach, entry);
+        if (mask == 0) return cpu::PolygonNode::kNoChild;
+        const uint32_t first = uint32_t(__builtin_ctz(mask));
+        child = node.child[first];
+        const LaneMask others = mask & (mask - 1);
+        if (others == 0) continue;
+        alignas(32) float distance[8];
+        entry.store(distance);
+        DCHECK(size + 8 <= kStackSize);
+        if ((others & (others - 1)) == 0) {
+            const uint32_t second = uint32_t(__builtin_ctz(others));
+            StackEntry far{child, distance[first]}, near{node.child[second], distance[second]};
+            order_entries(far, near);
+            stack[size++] = far;
+            child = near.child;
+        } else {
+            push_children(node, mask, distance, stack, size);
+            child = stack[--size].child;
+        }
+    }
+    return child;
+}
+
+/// The subtree of `root` (a child word; 0 is the whole tree), nearest first. Query::any: true at the first
+/// hit.
+template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32_t root, RayState& ray) {
+    if (tree.nodes.empty()) return false;
+    const BoxTest test(ray);
+    StackEntry stack[kStackSize];
+    uint32_t size = 0, child = root;
+    float reach = ray.t_max * kBoxSlack;
+    while (true) {
+        child = find_leaf(tree.nodes.data(), child, test, reach, stack, size);
+        if (child != cpu::PolygonNode::kNoChild &&
+            intersect_triangles<kQuery>(tree.blocks[cpu::PolygonNode::leaf_block(child)], ray)) {
+            if constexpr (kQuery == Query::any) return true;
+            reach = ray.t_max * kBoxSlack;
+        }
+        do {
+            if (size == 0) return false;
+            --size;
+        } while (stack[size].entry > reach);
+        child = stack[size].child;
+    }
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
