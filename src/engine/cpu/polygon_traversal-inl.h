@@ -108,57 +108,49 @@ struct BoxTest {
     }
 };
 
-/// The nearest leaf below `child`, kNoChild: none that begins before `reach`. What else is met waits on the
-/// stack.
-HWY_INLINE uint32_t find_leaf(const cpu::PolygonNode* nodes, uint32_t child, const BoxTest& test, float reach,
-                              StackEntry* stack, uint32_t& size) {
-    while (!cpu::PolygonNode::is_leaf(child)) {
-        const cpu::PolygonNode& node = nodes[child];
-        Lanes8 entry;
-        LaneMask mask = test.run(node, reach, entry);
-        if (mask == 0) return cpu::PolygonNode::kNoChild;
-        const uint32_t first = uint32_t(__builtin_ctz(mask));
-        child = node.child[first];
-        const LaneMask others = mask & (mask - 1);
-        if (others == 0) continue;
-        alignas(32) float distance[8];
-        entry.store(distance);
-        DCHECK(size + 8 <= kStackSize);
-        if ((others & (others - 1)) == 0) {
-            const uint32_t second = uint32_t(__builtin_ctz(others));
-            StackEntry far{child, distance[first]}, near{node.child[second], distance[second]};
-            order_entries(far, near);
-            stack[size++] = far;
-            child = near.child;
-        } else {
-            push_children(node, mask, distance, stack, size);
-            child = stack[--size].child;
-        }
-    }
-    return child;
-}
-
 /// The subtree of `root` (a child word; 0 is the whole tree), nearest first. Query::any: true at the first
 /// hit.
 template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32_t root, RayState& ray) {
     if (tree.nodes.empty()) return false;
+    const cpu::PolygonNode* const nodes = tree.nodes.data();
+    const cpu::TriangleBlock* const blocks = tree.blocks.data();
     const BoxTest test(ray);
     StackEntry stack[kStackSize];
-    uint32_t size = 0, child = root;
-    float reach = ray.t_max * kBoxSlack;
-    while (true) {
-        child = find_leaf(tree.nodes.data(), child, test, reach, stack, size);
-        if (child != cpu::PolygonNode::kNoChild &&
-            intersect_triangles<kQuery>(tree.blocks[cpu::PolygonNode::leaf_block(child)], ray)) {
-            if constexpr (kQuery == Query::any) return true;
-            reach = ray.t_max * kBoxSlack;
+    stack[0] = {root, ray.t_min};
+    uint32_t size = 1;
+    while (size > 0) {
+        const StackEntry top = stack[--size];
+        const float reach = ray.t_max * kBoxSlack;
+        if (top.entry > reach) continue;
+        uint32_t child = top.child;
+        while (!cpu::PolygonNode::is_leaf(child)) {
+            const cpu::PolygonNode& node = nodes[child];
+            Lanes8 entry;
+            const LaneMask mask = test.run(node, reach, entry);
+            if (mask == 0) break;
+            const uint32_t first = uint32_t(__builtin_ctz(mask));
+            child = node.child[first];
+            const LaneMask others = mask & (mask - 1);
+            if (others == 0) continue;
+            alignas(32) float distance[8];
+            entry.store(distance);
+            DCHECK(size + 8 <= kStackSize);
+            if ((others & (others - 1)) == 0) {
+                const uint32_t second = uint32_t(__builtin_ctz(others));
+                const bool is_first_nearer = distance[first] <= distance[second];
+                const uint32_t far = is_first_nearer ? second : first;
+                stack[size++] = {node.child[far], distance[far]};
+                child = node.child[is_first_nearer ? first : second];
+                continue;
+            }
+            push_children(node, mask, distance, stack, size);
+            child = stack[--size].child;
         }
-        do {
-            if (size == 0) return false;
-            --size;
-        } while (stack[size].entry > reach);
-        child = stack[size].child;
+        if (!cpu::PolygonNode::is_leaf(child)) continue;
+        const bool has_hit = intersect_triangles<kQuery>(blocks[cpu::PolygonNode::leaf_block(child)], ray);
+        if (kQuery == Query::any && has_hit) return true;
     }
+    return false;
 }
 
 } // namespace relief::HWY_NAMESPACE
