@@ -13,35 +13,19 @@ namespace {
 
 constexpr int kMostLevels = int(scalar::kTrailLevels64);
 
-struct Binary {
-    Bvh bvh;
-    std::vector<uint8_t> axes;
-};
-
-/// Not deeper than a trail reaches.
-Binary make_shallow(Bvh bvh, std::vector<uint8_t> axes) {
-    if (compute_depth(bvh) <= kMostLevels) return {std::move(bvh), std::move(axes)};
-    bvh = limit_depth(bvh, kMostLevels);
-    axes = compute_axes(bvh);
-    return {std::move(bvh), std::move(axes)};
-}
-
-Binary build_sah(std::span<const Box> boxes, SahBvhBuilder::Config config) {
+AxisBvh build_sah(std::span<const Box> boxes, SahBvhBuilder::Config config) {
     config.max_depth = kMostLevels;
-    Bvh bvh = SahBvhBuilder::build(boxes, config);
-    std::vector<uint8_t> axes = compute_axes(bvh);
-    return {std::move(bvh), std::move(axes)};
+    return add_axes(SahBvhBuilder::build(boxes, config));
 }
 
-Binary build_linear(std::span<const Box> boxes, int code_bits) {
+AxisBvh build_linear(std::span<const Box> boxes, int code_bits) {
     LbvhBuilder::Config config;
     config.code_bits = code_bits;
-    Lbvh lbvh = LbvhBuilder::build(boxes, config);
-    return make_shallow(std::move(lbvh.bvh), std::move(lbvh.axes));
+    return limit_depth(LbvhBuilder::build(boxes, config), kMostLevels);
 }
 
-LinkedBvh link(const Binary& binary) { return make_linked_bvh(binary.bvh, binary.axes); }
-SuccinctHeap pack(const Binary& binary) { return make_succinct_heap(binary.bvh, binary.axes); }
+LinkedBvh link(const AxisBvh& binary) { return make_linked_bvh(binary.bvh, binary.axes); }
+SuccinctHeap pack(const AxisBvh& binary) { return make_succinct_heap(binary.bvh, binary.axes); }
 
 SahBvhBuilder::Config make_wide_config() {
     SahBvhBuilder::Config config;

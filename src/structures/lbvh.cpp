@@ -75,7 +75,7 @@ class CompactBuild {
           max_leaf_size_(config.max_leaf_size),
           order_(compute_morton_order(boxes, config.code_bits)) {}
 
-    Lbvh run() {
+    AxisBvh run() {
         number_cuts();
         const uint32_t count = uint32_t(boxes_.size());
         result_.bvh.nodes.resize(1 + 2 * size_t(cut_count_));
@@ -144,7 +144,7 @@ class CompactBuild {
     MortonOrder order_;
     std::vector<uint32_t> numbers_; ///< of each entry: cuts before it
     uint32_t cut_count_ = 0;
-    Lbvh result_;
+    AxisBvh result_;
 };
 
 class HeapBuild {
@@ -194,7 +194,7 @@ class HeapBuild {
 
 } // namespace
 
-Lbvh LbvhBuilder::build(std::span<const Box> boxes, const Config& config) {
+AxisBvh LbvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= scalar::kNodeCountMask);
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)

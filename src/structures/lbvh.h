@@ -22,11 +22,6 @@
 
 namespace relief {
 
-struct Lbvh {
-    Bvh bvh;
-    std::vector<uint8_t> axes; ///< one a node; 0 for leaves
-};
-
 class LbvhBuilder {
   public:
     struct Config {
@@ -36,7 +31,7 @@ class LbvhBuilder {
 
     /// At most code_bits + 30 levels below the root. Every box must be finite and not empty. The same for any
     /// number of threads. No boxes: an empty tree. Throws Error for more than 2^30 primitives.
-    static Lbvh build(std::span<const Box> boxes, const Config& config);
+    static AxisBvh build(std::span<const Box> boxes, const Config& config);
 
     struct HeapConfig {
         int code_bits = 30; ///< 30 or 63

@@ -145,4 +145,14 @@ Bvh limit_depth(const Bvh& bvh, int max_depth) {
     return result;
 }
 
+AxisBvh add_axes(Bvh bvh) {
+    std::vector<uint8_t> axes = compute_axes(bvh);
+    return {std::move(bvh), std::move(axes)};
+}
+
+AxisBvh limit_depth(AxisBvh tree, int max_depth) {
+    if (compute_depth(tree.bvh) <= max_depth) return tree;
+    return add_axes(limit_depth(tree.bvh, max_depth));
+}
+
 } // namespace relief

@@ -28,6 +28,12 @@ struct LinkedBvh {
     }
 };
 
+/// A tree, and for each of its nodes the axis as make_linked_bvh takes it.
+struct AxisBvh {
+    Bvh bvh;
+    std::vector<uint8_t> axes;
+};
+
 /// Axis of each inner node, along which its left child lies below the right one by most; 0 for leaves. Rays
 /// that go backwards along it take the right child first.
 std::vector<uint8_t> compute_axes(const Bvh& bvh);
@@ -41,5 +47,10 @@ int compute_depth(const Bvh& bvh);
 /// Every node on level `max_depth` >= 0 becomes a leaf of all primitives below it. In trees of this folder
 /// these stand next to each other.
 Bvh limit_depth(const Bvh& bvh, int max_depth);
+
+/// With axes of its own.
+AxisBvh add_axes(Bvh bvh);
+/// The same tree where it is not deeper.
+AxisBvh limit_depth(AxisBvh tree, int max_depth);
 
 } // namespace relief

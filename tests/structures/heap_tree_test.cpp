@@ -105,7 +105,7 @@ TEST(SuccinctHeap, leads_from_every_key_to_its_node) {
         config.max_depth = int(scalar::kTrailLevels64);
         const Bvh bvh = SahBvhBuilder::build(set.boxes, config);
         expect_complete(bvh, compute_axes(bvh));
-        const Lbvh linear = LbvhBuilder::build(set.boxes, {63, 1});
+        const AxisBvh linear = LbvhBuilder::build(set.boxes, {63, 1});
         const Bvh limited = limit_depth(linear.bvh, 62);
         expect_complete(limited, compute_axes(limited));
     }

@@ -37,7 +37,7 @@ class CaseMaker {
             for (const uint32_t leaf_size : {1u, scalar::kNodeCountMask}) {
                 const std::string name =
                     "LBVH " + std::to_string(code_bits) + "/" + std::to_string(leaf_size);
-                const Lbvh tree = LbvhBuilder::build(boxes_, {code_bits, leaf_size});
+                const AxisBvh tree = LbvhBuilder::build(boxes_, {code_bits, leaf_size});
                 add_walks(name, tree.bvh, tree.axes);
             }
         for (const int levels : {4, 0})

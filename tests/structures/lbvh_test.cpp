@@ -74,7 +74,7 @@ TEST(MortonOrder, is_that_of_a_stable_sort) {
 /// The rule of lbvh.h word by word: ranges first, then numbers.
 class RuleCheck {
   public:
-    RuleCheck(const Lbvh& tree, const MortonOrder& order, uint32_t max_leaf_size)
+    RuleCheck(const AxisBvh& tree, const MortonOrder& order, uint32_t max_leaf_size)
         : tree_(tree), order_(order), max_leaf_size_(max_leaf_size) {}
 
     void run() {
@@ -115,7 +115,7 @@ class RuleCheck {
         visit(node.first + 1, cut, b);
     }
 
-    const Lbvh& tree_;
+    const AxisBvh& tree_;
     const MortonOrder& order_;
     uint32_t max_leaf_size_;
     std::vector<CutRecord> cuts_;
@@ -125,7 +125,7 @@ TEST(Lbvh, follows_its_rule) {
     for (const BoxSet& set : make_sets())
         for (const LbvhBuilder::Config& config : make_configs()) {
             SCOPED_TRACE(set.name);
-            const Lbvh tree = LbvhBuilder::build(set.boxes, config);
+            const AxisBvh tree = LbvhBuilder::build(set.boxes, config);
             RuleCheck(tree, compute_morton_order(set.boxes, config.code_bits), config.max_leaf_size).run();
         }
 }
@@ -134,7 +134,7 @@ TEST(Lbvh, holds_every_primitive_once_and_children_inside_parents) {
     for (const BoxSet& set : make_sets())
         for (const LbvhBuilder::Config& config : make_configs()) {
             SCOPED_TRACE(set.name);
-            const Lbvh tree = LbvhBuilder::build(set.boxes, config);
+            const AxisBvh tree = LbvhBuilder::build(set.boxes, config);
             test::expect_sound(tree.bvh, set.boxes, config.max_leaf_size);
             const Box all = test::compute_union(set.boxes);
             EXPECT_EQ(tree.bvh.nodes[0].lower, all.lower);
@@ -151,7 +151,7 @@ TEST(Lbvh, is_empty_without_primitives) {
 TEST(Lbvh, is_the_same_for_any_number_of_threads) {
     const std::vector<Box> boxes = test::make_random_boxes(72, 100000, 10, 0.1f);
     for (const LbvhBuilder::Config& config : make_configs()) {
-        Lbvh serial, parallel;
+        AxisBvh serial, parallel;
         DenseHeap serial_heap, parallel_heap;
         with_threads(1, [&] { serial = LbvhBuilder::build(boxes, config); });
         with_threads(2, [&] { parallel = LbvhBuilder::build(boxes, config); });
@@ -175,7 +175,8 @@ TEST(Lbvh, of_finer_codes_costs_less_where_primitives_crowd) {
 }
 
 /// The heap of the paper against the compact tree of the same codes, cut off at the last level.
-void expect_same_tree(const DenseHeap& heap, const Lbvh& tree, uint32_t key, uint32_t index, size_t& used) {
+void expect_same_tree(const DenseHeap& heap, const AxisBvh& tree, uint32_t key, uint32_t index,
+                      size_t& used) {
     ++used;
     const TreeNode& node = heap.slots[key];
     const BvhNode& other = tree.bvh.nodes[index];

@@ -74,7 +74,7 @@ class DeviceLbvh : public GpuTest {
     void expect_same_tree(const BoxSet& set, const LbvhBuilder::Config& config) {
         const std::string name = set.name + ", " + std::to_string(config.code_bits) + " bits, leaves of " +
                                  std::to_string(config.max_leaf_size);
-        const Lbvh lbvh = LbvhBuilder::build(set.boxes, config);
+        const AxisBvh lbvh = LbvhBuilder::build(set.boxes, config);
         const LinkedBvh expected = make_linked_bvh(lbvh.bvh, lbvh.axes);
         const Buffer boxes = upload_boxes(set.boxes);
         const DeviceTree found = builder_.build(boxes, uint32_t(set.boxes.size()), config);
@@ -141,7 +141,7 @@ TEST_F(DeviceLbvh, of_a_mesh_is_that_of_its_triangles_boxes) {
         set.boxes.push_back(triangle.box());
     }
     const DeviceMesh mesh = upload_mesh(device(), positions, indices);
-    const Lbvh lbvh = LbvhBuilder::build(set.boxes, {});
+    const AxisBvh lbvh = LbvhBuilder::build(set.boxes, {});
     expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh.bvh, lbvh.axes).nodes, "mesh");
     expect_same_nodes(builder_.build_heap(mesh, {}), LbvhBuilder::build_heap(set.boxes, {}).slots, "heap");
     EXPECT_THROW(upload_mesh(device(), positions, std::vector<uint32_t>{0, 1, 9000}), Error);

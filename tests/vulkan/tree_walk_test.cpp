@@ -166,7 +166,7 @@ class Forest {
         const std::vector<Box> boxes = set.boxes();
         const Bvh sah = SahBvhBuilder::build(boxes, {.max_depth = int(scalar::kTrailLevels32)});
         add_linked("SAH", sah, compute_axes(sah));
-        const Lbvh lbvh = LbvhBuilder::build(boxes, {.code_bits = 63, .max_leaf_size = 2});
+        const AxisBvh lbvh = LbvhBuilder::build(boxes, {.code_bits = 63, .max_leaf_size = 2});
         add_linked("LBVH", lbvh.bvh, lbvh.axes);
         add_built(builder, boxes);
         const auto& kd =
@@ -196,7 +196,7 @@ class Forest {
     }
 
     void add_built(DeviceLbvhBuilder& builder, const std::vector<Box>& boxes) {
-        const Lbvh lbvh = LbvhBuilder::build(boxes, {});
+        const AxisBvh lbvh = LbvhBuilder::build(boxes, {});
         const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(lbvh.bvh, lbvh.axes));
         add_links("LBVH of the device", keep(builder.build(mesh, {})), linked);
         const DenseHeap& dense = dense_.emplace_back(LbvhBuilder::build_heap(boxes, {}));
