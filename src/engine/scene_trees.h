@@ -1,20 +1,26 @@
-// The two upper trees, over the patches of a surface and over the instances: the same for every engine.
+// The two upper trees, over the patches of a surface and over the instances, as engines walk them by default.
 #pragma once
+
+#include <span>
+#include <vector>
 
 #include "engine/prepared_scene.h"
 #include "structures/bvh.h"
 
 namespace relief {
 
+/// Boxes of the patches of a surface, in parallel.
+std::vector<Box> compute_patch_boxes(const Surface& surface);
+
+/// Boxes of the instances in world space. `surface_boxes` hold the patches of each surface; where one is
+/// empty, there is nothing to be seen, and a point stands for the instance.
+std::vector<Box> compute_instance_boxes(const PreparedScene& scene, std::span<const Box> surface_boxes);
+
 /// Over the patches of one surface, in parallel. Displaced patches are dear to enter, so each has a leaf of
 /// its own; polygons share leaves.
 Bvh build_surface_bvh(const Surface& surface);
 
-/// Over the instances, one a leaf; `surface_boxes` hold the patches of each surface, empty boxes for surfaces
-/// without any.
+/// Over the instances, one a leaf; `surface_boxes` as above.
 Bvh build_instance_bvh(const PreparedScene& scene, std::span<const Box> surface_boxes);
-
-/// Edges on the longest way from the root to a leaf.
-uint32_t measure_depth(const Bvh& bvh);
 
 } // namespace relief

@@ -11,14 +11,12 @@ namespace relief {
 
 /// One tree; what the traversal does not walk is empty.
 struct WalkTree {
-    LinkedBvh linked;       ///< stack, restart trail, parent link, skip link
-    SuccinctHeap heap;      ///< trail, pair trail
-    KdTree kd;              ///< restart, push-down, backtrack
-    std::vector<Box> boxes; ///< of the primitives; kd-trees only, whose leaves have none
-    Box bounds;             ///< empty: nothing in it
+    LinkedBvh linked;  ///< stack, restart trail, parent link, skip link
+    SuccinctHeap heap; ///< trail, pair trail
+    KdTree kd;         ///< restart, push-down, backtrack
+    Box bounds;        ///< empty: nothing in it
 
-    /// Of what a traversal reads.
-    size_t byte_count(TraversalKind traversal) const;
+    size_t byte_count() const;
 };
 
 /// At most scalar::kTrailLevels32 levels each, but for kd-trees.
@@ -30,8 +28,8 @@ struct WalkTrees {
     size_t byte_count() const;
 };
 
-/// Boxes of the patches of a surface, in parallel.
-std::vector<Box> compute_patch_boxes(const Surface& surface);
+/// What RenderSettings::traversal means for an engine.
+TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine);
 
 /// `traversal` goes with `structure` and is not automatic.
 WalkTrees make_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "engine/walk_trees.h"
+#include "engine/scene_trees.h"
 #include "relief/error.h"
 #include "structures/sah_bvh.h"
 #include "structures/wide_children.h"

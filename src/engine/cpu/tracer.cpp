@@ -139,10 +139,7 @@ struct Tracer::Implementation {
     SceneView view;
 
     void make_trees(const PreparedScene& scene, const RenderSettings& settings) {
-        const TraversalKind traversal =
-            settings.traversal == TraversalKind::automatic
-                ? available_traversals(EngineKind::cpu, settings.structure).front()
-                : settings.traversal;
+        const TraversalKind traversal = choose_traversal(settings, EngineKind::cpu);
         if (traversal != TraversalKind::wide) {
             walk = find_walk(traversal);
             walk_trees = make_walk_trees(scene, settings.structure, traversal);

@@ -6,6 +6,7 @@
 #include "engine/scene_trees.h"
 #include "engine/vulkan/device_walk_trees.h"
 #include "engine/vulkan/texel_store.h"
+#include "structures/tree_links.h"
 
 namespace relief::vulkan {
 
@@ -40,7 +41,7 @@ struct DeviceScene::Arrays {
     std::vector<NodeTexels> nodes;
     std::vector<Box> surface_boxes;
     std::vector<uint32_t> surface_roots;
-    uint32_t deepest_surface = 0;
+    int deepest_surface = 0;
 
     /// Appends a tree; `make_leaf` turns a leaf of the binary tree into (first, kind and count).
     template <class MakeLeaf> uint32_t append_tree(const Bvh& bvh, MakeLeaf make_leaf) {
@@ -60,9 +61,7 @@ DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene, const
     Arrays arrays;
     add_textures(device, scene);
     add_surfaces(scene, arrays);
-    const TraversalKind traversal = settings.traversal == TraversalKind::automatic
-                                        ? available_traversals(EngineKind::vulkan, settings.structure).front()
-                                        : settings.traversal;
+    const TraversalKind traversal = choose_traversal(settings, EngineKind::vulkan);
     if (settings.structure == StructureKind::bvh && traversal == TraversalKind::stack)
         add_trees(scene, arrays);
     else
@@ -147,7 +146,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
 void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
     for (const Surface& surface : scene.surfaces) {
         const Bvh bvh = build_surface_bvh(surface);
-        arrays.deepest_surface = std::max(arrays.deepest_surface, measure_depth(bvh));
+        arrays.deepest_surface = std::max(arrays.deepest_surface, compute_depth(bvh));
         const uint32_t first_id = uint32_t(arrays.primitive_ids.size());
         if (!surface.has_displacement) append(arrays.primitive_ids, bvh.primitive_ids);
         arrays.surface_roots.push_back(arrays.append_tree(bvh, [&](const BvhNode& node) {
@@ -163,7 +162,7 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
         return std::pair(instances.primitive_ids[node.first], pack_kind(scalar::kNodeInstance, 1));
     });
     // Nearest first, each step down leaves one sibling behind.
-    stack_size_ = measure_depth(instances) + arrays.deepest_surface + 4;
+    stack_size_ = uint32_t(compute_depth(instances) + arrays.deepest_surface + 4);
     node_count_ = arrays.nodes.size();
 }
 
@@ -172,7 +171,7 @@ void DeviceScene::add_walk_trees(const PreparedScene& scene, StructureKind struc
     traversal_kernel_ = std::string("scene_walk_") + traversal_name(traversal);
     std::replace(traversal_kernel_.begin(), traversal_kernel_.end(), '-', '_');
     const WalkTrees trees = make_walk_trees(scene, structure, traversal);
-    append_walk_trees(trees, arrays.nodes, arrays.primitive_ids);
+    append_walk_trees(scene, trees, arrays.nodes, arrays.primitive_ids);
     for (const WalkTree& tree : trees.surfaces)
         arrays.surface_roots.push_back(tree.bounds.is_empty() ? kNone : 0);
     root_ = trees.instances.bounds.is_empty() ? kNone : 0;
