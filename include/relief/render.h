@@ -8,6 +8,7 @@
 
 #include "relief/image.h"
 #include "relief/scene.h"
+#include "relief/traversal.h"
 
 namespace relief {
 
@@ -22,23 +23,6 @@ enum class BottomForm { automatic, fused, split };
 /// full screen; or compute kernels after the first hits have been found by drawing the surfaces.
 enum class RenderMethod { compute, fragment, hybrid };
 enum class Isa { best, avx512, avx2, sse4, neon, scalar };
-
-/// Over instances, and over the patches of a mesh.
-enum class StructureKind { bvh, lbvh, kdtree };
-/// How a ray walks them; see docs/structures.md. `automatic` is the first of available_traversals().
-enum class TraversalKind {
-    automatic,
-    wide,
-    stack,
-    restart_trail,
-    parent_link,
-    skip_link,
-    trail,
-    pair_trail,
-    restart,
-    push_down,
-    backtrack
-};
 
 inline constexpr int kAutoLevel = -1;
 inline constexpr int kMaxLevel = 12;
@@ -129,10 +113,6 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
 
 /// What an engine can walk a structure by, the default first.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);
-
-/// As the command spells it: "skip-link".
-const char* traversal_name(TraversalKind traversal);
-const char* structure_name(StructureKind structure);
 
 /// Names of the instruction sets that this machine can run, best first; "scalar" is always there.
 std::vector<std::string> available_isas();

@@ -131,27 +131,4 @@ BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_le
     return built;
 }
 
-Traversal get_walk(TraversalKind traversal) {
-    switch (traversal) {
-    case TraversalKind::restart_trail:
-        return Traversal::restart_trail;
-    case TraversalKind::parent_link:
-        return Traversal::parent_link;
-    case TraversalKind::skip_link:
-        return Traversal::skip_link;
-    case TraversalKind::trail:
-        return Traversal::trail;
-    case TraversalKind::pair_trail:
-        return Traversal::pair_trail;
-    case TraversalKind::restart:
-        return Traversal::kd_restart;
-    case TraversalKind::push_down:
-        return Traversal::kd_push_down;
-    case TraversalKind::backtrack:
-        return Traversal::kd_backtrack;
-    default:
-        return Traversal::stack;
-    }
-}
-
 } // namespace relief

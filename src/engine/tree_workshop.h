@@ -55,9 +55,6 @@ struct BuiltTree {
 };
 BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels);
 
-/// The name that the walks of structures/walks.h have.
-Traversal get_walk(TraversalKind traversal);
-
 std::unique_ptr<TreeWorkshop> make_cpu_tree_workshop(TriangleSoup soup);
 std::unique_ptr<TreeWorkshop> make_vulkan_tree_workshop(TriangleSoup soup, const RenderSettings& settings);
 

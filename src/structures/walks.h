@@ -1,6 +1,6 @@
 // The walks of shared/traverse_*.h over the trees of this folder: the reference for the SIMD kernels and
 // those of a device, and what the CPU runs when a traversal is asked for by name.
-//   closest_hit<Traversal::trail>(walk_view(heap), ray, leaf);
+//   closest_hit<TraversalKind::trail>(walk_view(heap), ray, leaf);
 #pragma once
 
 #include <bit>
@@ -8,24 +8,13 @@
 #include <type_traits>
 
 #include "base/check.h"
+#include "relief/traversal.h"
 #include "structures/heap_tree.h"
 #include "structures/ray_box.h"
 #include "structures/sah_kdtree.h"
 #include "structures/tree_links.h"
 
 namespace relief {
-
-enum class Traversal {
-    stack,         ///< LinkedBvh
-    restart_trail, ///< LinkedBvh
-    parent_link,   ///< LinkedBvh
-    skip_link,     ///< LinkedBvh
-    trail,         ///< DenseHeap, SuccinctHeap
-    pair_trail,    ///< DenseHeap, SuccinctHeap
-    kd_restart,    ///< KdTree
-    kd_push_down,  ///< KdTree
-    kd_backtrack,  ///< KdTree with cells
-};
 
 /// What a walk did; added up over rays.
 struct WalkCounts {
@@ -95,7 +84,7 @@ struct KdWalkView {
 
 /// All walks in one class: their hooks are the same, and only the members that a walk uses are ever made.
 /// `Leaf` is called as leaf(primitive_id, ray), may shorten ray.t_max, and ends the walk by true.
-template <Traversal kTraversal, class View, class Leaf, class Counts> class Walker {
+template <TraversalKind kTraversal, class View, class Leaf, class Counts> class Walker {
   public:
     using Key = typename View::Key;
 
@@ -122,23 +111,23 @@ template <Traversal kTraversal, class View, class Leaf, class Counts> class Walk
 
   private:
     bool walk(Key start) {
-        if constexpr (kTraversal == Traversal::stack) {
+        if constexpr (kTraversal == TraversalKind::stack) {
             stack_walk = make_empty_stack();
             start_stack(0u);
             return walk_stack();
-        } else if constexpr (kTraversal == Traversal::restart_trail) {
+        } else if constexpr (kTraversal == TraversalKind::restart_trail) {
             restart_walk = start_restart_trail(0u, make_root_level());
             return walk_restart_trail();
-        } else if constexpr (kTraversal == Traversal::parent_link) {
+        } else if constexpr (kTraversal == TraversalKind::parent_link) {
             parent_walk = start_parent_link(0u);
             return walk_parent_link();
-        } else if constexpr (kTraversal == Traversal::skip_link) {
+        } else if constexpr (kTraversal == TraversalKind::skip_link) {
             skip_walk = start_skip_link(0u);
             return walk_skip_link();
-        } else if constexpr (kTraversal == Traversal::trail) {
+        } else if constexpr (kTraversal == TraversalKind::trail) {
             trail_walk = start_trail(start);
             return walk_trail();
-        } else if constexpr (kTraversal == Traversal::pair_trail) {
+        } else if constexpr (kTraversal == TraversalKind::pair_trail) {
             pair_walk = start_pair_trail(start);
             return walk_pair_trail();
         } else {
@@ -149,10 +138,10 @@ template <Traversal kTraversal, class View, class Leaf, class Counts> class Walk
     bool walk_kd() {
         const KdRay ray = make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper,
                                       ray_.t_min, ray_.t_max);
-        if constexpr (kTraversal == Traversal::kd_restart) {
+        if constexpr (kTraversal == TraversalKind::restart) {
             kd_restart_walk = start_kd_restart(0u, ray);
             return walk_kd_restart();
-        } else if constexpr (kTraversal == Traversal::kd_push_down) {
+        } else if constexpr (kTraversal == TraversalKind::push_down) {
             kd_push_down_walk = start_kd_push_down(0u, ray);
             return walk_kd_push_down();
         } else {
@@ -199,8 +188,8 @@ template <Traversal kTraversal, class View, class Leaf, class Counts> class Walk
             is_ended_ = leaf_(view_.primitive_ids()[first + k], ray_);
         }
         if (is_ended_ || ray_.t_max < limit) {
-            if constexpr (kTraversal == Traversal::trail) hit_leaf_ = trail_walk.leaf;
-            if constexpr (kTraversal == Traversal::pair_trail) hit_leaf_ = pair_walk.leaf;
+            if constexpr (kTraversal == TraversalKind::trail) hit_leaf_ = trail_walk.leaf;
+            if constexpr (kTraversal == TraversalKind::pair_trail) hit_leaf_ = pair_walk.leaf;
         }
         return is_ended_;
     }
@@ -258,7 +247,7 @@ inline scalar::KdWalkView walk_view(const KdTree& tree) { return {tree}; }
 
 /// As closest_hit below. The two trails may start at any node, `start`, which becomes the leaf of the hit, if
 /// there is one: rays that follow one another often end at the same things. Others start at the root.
-template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCounts>
 void closest_hit_from(const View& view, typename View::Key& start, BoxRay& ray, Leaf&& leaf,
                       Counts&& counts = {}) {
     auto visit = [&](uint32_t id, BoxRay& r) {
@@ -272,7 +261,7 @@ void closest_hit_from(const View& view, typename View::Key& start, BoxRay& ray, 
 }
 
 /// As any_hit below, likewise.
-template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCounts>
 bool any_hit_from(const View& view, typename View::Key& start, BoxRay ray, Leaf&& leaf,
                   Counts&& counts = {}) {
     scalar::Walker<kTraversal, View, std::remove_reference_t<Leaf>, std::remove_reference_t<Counts>> walker(
@@ -285,14 +274,14 @@ bool any_hit_from(const View& view, typename View::Key& start, BoxRay ray, Leaf&
 /// Calls `leaf(primitive_id, ray)` for every primitive whose box the ray may meet before ray.t_max (in a
 /// kd-tree perhaps several times); the leaf shortens ray.t_max to its hits. Where hits tie, the leaf decides.
 /// `counts`: WalkCounts to add to, or NoCounts.
-template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCounts>
 void closest_hit(const View& view, BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
     auto start = scalar::make_root_key(typename View::Key{});
     closest_hit_from<kTraversal>(view, start, ray, leaf, counts);
 }
 
 /// Whether `leaf(primitive_id, ray)` was true for any primitive; stops at the first.
-template <Traversal kTraversal, class View, class Leaf, class Counts = NoCounts>
+template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCounts>
 bool any_hit(const View& view, const BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
     auto start = scalar::make_root_key(typename View::Key{});
     return any_hit_from<kTraversal>(view, start, ray, leaf, counts);
@@ -300,11 +289,11 @@ bool any_hit(const View& view, const BoxRay& ray, Leaf&& leaf, Counts&& counts =
 
 /// Of a tree as it is, by a full stack: what other structures are compared with.
 template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
-    closest_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
+    closest_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
-    return any_hit<Traversal::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
+    return any_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 } // namespace relief

@@ -125,24 +125,24 @@ class ForestMaker {
 };
 
 /// All that a shader would have as global variables.
-template <Traversal kTraversal> class ForestWalker {
+template <TraversalKind kTraversal> class ForestWalker {
   public:
     using Key = uint;
 
     ForestWalker(const Forest& forest, const BoxRay& ray) : forest_(forest), world_(ray), ray_(ray) {
         object_ray_ = make_object_ray(ray.origin, ray.direction);
-        if constexpr (kTraversal == Traversal::stack) stack_walk = make_empty_stack();
+        if constexpr (kTraversal == TraversalKind::stack) stack_walk = make_empty_stack();
         start({{}});
     }
 
     Nearest run() {
         bool is_complete = false;
-        if constexpr (kTraversal == Traversal::stack) is_complete = walk_stack();
-        if constexpr (kTraversal == Traversal::restart_trail) is_complete = walk_restart_trail();
-        if constexpr (kTraversal == Traversal::parent_link) is_complete = walk_parent_link();
-        if constexpr (kTraversal == Traversal::skip_link) is_complete = walk_skip_link();
-        if constexpr (kTraversal == Traversal::trail) is_complete = walk_trail();
-        if constexpr (kTraversal == Traversal::pair_trail) is_complete = walk_pair_trail();
+        if constexpr (kTraversal == TraversalKind::stack) is_complete = walk_stack();
+        if constexpr (kTraversal == TraversalKind::restart_trail) is_complete = walk_restart_trail();
+        if constexpr (kTraversal == TraversalKind::parent_link) is_complete = walk_parent_link();
+        if constexpr (kTraversal == TraversalKind::skip_link) is_complete = walk_skip_link();
+        if constexpr (kTraversal == TraversalKind::trail) is_complete = walk_trail();
+        if constexpr (kTraversal == TraversalKind::pair_trail) is_complete = walk_pair_trail();
         EXPECT_TRUE(is_complete);
         return best_;
     }
@@ -150,13 +150,13 @@ template <Traversal kTraversal> class ForestWalker {
   private:
     void start(const Instance& tree) {
         heap_base_ = tree.heap_base;
-        if constexpr (kTraversal == Traversal::stack) start_stack(tree.root);
-        if constexpr (kTraversal == Traversal::restart_trail)
+        if constexpr (kTraversal == TraversalKind::stack) start_stack(tree.root);
+        if constexpr (kTraversal == TraversalKind::restart_trail)
             restart_walk = start_restart_trail(tree.root, make_root_level32());
-        if constexpr (kTraversal == Traversal::parent_link) parent_walk = start_parent_link(tree.root);
-        if constexpr (kTraversal == Traversal::skip_link) skip_walk = start_skip_link(tree.root);
-        if constexpr (kTraversal == Traversal::trail) trail_walk = start_trail(1u);
-        if constexpr (kTraversal == Traversal::pair_trail) pair_walk = start_pair_trail(1u);
+        if constexpr (kTraversal == TraversalKind::parent_link) parent_walk = start_parent_link(tree.root);
+        if constexpr (kTraversal == TraversalKind::skip_link) skip_walk = start_skip_link(tree.root);
+        if constexpr (kTraversal == TraversalKind::trail) trail_walk = start_trail(1u);
+        if constexpr (kTraversal == TraversalKind::pair_trail) pair_walk = start_pair_trail(1u);
     }
 
     bool visit_leaf(uint first, uint word, uint) {
@@ -184,19 +184,20 @@ template <Traversal kTraversal> class ForestWalker {
         if (!restore_) return false;
         restore_();
         restore_ = nullptr;
-        if constexpr (kTraversal == Traversal::restart_trail) restart_walk = drop_short_stack(restart_walk);
+        if constexpr (kTraversal == TraversalKind::restart_trail)
+            restart_walk = drop_short_stack(restart_walk);
         heap_base_ = 0;
         set_origin(world_.origin);
         return true;
     }
 
     auto& state() {
-        if constexpr (kTraversal == Traversal::stack) return stack_walk;
-        if constexpr (kTraversal == Traversal::restart_trail) return restart_walk;
-        if constexpr (kTraversal == Traversal::parent_link) return parent_walk;
-        if constexpr (kTraversal == Traversal::skip_link) return skip_walk;
-        if constexpr (kTraversal == Traversal::trail) return trail_walk;
-        if constexpr (kTraversal == Traversal::pair_trail) return pair_walk;
+        if constexpr (kTraversal == TraversalKind::stack) return stack_walk;
+        if constexpr (kTraversal == TraversalKind::restart_trail) return restart_walk;
+        if constexpr (kTraversal == TraversalKind::parent_link) return parent_walk;
+        if constexpr (kTraversal == TraversalKind::skip_link) return skip_walk;
+        if constexpr (kTraversal == TraversalKind::trail) return trail_walk;
+        if constexpr (kTraversal == TraversalKind::pair_trail) return pair_walk;
     }
 
     void set_origin(const Vec3f& origin) {
@@ -205,7 +206,8 @@ template <Traversal kTraversal> class ForestWalker {
     }
 
     TreeNode load_node(uint node) const {
-        constexpr bool kIsHeap = kTraversal == Traversal::trail || kTraversal == Traversal::pair_trail;
+        constexpr bool kIsHeap =
+            kTraversal == TraversalKind::trail || kTraversal == TraversalKind::pair_trail;
         return kIsHeap ? forest_.slots[node] : forest_.nodes[node];
     }
     uint load_parent(uint node) const { return forest_.parents[node]; }
@@ -259,12 +261,12 @@ TEST(Instances, are_met_by_every_walk_that_enters_them) {
     for (const BoxRay& ray : test::make_rays(131, 2000, 6)) {
         const Nearest expected = find_by_brute_force(forest, ray);
         hits += expected.is_hit();
-        ASSERT_EQ(ForestWalker<Traversal::stack>(forest, ray).run(), expected);
-        ASSERT_EQ(ForestWalker<Traversal::restart_trail>(forest, ray).run(), expected);
-        ASSERT_EQ(ForestWalker<Traversal::parent_link>(forest, ray).run(), expected);
-        ASSERT_EQ(ForestWalker<Traversal::skip_link>(forest, ray).run(), expected);
-        ASSERT_EQ(ForestWalker<Traversal::trail>(forest, ray).run(), expected);
-        ASSERT_EQ(ForestWalker<Traversal::pair_trail>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::stack>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::restart_trail>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::parent_link>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::skip_link>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::trail>(forest, ray).run(), expected);
+        ASSERT_EQ(ForestWalker<TraversalKind::pair_trail>(forest, ray).run(), expected);
     }
     EXPECT_GT(hits, 500);
 }

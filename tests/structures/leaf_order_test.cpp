@@ -26,20 +26,20 @@ class OrderCase {
     }
 
     void expect_same_order() {
-        expect<Traversal::stack>(walk_view(linked_), Order::distance);
-        expect<Traversal::parent_link>(walk_view(linked_), Order::axis);
-        expect<Traversal::skip_link>(walk_view(linked_), Order::left);
-        expect<Traversal::restart_trail>(wide_walk_view(linked_), Order::distance);
-        expect<Traversal::trail>(wide_walk_view(succinct_), Order::axis);
-        expect<Traversal::pair_trail>(wide_walk_view(succinct_), Order::distance);
+        expect<TraversalKind::stack>(walk_view(linked_), Order::distance);
+        expect<TraversalKind::parent_link>(walk_view(linked_), Order::axis);
+        expect<TraversalKind::skip_link>(walk_view(linked_), Order::left);
+        expect<TraversalKind::restart_trail>(wide_walk_view(linked_), Order::distance);
+        expect<TraversalKind::trail>(wide_walk_view(succinct_), Order::axis);
+        expect<TraversalKind::pair_trail>(wide_walk_view(succinct_), Order::distance);
         if (linked_.depth <= int(scalar::kTrailLevels32)) {
-            expect<Traversal::restart_trail>(walk_view(linked_), Order::distance);
-            expect<Traversal::trail>(walk_view(succinct_), Order::axis);
-            expect<Traversal::pair_trail>(walk_view(succinct_), Order::distance);
+            expect<TraversalKind::restart_trail>(walk_view(linked_), Order::distance);
+            expect<TraversalKind::trail>(walk_view(succinct_), Order::axis);
+            expect<TraversalKind::pair_trail>(walk_view(succinct_), Order::distance);
         }
         if (!dense_.slots.empty()) {
-            expect<Traversal::trail>(walk_view(dense_), Order::axis);
-            expect<Traversal::pair_trail>(walk_view(dense_), Order::distance);
+            expect<TraversalKind::trail>(walk_view(dense_), Order::axis);
+            expect<TraversalKind::pair_trail>(walk_view(dense_), Order::distance);
         }
     }
 
@@ -47,7 +47,7 @@ class OrderCase {
     uint64_t restarts() const { return restarts_; }
 
   private:
-    template <Traversal kTraversal, class View> void expect(const View& view, Order order) {
+    template <TraversalKind kTraversal, class View> void expect(const View& view, Order order) {
         const std::vector<uint32_t> expected = RecursiveWalk(linked_, ray_, limits_, order).run();
         std::vector<uint32_t> leaves;
         BoxRay ray = ray_;
@@ -67,7 +67,7 @@ class OrderCase {
     }
 
     /// A walk that is to end at a leaf ends there.
-    template <Traversal kTraversal, class View>
+    template <TraversalKind kTraversal, class View>
     void expect_end_at_a_leaf(const View& view, const std::vector<uint32_t>& expected) {
         if (expected.empty()) return;
         const uint32_t last = expected[expected.size() / 2];
@@ -192,7 +192,7 @@ std::vector<KeyedLeaf> find_leaf_keys(const Bvh& bvh) {
     return leaves;
 }
 
-template <Traversal kTraversal, class View>
+template <TraversalKind kTraversal, class View>
 void expect_all_from(const View& view, typename View::Key start, uint32_t first, size_t count,
                      const BoxRay& ray) {
     std::vector<uint32_t> leaves;
@@ -220,11 +220,11 @@ TEST(LeafOrder, from_any_leaf_has_every_leaf_once) {
         for (const KeyedLeaf& leaf : find_leaf_keys(bvh)) {
             const size_t count = bvh.primitive_ids.size();
             const scalar::HeapKey key{uint32_t(leaf.key), uint32_t(leaf.key >> 32)};
-            expect_all_from<Traversal::trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
-            expect_all_from<Traversal::pair_trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::pair_trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
             if (heap.depth > int(scalar::kTrailLevels32)) continue;
-            expect_all_from<Traversal::trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
-            expect_all_from<Traversal::pair_trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::pair_trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
         }
     }
 }
@@ -237,13 +237,14 @@ TEST(LeafOrder, remembers_the_leaf_that_stopped_a_ray) {
     for (const KeyedLeaf& wanted : find_leaf_keys(bvh)) {
         const auto leaf = [&](uint32_t id, const BoxRay&) { return id == wanted.id; };
         uint32_t trail_start = 1, pair_start = 1;
-        EXPECT_TRUE(any_hit_from<Traversal::trail>(walk_view(heap), trail_start, ray.ray(), leaf));
-        EXPECT_TRUE(any_hit_from<Traversal::pair_trail>(walk_view(heap), pair_start, ray.ray(), leaf));
+        EXPECT_TRUE(any_hit_from<TraversalKind::trail>(walk_view(heap), trail_start, ray.ray(), leaf));
+        EXPECT_TRUE(any_hit_from<TraversalKind::pair_trail>(walk_view(heap), pair_start, ray.ray(), leaf));
         EXPECT_EQ(trail_start, wanted.key);
         EXPECT_EQ(pair_start, wanted.key);
         // The next ray needs one box for the same answer.
         WalkCounts counts;
-        EXPECT_TRUE(any_hit_from<Traversal::trail>(walk_view(heap), trail_start, ray.ray(), leaf, counts));
+        EXPECT_TRUE(
+            any_hit_from<TraversalKind::trail>(walk_view(heap), trail_start, ray.ray(), leaf, counts));
         EXPECT_EQ(counts.box_tests, 1u);
         EXPECT_EQ(counts.primitive_tests, 1u);
     }

@@ -176,16 +176,16 @@ class KdRays {
     int count_wrong(const BoxRay& ray) {
         const Nearest expected = test::find_by_brute_force(triangles_, ray);
         hits_ += expected.is_hit();
-        return count_wrong<Traversal::kd_restart>(ray, expected) +
-               count_wrong<Traversal::kd_push_down>(ray, expected) +
-               count_wrong<Traversal::kd_backtrack>(ray, expected);
+        return count_wrong<TraversalKind::restart>(ray, expected) +
+               count_wrong<TraversalKind::push_down>(ray, expected) +
+               count_wrong<TraversalKind::backtrack>(ray, expected);
     }
 
     int hits() const { return hits_; }
     int depth() const { return tree_.depth; }
 
   private:
-    template <Traversal kTraversal> int count_wrong(BoxRay ray, const Nearest& expected) const {
+    template <TraversalKind kTraversal> int count_wrong(BoxRay ray, const Nearest& expected) const {
         NearestLeaf leaf(triangles_);
         const bool is_hit = any_hit<kTraversal>(walk_view(tree_), ray, AnyLeaf(triangles_));
         closest_hit<kTraversal>(walk_view(tree_), ray, leaf);

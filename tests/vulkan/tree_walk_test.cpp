@@ -112,12 +112,12 @@ HeapKey widen_key(HeapKey key) { return key; }
 struct WalkCase {
     std::string name;
     const DeviceTree* tree;
-    Traversal traversal;
+    TraversalKind traversal;
     std::function<Answers(Kind, const std::vector<BoxRay>&, const std::vector<HeapKey>&)> run_on_host;
 };
 
 /// From keys; only walks of heaps heed them.
-template <Traversal kTraversal, class View>
+template <TraversalKind kTraversal, class View>
 Answers run_walk(const View& view, const std::vector<Triangle>& triangles, Kind kind,
                  const std::vector<BoxRay>& rays, const std::vector<HeapKey>& starts) {
     Answers answers;
@@ -172,9 +172,9 @@ class Forest {
         const auto& kd =
             kd_.emplace_back(SahKdTreeBuilder::build(boxes, {.cells = SahKdTreeBuilder::Cells::kept}));
         const DeviceTree& tree = keep(upload_tree(device_, kd));
-        add<Traversal::kd_restart>("kd-tree", tree, walk_view(kd));
-        add<Traversal::kd_push_down>("kd-tree", tree, walk_view(kd));
-        add<Traversal::kd_backtrack>("kd-tree", tree, walk_view(kd));
+        add<TraversalKind::restart>("kd-tree", tree, walk_view(kd));
+        add<TraversalKind::push_down>("kd-tree", tree, walk_view(kd));
+        add<TraversalKind::backtrack>("kd-tree", tree, walk_view(kd));
     }
 
     const std::vector<WalkCase>& walks() const { return walks_; }
@@ -204,18 +204,18 @@ class Forest {
     }
 
     void add_links(const std::string& name, const DeviceTree& tree, const LinkedBvh& linked) {
-        add<Traversal::stack>(name, tree, walk_view(linked));
-        add<Traversal::parent_link>(name, tree, walk_view(linked));
-        add<Traversal::skip_link>(name, tree, walk_view(linked));
+        add<TraversalKind::stack>(name, tree, walk_view(linked));
+        add<TraversalKind::parent_link>(name, tree, walk_view(linked));
+        add<TraversalKind::skip_link>(name, tree, walk_view(linked));
         if (tree.depth <= int(scalar::kTrailLevels32))
-            add<Traversal::restart_trail>(name, tree, walk_view(linked));
-        add<Traversal::restart_trail>(name + ", wide", widen(upload_tree(device_, linked)),
-                                      wide_walk_view(linked));
+            add<TraversalKind::restart_trail>(name, tree, walk_view(linked));
+        add<TraversalKind::restart_trail>(name + ", wide", widen(upload_tree(device_, linked)),
+                                          wide_walk_view(linked));
     }
 
     template <class View> void add_heap(const std::string& name, const DeviceTree& tree, const View& view) {
-        add<Traversal::trail>(name, tree, view);
-        add<Traversal::pair_trail>(name, tree, view);
+        add<TraversalKind::trail>(name, tree, view);
+        add<TraversalKind::pair_trail>(name, tree, view);
     }
 
     /// As if it were deeper: the walk takes keys of 64 bits.
@@ -224,7 +224,7 @@ class Forest {
         return keep(std::move(tree));
     }
 
-    template <Traversal kTraversal, class View>
+    template <TraversalKind kTraversal, class View>
     void add(const std::string& name, const DeviceTree& tree, const View& view) {
         walks_.push_back({name + ", traversal " + std::to_string(int(kTraversal)), &tree, kTraversal,
                           [this, view](Kind kind, const auto& rays, const auto& starts) {
@@ -314,7 +314,7 @@ class TreeBatch : public GpuTest {
         EXPECT_LE(doubtful, kRayCount / 20);
         if (device().is_cpu()) return truths;
         const DeviceTree leaf = upload_tree(device(), LbvhBuilder::build_heap(set.boxes(), {.levels = 1}));
-        const Answers own = run(leaf, mesh, {.traversal = Traversal::trail});
+        const Answers own = run(leaf, mesh, {.traversal = TraversalKind::trail});
         for (uint32_t k = 0; k < kRayCount; ++k) truths[k].nearest = own.hits[k];
         return truths;
     }
@@ -367,7 +367,7 @@ TEST_P(TreeWalks, that_start_at_the_last_hit_find_the_same) {
     const Forest forest(device(), builder(), set);
     const std::vector<BoxRay> rays = make_rays(set);
     for (const WalkCase& walk : forest.walks()) {
-        if (walk.traversal != Traversal::trail && walk.traversal != Traversal::pair_trail) continue;
+        if (walk.traversal != TraversalKind::trail && walk.traversal != TraversalKind::pair_trail) continue;
         TreeQuery query{walk.traversal, Kind::closest, TreeQuery::Counting::each_ray, Start::last_leaf};
         upload(rays);
         rays_.start_keys.upload(roots());
@@ -416,7 +416,8 @@ class TreeTracing : public TreeBatch {
 
 TEST_F(TreeTracing, twice_gives_the_same_bits) {
     const DeviceTree heap = builder().build_heap(mesh_, {});
-    const TreeQuery query{Traversal::pair_trail, Kind::closest, TreeQuery::Counting::each_ray, Start::root};
+    const TreeQuery query{TraversalKind::pair_trail, Kind::closest, TreeQuery::Counting::each_ray,
+                          Start::root};
     const Answers first = run(heap, mesh_, query);
     expect_same(run(heap, mesh_, query), first, "second run");
 }
@@ -434,10 +435,10 @@ TEST_F(TreeTracing, counts_nothing_unless_asked) {
 TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
     const DenseHeap host = LbvhBuilder::build_heap(boxes_, {});
     const Answers found =
-        run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::root});
+        run(upload_tree(device(), host), mesh_, {.traversal = TraversalKind::trail, .start = Start::root});
     rays_.start_keys.upload(roots());
-    const Answers noted =
-        run(upload_tree(device(), host), mesh_, {.traversal = Traversal::trail, .start = Start::last_leaf});
+    const Answers noted = run(upload_tree(device(), host), mesh_,
+                              {.traversal = TraversalKind::trail, .start = Start::last_leaf});
     for (uint32_t k = 0; k < kRayCount; ++k) {
         EXPECT_TRUE(is_same(noted.hits[k], found.hits[k]));
         if (noted.hits[k].primitive == kNone) {
@@ -454,16 +455,16 @@ TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
 TEST_F(TreeTracing, refuses_trees_that_the_traversal_does_not_walk) {
     const DeviceTree linked = make_linked();
     const DeviceTree kd = upload_tree(device(), SahKdTreeBuilder::build(boxes_, {}));
-    EXPECT_THROW(run(linked, mesh_, {.traversal = Traversal::trail}), Error);
-    EXPECT_THROW(run(linked, mesh_, {.traversal = Traversal::kd_restart}), Error);
+    EXPECT_THROW(run(linked, mesh_, {.traversal = TraversalKind::trail}), Error);
+    EXPECT_THROW(run(linked, mesh_, {.traversal = TraversalKind::restart}), Error);
     EXPECT_THROW(run(linked, mesh_, {.start = Start::last_leaf}), Error);
-    EXPECT_THROW(run(kd, mesh_, {.traversal = Traversal::stack}), Error);
-    EXPECT_THROW(run(kd, mesh_, {.traversal = Traversal::kd_backtrack}), Error) << "it has no cells";
+    EXPECT_THROW(run(kd, mesh_, {.traversal = TraversalKind::stack}), Error);
+    EXPECT_THROW(run(kd, mesh_, {.traversal = TraversalKind::backtrack}), Error) << "it has no cells";
     DeviceTree deep = make_linked();
     deep.depth = int(scalar::kTrailLevels64) + 1;
-    EXPECT_THROW(run(deep, mesh_, {.traversal = Traversal::restart_trail}), Error);
+    EXPECT_THROW(run(deep, mesh_, {.traversal = TraversalKind::restart_trail}), Error);
     deep.depth = int(scalar::kTreeStackSize);
-    EXPECT_THROW(run(deep, mesh_, {.traversal = Traversal::stack}), Error);
+    EXPECT_THROW(run(deep, mesh_, {.traversal = TraversalKind::stack}), Error);
 }
 
 TEST_F(TreeTracing, says_so_when_the_device_ends_a_walk_early) {
@@ -473,7 +474,7 @@ TEST_F(TreeTracing, says_so_when_the_device_ends_a_walk_early) {
     const DenseHeap heap = LbvhBuilder::build_heap(same.boxes(), {.levels = 1});
     upload(std::vector<BoxRay>(kRayCount, BoxRay{{0, 0, -1}, {0, 0, 1}}));
     const DeviceMesh mesh = upload_triangles(device(), same.triangles);
-    EXPECT_THROW(run(upload_tree(device(), heap), mesh, {.traversal = Traversal::trail}), Error);
+    EXPECT_THROW(run(upload_tree(device(), heap), mesh, {.traversal = TraversalKind::trail}), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, TreeWalks, testing::ValuesIn(test::make_triangle_sets()),

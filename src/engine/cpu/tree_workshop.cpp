@@ -59,7 +59,7 @@ class TriangleLeaf {
 };
 
 /// One cast over one form of tree.
-template <Traversal kTraversal, class View> class Caster {
+template <TraversalKind kTraversal, class View> class Caster {
   public:
     Caster(const TriangleSoup& soup, const View& view, const TreeQuery& query, const TreeCastData& data)
         : soup_(soup), view_(view), query_(query), data_(data) {}
@@ -140,17 +140,17 @@ class Walks {
         : soup_(soup), query_(query), data_(data) {}
 
     TreeCast operator()(const LinkedBvh& tree) const {
-        switch (get_walk(query_.traversal)) {
-        case Traversal::restart_trail:
+        switch (query_.traversal) {
+        case TraversalKind::restart_trail:
             return tree.depth <= int(scalar::kTrailLevels32)
-                       ? run<Traversal::restart_trail>(walk_view(tree))
-                       : run<Traversal::restart_trail>(wide_walk_view(tree));
-        case Traversal::parent_link:
-            return run<Traversal::parent_link>(walk_view(tree));
-        case Traversal::skip_link:
-            return run<Traversal::skip_link>(walk_view(tree));
+                       ? run<TraversalKind::restart_trail>(walk_view(tree))
+                       : run<TraversalKind::restart_trail>(wide_walk_view(tree));
+        case TraversalKind::parent_link:
+            return run<TraversalKind::parent_link>(walk_view(tree));
+        case TraversalKind::skip_link:
+            return run<TraversalKind::skip_link>(walk_view(tree));
         default:
-            return run<Traversal::stack>(walk_view(tree));
+            return run<TraversalKind::stack>(walk_view(tree));
         }
     }
 
@@ -162,23 +162,23 @@ class Walks {
     }
 
     TreeCast operator()(const KdTree& tree) const {
-        switch (get_walk(query_.traversal)) {
-        case Traversal::kd_push_down:
-            return run<Traversal::kd_push_down>(walk_view(tree));
-        case Traversal::kd_backtrack:
-            return run<Traversal::kd_backtrack>(walk_view(tree));
+        switch (query_.traversal) {
+        case TraversalKind::push_down:
+            return run<TraversalKind::push_down>(walk_view(tree));
+        case TraversalKind::backtrack:
+            return run<TraversalKind::backtrack>(walk_view(tree));
         default:
-            return run<Traversal::kd_restart>(walk_view(tree));
+            return run<TraversalKind::restart>(walk_view(tree));
         }
     }
 
   private:
-    template <Traversal kTraversal, class View> TreeCast run(const View& view) const {
+    template <TraversalKind kTraversal, class View> TreeCast run(const View& view) const {
         return Caster<kTraversal, View>(soup_, view, query_, data_).run();
     }
     template <class View> TreeCast run_trail(const View& view) const {
-        return query_.traversal == TraversalKind::trail ? run<Traversal::trail>(view)
-                                                        : run<Traversal::pair_trail>(view);
+        return query_.traversal == TraversalKind::trail ? run<TraversalKind::trail>(view)
+                                                        : run<TraversalKind::pair_trail>(view);
     }
 
     const TriangleSoup& soup_;

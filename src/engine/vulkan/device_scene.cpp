@@ -5,6 +5,7 @@
 
 #include "engine/scene_trees.h"
 #include "engine/vulkan/device_walk_trees.h"
+#include "engine/vulkan/shader_table.h"
 #include "engine/vulkan/texel_store.h"
 #include "structures/tree_links.h"
 
@@ -168,8 +169,7 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
 
 void DeviceScene::add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
                                  Arrays& arrays) {
-    traversal_kernel_ = std::string("scene_walk_") + traversal_name(traversal);
-    std::replace(traversal_kernel_.begin(), traversal_kernel_.end(), '-', '_');
+    traversal_kernel_ = name_walk("scene_walk", traversal);
     const WalkTrees trees = make_walk_trees(scene, structure, traversal);
     append_walk_trees(scene, trees, arrays.nodes, arrays.primitive_ids);
     for (const WalkTree& tree : trees.surfaces)

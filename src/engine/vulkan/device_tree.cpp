@@ -127,21 +127,24 @@ DeviceTree upload_tree(const Device& device, const KdTree& tree) {
     return result;
 }
 
-bool can_walk(Traversal traversal, const DeviceTree& tree) {
+bool can_walk(TraversalKind traversal, const DeviceTree& tree) {
     switch (traversal) {
-    case Traversal::stack:
-    case Traversal::restart_trail:
-    case Traversal::parent_link:
-    case Traversal::skip_link:
+    case TraversalKind::stack:
+    case TraversalKind::restart_trail:
+    case TraversalKind::parent_link:
+    case TraversalKind::skip_link:
         return tree.form == TreeForm::linked;
-    case Traversal::trail:
-    case Traversal::pair_trail:
+    case TraversalKind::trail:
+    case TraversalKind::pair_trail:
         return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
-    case Traversal::kd_restart:
-    case Traversal::kd_push_down:
+    case TraversalKind::restart:
+    case TraversalKind::push_down:
         return tree.form == TreeForm::kd;
-    case Traversal::kd_backtrack:
+    case TraversalKind::backtrack:
         return tree.form == TreeForm::kd && (tree.node_count == 0 || tree.cells.byte_count() > 0);
+    case TraversalKind::automatic:
+    case TraversalKind::wide:
+        break;
     }
     return false;
 }

@@ -52,6 +52,6 @@ struct TreeCapacity {
 DeviceTree make_device_tree(const Device& device, TreeForm form, const TreeCapacity& capacity);
 
 /// Whether `traversal` walks such trees.
-bool can_walk(Traversal traversal, const DeviceTree& tree);
+bool can_walk(TraversalKind traversal, const DeviceTree& tree);
 
 } // namespace relief::vulkan

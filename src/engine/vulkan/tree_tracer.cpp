@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/check.h"
+#include "engine/vulkan/shader_table.h"
 #include "relief/error.h"
 
 namespace relief::vulkan {
@@ -21,29 +22,11 @@ bool is_heap(const DeviceTree& tree) {
 /// Whether keys and trails of 32 bits do.
 bool is_shallow(const DeviceTree& tree) { return tree.depth <= int(scalar::kTrailLevels32); }
 
-std::string choose_shader(const DeviceTree& tree, Traversal traversal) {
-    const char* const width = is_shallow(tree) ? "32" : "64";
-    switch (traversal) {
-    case Traversal::stack:
-        return "tree_walk_stack";
-    case Traversal::restart_trail:
-        return fmt::format("tree_walk_restart_trail_{}", width);
-    case Traversal::parent_link:
-        return "tree_walk_parent_link";
-    case Traversal::skip_link:
-        return "tree_walk_skip_link";
-    case Traversal::trail:
-        return fmt::format("tree_walk_trail_{}", width);
-    case Traversal::pair_trail:
-        return fmt::format("tree_walk_pair_trail_{}", width);
-    case Traversal::kd_restart:
-        return "tree_walk_kd_restart";
-    case Traversal::kd_push_down:
-        return "tree_walk_kd_push_down";
-    case Traversal::kd_backtrack:
-        return "tree_walk_kd_backtrack";
-    }
-    return {};
+/// Those with keys or trails come in two widths.
+std::string choose_shader(const DeviceTree& tree, TraversalKind traversal) {
+    const std::string name = name_walk("tree_walk", traversal);
+    const bool has_widths = is_heap(tree) || traversal == TraversalKind::restart_trail;
+    return has_widths ? name + (is_shallow(tree) ? "_32" : "_64") : name;
 }
 
 void check_query(const DeviceTree& tree, const TreeQuery& query) {
@@ -54,10 +37,10 @@ void check_query(const DeviceTree& tree, const TreeQuery& query) {
         refuse("the traversal does not walk trees of this form", "choose another tree or traversal");
     if (query.start == TreeQuery::Start::last_leaf && !is_heap(tree))
         refuse("only walks of heaps start at a leaf", "choose a heap and one of its trails");
-    const bool is_trail = query.traversal == Traversal::restart_trail || is_heap(tree);
+    const bool is_trail = query.traversal == TraversalKind::restart_trail || is_heap(tree);
     if (is_trail && tree.depth > int(scalar::kTrailLevels64))
         refuse("the tree is too deep for a trail of 64 bits", "give the builder a smaller greatest depth");
-    if (query.traversal == Traversal::stack && tree.depth >= int(scalar::kTreeStackSize))
+    if (query.traversal == TraversalKind::stack && tree.depth >= int(scalar::kTreeStackSize))
         refuse("the tree is too deep for the stack", "give the builder a smaller greatest depth");
 }
 

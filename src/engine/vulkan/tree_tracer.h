@@ -29,7 +29,7 @@ struct TreeQuery {
     /// where nothing is hit (closest_hit_from and any_hit_from of structures/walks.h). Heaps only.
     enum class Start { root, last_leaf };
 
-    Traversal traversal = Traversal::stack;
+    TraversalKind traversal = TraversalKind::stack;
     Kind kind = Kind::closest;
     Counting counting = Counting::off; ///< each_ray: fills counts
     Start start = Start::root;

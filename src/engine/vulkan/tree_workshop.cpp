@@ -61,7 +61,7 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         if (!rays_ || rays_->capacity < count) rays_.emplace(device_, std::max(count, 1u));
         rays_->rays.upload(std::as_bytes(data.rays));
         TreeQuery walk;
-        walk.traversal = get_walk(query.traversal);
+        walk.traversal = query.traversal;
         walk.kind = query.kind == HitKind::any ? TreeQuery::Kind::any : TreeQuery::Kind::closest;
         if (query.counting == Counting::on) walk.counting = TreeQuery::Counting::each_ray;
         if (!data.keys.empty()) {

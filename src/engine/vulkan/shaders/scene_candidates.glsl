@@ -47,7 +47,6 @@ bool is_slot_after(uint place, CursorData mark) {
     return is_after(slot_entry[place], slot_instance[place], slot_tree[place], mark);
 }
 
-/// Candidates of one instance only: a walk leaves an instance for good.
 bool is_offered(uint tree) {
     for (uint k = 0u; k < slot_count; ++k)
         if (slot_tree[k] == tree && slot_instance[k] == instance_index) return true;
@@ -132,24 +131,12 @@ void enter_patch(uint patch_index, float entry) {
         request_tiles(patch_number, RequestData(instance_index, patch_index, levels));
 }
 
-bool is_before_best(float t, uint patch_index, uint cell) {
-    if (t != best.t) return t < best.t;
-    if (instance_index != best.instance) return instance_index < best.instance;
-    if (patch_index != best.patch_index) return patch_index < best.patch_index;
-    return cell < best.cell;
-}
-
 void offer_triangle(uint patch_index, vec3 a, vec3 b, vec3 c, uint is_upper) {
     TriangleHit found = intersect_sheared(ray, a, b, c, world.t_min, best.t);
-    if (found.t == kInfinity || !is_before_best(found.t, patch_index, is_upper)) return;
-    best.t = found.t;
-    best.instance = instance_index;
-    best.patch_index = patch_index;
+    if (found.t == kInfinity) return;
     vec2 uv = place_in_cell(vec2(found.weight_b, found.weight_c), is_upper);
-    best.u = uv.x;
-    best.v = uv.y;
-    best.cell = is_upper;
-    best.levels = 0u;
+    HitData hit = HitData(found.t, instance_index, patch_index, uv.x, uv.y, is_upper, 0u);
+    if (is_better(hit, best)) best = hit;
 }
 
 void intersect_polygon(uint patch_index) {

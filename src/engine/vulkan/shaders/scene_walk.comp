@@ -97,7 +97,16 @@ HeapBrick load_heap_brick(uint brick) {
 uint find_slot(Key key) { return find_succinct_slot(key); }
 #endif
 #endif
+#ifdef WALK_RESTART_TRAIL
+uint make_root_level() { return make_root_level32(); }
+#endif
 #include "engine/vulkan/shaders/walk_kind.glsl"
+
+#if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
+const uint kRoot = 1u; // a key
+#else
+const uint kRoot = 0u; // a node
+#endif
 
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
 
@@ -132,7 +141,7 @@ bool enter_next_instance() {
             enter_instance(index);
             instance_entry = entry;
             tree = load_walk_tree(1u + instance.surface);
-            start_walk(0u);
+            start_walk(kRoot);
         }
     }
     return is_entered;
@@ -198,7 +207,7 @@ bool walk() {
 #ifdef WALK_STACK
     stack_walk = make_empty_stack();
 #endif
-    start_walk(0u);
+    start_walk(kRoot);
     return walk_on();
 }
 

@@ -45,70 +45,26 @@ bool visit_leaf(uint first, uint word, uint node);
 #include "engine/vulkan/shaders/box_hooks.glsl"
 #endif
 
-#if defined(WALK_STACK)
-#include "shared/traverse_stack.h"
-bool walk_tree() {
-    stack_walk = make_empty_stack();
-    start_stack(push.root);
-    return walk_stack();
-}
-#elif defined(WALK_RESTART_TRAIL)
-#include "shared/traverse_restart_trail.h"
-bool walk_tree() {
-    restart_walk = start_restart_trail(push.root, make_root_level());
-    return walk_restart_trail();
-}
-#elif defined(WALK_TRAIL)
-#include "shared/traverse_trail.h"
+#include "engine/vulkan/shaders/walk_kind.glsl"
+
+#if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
 Key walk_start;
-bool walk_tree() {
-    trail_walk = start_trail(walk_start);
-    return walk_trail();
-}
-Key get_leaf_key() { return trail_walk.leaf; }
-#elif defined(WALK_PAIR_TRAIL)
-#include "shared/traverse_pair_trail.h"
-Key walk_start;
-bool walk_tree() {
-    pair_walk = start_pair_trail(walk_start);
-    return walk_pair_trail();
-}
-Key get_leaf_key() { return pair_walk.leaf; }
-#elif defined(WALK_PARENT_LINK)
-#include "shared/traverse_parent_link.h"
-bool walk_tree() {
-    parent_walk = start_parent_link(push.root);
-    return walk_parent_link();
-}
-#elif defined(WALK_SKIP_LINK)
-#include "shared/traverse_skip_link.h"
-bool walk_tree() {
-    skip_walk = start_skip_link(push.root);
-    return walk_skip_link();
-}
-#elif defined(WALK_KD_RESTART)
-#include "shared/traverse_kd_restart.h"
-bool walk_tree() {
-    kd_restart_walk = start_kd_restart(push.root, enter_root_cell());
-    return walk_kd_restart();
-}
-#elif defined(WALK_KD_PUSH_DOWN)
-#include "shared/traverse_kd_push_down.h"
-bool walk_tree() {
-    kd_push_down_walk = start_kd_push_down(push.root, enter_root_cell());
-    return walk_kd_push_down();
-}
-#elif defined(WALK_KD_BACKTRACK)
-#include "shared/traverse_kd_backtrack.h"
-bool walk_tree() {
-    kd_backtrack_walk = start_kd_backtrack(push.root, enter_root_cell());
-    return walk_kd_backtrack();
-}
+Key get_walk_start() { return walk_start; }
+#else
+uint get_walk_start() { return push.root; }
 #endif
+
+bool walk_tree() {
+#ifdef WALK_STACK
+    walk_state = make_empty_stack();
+#endif
+    start_walk(get_walk_start());
+    return walk_on();
+}
 
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
 Key walk_hit_leaf; ///< that ended the walk or shortened the ray last
-void note_hit_leaf() { walk_hit_leaf = get_leaf_key(); }
+void note_hit_leaf() { walk_hit_leaf = walk_state.leaf; }
 #else
 void note_hit_leaf() {}
 #endif

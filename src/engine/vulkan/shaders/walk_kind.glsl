@@ -1,5 +1,6 @@
 // The walk of shared/traverse_*.h that a WALK_... macro names, under common names: start_walk(root), walk_on(), and its
-// state in walk_state. The hooks of shared/tree.h come before; Key is defined where the walk has one.
+// state in walk_state. The hooks of shared/tree.h come before, and enter_root_cell() of kd-trees; Key is defined where
+// the walk has one. A trail starts at a key.
 #ifndef RELIEF_WALK_KIND_GLSL
 #define RELIEF_WALK_KIND_GLSL
 
@@ -13,7 +14,7 @@ bool walk_on() { return walk_stack(); }
 #include "shared/traverse_restart_trail.h"
 #define KindState RestartState
 #define walk_state restart_walk
-void start_walk(uint root) { restart_walk = start_restart_trail(root, make_root_level32()); }
+void start_walk(uint root) { restart_walk = start_restart_trail(root, make_root_level()); }
 bool walk_on() { return walk_restart_trail(); }
 #elif defined(WALK_PARENT_LINK)
 #include "shared/traverse_parent_link.h"
@@ -31,13 +32,13 @@ bool walk_on() { return walk_skip_link(); }
 #include "shared/traverse_trail.h"
 #define KindState TrailState
 #define walk_state trail_walk
-void start_walk(uint root) { trail_walk = start_trail(root == kNoNode ? 0u : 1u); }
+void start_walk(Key key) { trail_walk = start_trail(key); }
 bool walk_on() { return walk_trail(); }
 #elif defined(WALK_PAIR_TRAIL)
 #include "shared/traverse_pair_trail.h"
 #define KindState PairTrailState
 #define walk_state pair_walk
-void start_walk(uint root) { pair_walk = start_pair_trail(root == kNoNode ? 0u : 1u); }
+void start_walk(Key key) { pair_walk = start_pair_trail(key); }
 bool walk_on() { return walk_pair_trail(); }
 #elif defined(WALK_KD_RESTART)
 #include "shared/traverse_kd_restart.h"

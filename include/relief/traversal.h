@@ -1,0 +1,27 @@
+// Trees and the ways through them, by name.
+#pragma once
+
+namespace relief {
+
+/// Over instances, and over the patches of a mesh.
+enum class StructureKind { bvh, lbvh, kdtree };
+/// How a ray walks them; see docs/structures.md. `automatic` is the first of available_traversals().
+enum class TraversalKind {
+    automatic,
+    wide,
+    stack,
+    restart_trail,
+    parent_link,
+    skip_link,
+    trail,
+    pair_trail,
+    restart,
+    push_down,
+    backtrack
+};
+
+/// As the command spells it: "skip-link".
+const char* traversal_name(TraversalKind traversal);
+const char* structure_name(StructureKind structure);
+
+} // namespace relief
