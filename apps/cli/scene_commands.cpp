@@ -16,6 +16,7 @@
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
+#include "relief/peer_scenes.h"
 #include "relief/render.h"
 #include "relief/samples.h"
 #include "values.h"
@@ -46,13 +47,27 @@ std::string get_severity_name(Severity severity) {
     return "error";
 }
 
+std::string list_scenes() {
+    return fmt::format("{}; for comparisons {}", fmt::join(sample_scene_names(), ", "),
+                       fmt::join(peer_scene_names(), ", "));
+}
+
+/// A sample, or one of the scenes that other renderers are compared on.
+Scene make_named_scene(const SceneOptions& options) {
+    const std::vector<std::string> peers = peer_scene_names();
+    if (std::find(peers.begin(), peers.end(), options.name) == peers.end())
+        return make_sample_scene(options.name, options.is_instanced ? Instancing::shared : Instancing::none);
+    if (options.is_instanced)
+        throw Error(ErrorKind::usage,
+                    {"nothing in this scene can be shared", options.name, "leave out --instanced"});
+    return make_peer_scene(options.name, 1, PeerWorld::sky);
+}
+
 int run_scene(const SceneOptions& options) {
-    const std::string names = fmt::format("{}", fmt::join(sample_scene_names(), ", "));
-    if (options.name.empty()) throw Error(ErrorKind::usage, {"no scene named", "", "known: " + names});
+    if (options.name.empty())
+        throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
     const std::filesystem::path folder = options.folder.empty() ? options.name : options.folder;
-    const Scene scene =
-        make_sample_scene(options.name, options.is_instanced ? Instancing::shared : Instancing::none);
-    save_scene(scene, folder);
+    save_scene(make_named_scene(options), folder);
     fmt::print("wrote {}\n", (folder / "scene.json").string());
     return kExitDone;
 }
@@ -174,8 +189,7 @@ int run_devices(bool is_json) {
 
 Command add_scene(CLI::App& verb) {
     const auto options = std::make_shared<SceneOptions>();
-    const std::string names = fmt::format("{}", fmt::join(sample_scene_names(), ", "));
-    verb.add_option("name", options->name, "one of: " + names)->type_name("NAME");
+    verb.add_option("name", options->name, "one of: " + list_scenes())->type_name("NAME");
     verb.add_option("-o", options->folder, "folder to write; default: the name")->type_name("DIR");
     verb.add_flag("--instanced", options->is_instanced, "copies share their mesh");
     return [options] { return run_scene(*options); };

@@ -1,0 +1,23 @@
+// Scenes to compare renderers by: closed bodies of quads under one rough map, white and diffuse, where all
+// the work is geometry. Made from nothing but formulas and a seed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+/// rock (600 patches, framed), rocks (ten of them, 6,000 patches, none instanced), rock_close (the first,
+/// filling the picture).
+std::vector<std::string> peer_scene_names();
+
+enum class PeerWorld { constant, sky };
+
+/// One map of 1024 x 1024 texels in floats, object space, with overhangs; its longest vector times
+/// `roughness` is about as long as an edge of a patch at 1 (a hard case), a third of that at 0.3 (a usual
+/// one). Throws Error{usage} for an unknown name.
+Scene make_peer_scene(const std::string& name, float roughness, PeerWorld world);
+
+} // namespace relief
