@@ -9,8 +9,8 @@
 #define HWY_TARGET_INCLUDE "engine/cpu/kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include "engine/cpu/bundle_traversal-inl.h"
 #include "engine/cpu/kernels.h"
-#include "engine/cpu/packet_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -53,12 +53,29 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
     }
 }
 
+/// Hits of the rays at the front that leave one point together; returns how many that were.
+size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+                   cpu::TraceHit* hits, size_t count) {
+    if (scene.lod != LodRule::field || scene.leaf != LeafKind::exact) return 0;
+    const uint32_t size = find_bundle(rays, count);
+    if (size < kLeastBundle) return 0;
+    scene.cache->refresh(context);
+    return trace_bundle(scene, context, rays, size, hits) ? size : 0;
+}
+
 void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                   cpu::TraceHit* hits, size_t count) {
-    trace_rays<Query::closest>(scene, context, rays, count, [&](size_t k, const cpu::TraceHit& hit, bool) {
-        hits[k] = hit;
-        hits[k].bias = uint8_t(rays[k].bias);
-    });
+    for (size_t begin = 0; begin < count;) {
+        size_t size = trace_front(scene, context, rays + begin, hits + begin, count - begin);
+        if (size == 0) {
+            size = HWY_MIN(size_t(kBundleSize), count - begin);
+            trace_rays<Query::closest>(
+                scene, context, rays + begin, size,
+                [&](size_t k, const cpu::TraceHit& hit, bool) { hits[begin + k] = hit; });
+        }
+        begin += size;
+    }
+    for (size_t k = 0; k < count; ++k) hits[k].bias = uint8_t(rays[k].bias);
 }
 
 void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,

@@ -65,6 +65,21 @@ HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
     return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
 }
 
+/// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
+/// corners.
+HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+    uint32_t column = 0, row = 0;
+    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    hit.patch = visit.patch;
+    hit.levels = pack_levels(visit.levels);
+    hit.i = uint16_t(tree.cell_x + column + (lane & 3));
+    hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
+    hit.is_upper = uint8_t(lane >> 3);
+    hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * visit.cell_size;
+    hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * visit.cell_size;
+}
+
 /// Exact leaf: sixteen triangles at once.
 template <Query kQuery>
 HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
@@ -81,16 +96,8 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
     test_distances(cz, ray, test);
     if (!test.mask) return false;
     if constexpr (kQuery == Query::any) return true;
-    uint32_t column = 0, row = 0;
-    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
-        hit.patch = visit.patch;
-        hit.levels = pack_levels(visit.levels);
-        hit.i = uint16_t(tree.cell_x + column + (lane & 3));
-        hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
-        hit.is_upper = uint8_t(lane >> 3);
-        hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * visit.cell_size;
-        hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * visit.cell_size;
+        locate_in_block(visit, tree, block, lane, weight_b, weight_c, hit);
     });
     return true;
 }
@@ -130,7 +137,7 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
         hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
         hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
         hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;
-        offer_hit(ray, hit);
+        offer_hit(ray.hit, ray.t_max, hit);
         has_hit = true;
     }
     return has_hit;

@@ -170,11 +170,17 @@ HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], T
 }
 
 template <size_t W>
-HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
+HWY_INLINE void test_distances(const Lanes<W> (&z)[3], float inverse_speed, float t_min, float t_max,
+                               TriangleTest<W>& test) {
     const Lanes<W> sum = test.u + test.v + test.w;
-    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * Lanes<W>(ray.shear[2]);
-    test.mask &= not_equal(sum, Lanes<W>(0.0f)) & less(Lanes<W>(ray.t_min), test.t) &
-                 less_equal(test.t, Lanes<W>(ray.t_max));
+    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * Lanes<W>(inverse_speed);
+    test.mask &=
+        not_equal(sum, Lanes<W>(0.0f)) & less(Lanes<W>(t_min), test.t) & less_equal(test.t, Lanes<W>(t_max));
+}
+
+template <size_t W>
+HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
+    test_distances(z, ray.shear[2], ray.t_min, ray.t_max, test);
 }
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis.
@@ -187,39 +193,45 @@ HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray,
 }
 
 /// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then
-/// does not depend on the order in which triangles were met.
-HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
+/// does not depend on the order in which triangles were met. `reach` becomes its distance.
+HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, const cpu::TraceHit& hit) {
     const auto rank = [](const cpu::TraceHit& h) {
         return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper;
     };
-    if (hit.t == ray.hit.t) {
-        if (hit.instance != ray.hit.instance ? hit.instance > ray.hit.instance
-            : hit.patch != ray.hit.patch     ? hit.patch > ray.hit.patch
-                                             : rank(hit) >= rank(ray.hit))
+    if (hit.t == best.t) {
+        if (hit.instance != best.instance ? hit.instance > best.instance
+            : hit.patch != best.patch     ? hit.patch > best.patch
+                                          : rank(hit) >= rank(best))
             return;
-    } else if (!(hit.t < ray.hit.t)) {
+    } else if (!(hit.t < best.t)) {
         return;
     }
-    ray.hit = hit;
-    ray.t_max = hit.t;
+    best = hit;
+    reach = hit.t;
 }
 
 /// Offers every hit of a triangle test; locate(lane, hit) fills in cell, is_upper and, from the weights of
 /// the three corners, u and v.
 template <size_t W, class Locate>
-HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
+HWY_INLINE void offer_hits(cpu::TraceHit& best, float& reach, uint32_t instance, const TriangleTest<W>& test,
+                           Locate locate) {
     alignas(64) float u[W], v[W], w[W], t[W];
     test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
     for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
-        if (t[lane] > ray.t_max) continue;
+        if (t[lane] > reach) continue;
         const float sum = u[lane] + v[lane] + w[lane];
         cpu::TraceHit hit;
         hit.t = t[lane];
-        hit.instance = ray.instance;
+        hit.instance = instance;
         locate(lane, v[lane] / sum, w[lane] / sum, hit);
-        offer_hit(ray, hit);
+        offer_hit(best, reach, hit);
     }
+}
+
+template <size_t W, class Locate>
+HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
+    offer_hits(ray.hit, ray.t_max, ray.instance, test, locate);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -1,0 +1,324 @@
+// A bundle of rays from one point through the scene: what the projection of micro-polygons onto the picture
+// is in a rasteriser, with every box, patch and block visited once for all rays of a tile, nearest first.
+#if defined(RELIEF_BUNDLE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_BUNDLE_TRAVERSAL_INL_H
+#undef RELIEF_BUNDLE_TRAVERSAL_INL_H
+#else
+#define RELIEF_BUNDLE_TRAVERSAL_INL_H
+#endif
+
+#include "engine/cpu/packet_traversal-inl.h"
+#include "engine/cpu/ray_bundle-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Fewer rays than this are left to packets.
+inline constexpr uint32_t kLeastBundle = 64;
+
+/// A patch that a bundle is inside of, and the rays that were tested against its triangles.
+struct BundleVisit {
+    PatchVisit patch;
+    uint64_t tested[kBundleSize / 64] = {}, hit[kBundleSize / 64] = {};
+
+    static uint32_t count(const uint64_t (&bits)[kBundleSize / 64]) {
+        uint32_t sum = 0;
+        for (const uint64_t word : bits) sum += uint32_t(__builtin_popcountll(word));
+        return sum;
+    }
+};
+
+/// Triangles relative to the bundle's origin, as one ray sees them.
+template <size_t W>
+HWY_INLINE void shear_points(const Lanes<W> (&v)[3], const RayBundle& bundle, uint32_t ray, Lanes<W>& x,
+                             Lanes<W>& y) {
+    x = v[bundle.axis[0]] - Lanes<W>(bundle.shear[0][ray]) * v[bundle.axis[2]];
+    y = v[bundle.axis[1]] - Lanes<W>(bundle.shear[1][ray]) * v[bundle.axis[2]];
+}
+
+template <size_t W>
+HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayBundle& bundle, uint32_t ray,
+                               TriangleTest<W>& test) {
+    test_distances(z, bundle.shear[2][ray], bundle.rays->world[ray].t_min, bundle.rays->t[ray], test);
+}
+
+/// Takes over what is nearest among the hits of one ray.
+template <size_t W, class Locate>
+HWY_INLINE void offer_hits(RayBundle& bundle, uint32_t ray, const TriangleTest<W>& test, Locate locate) {
+    offer_hits(bundle.rays->hits[ray], bundle.rays->t[ray], bundle.instance, test, locate);
+}
+
+/// The triangles of a block, for each ray that may meet one.
+HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                     RayBundle& bundle) {
+    const cpu::Block& leaf = tree.blocks()[block];
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+    Lanes16 v[3], cz[3];
+    for (int k = 0; k < 3; ++k) v[k] = Lanes16::load(leaf.vertex[k]) - Lanes16(origin[k]);
+    gather_corners(v[bundle.axis[2]], cz[0], cz[1], cz[2]);
+    visit_rays(
+        find_window(v, bundle), bundle, [&](uint32_t ray) __attribute__((always_inline)) {
+            visit.tested[ray / 64] |= uint64_t(1) << ray % 64;
+            Lanes16 x, y, cx[3], cy[3];
+            shear_points(v, bundle, ray, x, y);
+            gather_corners(x, cx[0], cx[1], cx[2]);
+            gather_corners(y, cy[0], cy[1], cy[2]);
+            TriangleTest<16> test;
+            if (!test_edges(cx, cy, test)) return false;
+            test_distances(cz, bundle, ray, test);
+            if (!test.mask) return false;
+            visit.hit[ray / 64] |= uint64_t(1) << ray % 64;
+            offer_hits(bundle, ray, test,
+                       [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+                           locate_in_block(visit.patch, tree, block, lane, weight_b, weight_c, hit);
+                       });
+            return true;
+        });
+}
+
+struct BundleEntry {
+    uint32_t child;
+    float nearest;
+};
+
+/// Calls visit(child) for the lanes of `mask`, nearest first.
+template <size_t W, class Visit>
+HWY_INLINE void visit_in_order(LaneMask mask, const Lanes<W>& nearest, const RayBundle& bundle, Visit visit) {
+    alignas(64) float depth[W];
+    nearest.store(depth);
+    BundleEntry order[W];
+    uint32_t count = 0;
+    for (; mask; mask &= mask - 1) {
+        const uint32_t child = uint32_t(__builtin_ctz(mask));
+        uint32_t slot = count++;
+        for (; slot > 0 && order[slot - 1].nearest > depth[child]; --slot) order[slot] = order[slot - 1];
+        order[slot] = {child, depth[child]};
+    }
+    for (uint32_t k = 0; k < count && order[k].nearest * kDepthSlack <= bundle.farthest; ++k)
+        visit(order[k].child);
+}
+
+template <class Visit>
+HWY_INLINE void visit_children(const cpu::Node16& node, const RayBundle& bundle, Visit visit) {
+    Lanes16 bound[6], nearest;
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes16::load(node.bounds[k]);
+    const LaneMask mask = test_boxes(bound, bundle, nearest);
+    visit_in_order(mask, nearest, bundle, visit);
+}
+
+template <class Visit>
+HWY_INLINE void visit_children(const cpu::Node8& node, const RayBundle& bundle, Visit visit) {
+    Lanes8 bound[6], nearest;
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
+    const LaneMask mask = test_boxes(bound, bundle, nearest);
+    visit_in_order(mask, nearest, bundle, visit);
+}
+
+HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayBundle& bundle) {
+    const auto test_block = [&](uint32_t block) { trace_block(visit, tree, block, bundle); };
+    if (tree.level == 5) {
+        visit_children(tree.root(), bundle, [&](uint32_t g) {
+            visit_children(tree.group(int(g)), bundle, [&](uint32_t k) { test_block(g * 8 + k); });
+        });
+    } else if (tree.level == 4) {
+        visit_children(tree.root(), bundle, [&](uint32_t g) { test_block(2 * g), test_block(2 * g + 1); });
+    } else if (tree.level == 3) {
+        visit_children(tree.group(0), bundle, test_block);
+    } else {
+        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
+            test_block(block);
+    }
+}
+
+inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& directory, uint32_t step,
+                            uint32_t x, uint32_t y, RayBundle& bundle) {
+    using cpu::TileDirectory;
+    const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
+    const uint32_t side = TileDirectory::step_side(depth, step);
+    const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + y * side + x];
+    visit_children(node, bundle, [&](uint32_t child) {
+        const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
+        if (step + 1 == TileDirectory::step_count(depth))
+            trace_tree(visit, find_tree(visit.patch, cy << depth | cx), bundle);
+        else
+            trace_directory(visit, directory, step + 1, cx, cy, bundle);
+    });
+}
+
+inline void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch,
+                        RayBundle& bundle) {
+    BundleVisit visit{enter_patch(scene, context, bundle.instance, patch, bundle.rays->world[0].bias)};
+    const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
+    const double built_before = context.counters.bottom_build_s;
+    if (visit.patch.levels.patch <= cpu::kTileLevel)
+        trace_tree(visit, find_tree(visit.patch, 0), bundle);
+    else
+        trace_directory(visit, find_directory(visit.patch), 0, 0, 0, bundle);
+    context.counters.pairs_emitted += uint64_t(BundleVisit::count(visit.tested)) - 1;
+    context.counters.pairs_with_hit += BundleVisit::count(visit.hit);
+    if (context.is_timed)
+        context.counters.sampled_bottom_s +=
+            timer->seconds() - (context.counters.bottom_build_s - built_before);
+}
+
+HWY_INLINE void load_bounds(const WideNode& node, Lanes8 (&bound)[6]) { decode_node(node, bound); }
+HWY_INLINE void load_bounds(const cpu::PolygonNode& node, Lanes8 (&bound)[6]) {
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
+}
+
+/// The window of box k of eight.
+HWY_INLINE Window find_window(const Lanes8 (&bound)[6], uint32_t k, const RayBundle& bundle) {
+    alignas(32) float planes[6][8], corner[3][8];
+    for (int plane = 0; plane < 6; ++plane) bound[plane].store(planes[plane]);
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+    for (uint32_t c = 0; c < 3; ++c)
+        for (uint32_t which = 0; which < 8; ++which)
+            corner[c][which] = planes[(which >> c & 1) != 0 ? 3 + c : c][k] - origin[c];
+    const Lanes8 v[3] = {Lanes8::load(corner[0]), Lanes8::load(corner[1]), Lanes8::load(corner[2])};
+    return find_window(v, bundle);
+}
+
+struct WalkEntry {
+    uint32_t child;
+    float nearest;
+    uint32_t parent, slot; ///< the node and its slot that name the child
+};
+
+/// Calls visit(child, window) for the leaves of a tree of wide nodes that rays may meet something nearer in,
+/// nearest first.
+template <class Nodes, class Visit>
+HWY_INLINE void walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit visit) {
+    using Node = typename Nodes::value_type;
+    if (nodes.empty()) return;
+    WalkEntry stack[kStackSize];
+    uint32_t size = 0;
+    stack[size++] = {0, 0, 0, 0};
+    while (size > 0) {
+        const WalkEntry top = stack[--size];
+        if (top.nearest * kDepthSlack > bundle.farthest) continue;
+        Lanes8 bound[6], nearest;
+        if (Node::is_leaf(top.child)) {
+            load_bounds(nodes[top.parent], bound);
+            const Window window = find_window(bound, top.slot, bundle);
+            if (find_groups(window, bundle)) visit(top.child, window);
+            continue;
+        }
+        const Node& node = nodes[top.child];
+        load_bounds(node, bound);
+        LaneMask mask = test_boxes(bound, bundle, nearest) & ((1u << count_children(node)) - 1);
+        alignas(32) float depth[8];
+        nearest.store(depth);
+        const uint32_t base = size;
+        DCHECK(size + 8 <= kStackSize);
+        for (; mask; mask &= mask - 1) {
+            const uint32_t k = uint32_t(__builtin_ctz(mask));
+            uint32_t slot = size++;
+            for (; slot > base && stack[slot - 1].nearest < depth[k]; --slot) stack[slot] = stack[slot - 1];
+            stack[slot] = {node.child[k], depth[k], top.child, k};
+        }
+    }
+}
+
+/// Eight triangles of a surface without displacement; lanes without one are NaN, and no ray meets them.
+HWY_INLINE void trace_block(const cpu::TriangleBlock& block, const Window& window, RayBundle& bundle) {
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+    Lanes8 v[3][3], cz[3];
+    for (int corner = 0; corner < 3; ++corner) {
+        for (int k = 0; k < 3; ++k) v[corner][k] = Lanes8::load(block.corner[corner][k]) - Lanes8(origin[k]);
+        cz[corner] = v[corner][bundle.axis[2]];
+    }
+    visit_rays(window, bundle, [&](uint32_t ray) {
+        Lanes8 x[3], y[3];
+        for (int corner = 0; corner < 3; ++corner) shear_points(v[corner], bundle, ray, x[corner], y[corner]);
+        TriangleTest<8> test;
+        if (!test_edges(x, y, test)) return false;
+        test_distances(cz, bundle, ray, test);
+        if (!test.mask) return false;
+        offer_hits(bundle, ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+            hit.patch = block.triangle[lane] / 2;
+            locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
+        });
+        return true;
+    });
+}
+
+/// An instance in whose space the rays are no bundle: one after another.
+inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                         BundleRays& rays) {
+    for (uint32_t k = 0; k < rays.count; ++k) {
+        RayState ray;
+        ray.t_min = rays.world[k].t_min, ray.t_max = rays.t[k];
+        ray.hit = rays.hits[k];
+        ray.instance = instance;
+        enter_object(rays.world[k], scene.instances[instance].object_from_world, ray);
+        trace_instance<Query::closest>(scene, context, rays.world[k], 0, ray);
+        rays.hits[k] = ray.hit, rays.t[k] = ray.t_max;
+    }
+}
+
+/// Everything of one instance. False, with nothing done, where the rays are no bundle in its space.
+inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                           BundleRays& rays) {
+    RayBundle bundle;
+    bundle.rays = &rays, bundle.instance = instance;
+    const Affine& object_from_world = scene.instances[instance].object_from_world;
+    if (!enter_space(object_from_world, bundle)) return false;
+    const uint32_t surface = scene.instances[instance].surface;
+    if (!scene.surfaces[surface].has_displacement) {
+        const cpu::PolygonTree& tree = scene.polygon_trees[surface];
+        walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window& window) {
+            trace_block(tree.blocks[cpu::PolygonNode::leaf_block(leaf)], window, bundle);
+        });
+        return true;
+    }
+    const WideBvh& tree = scene.surface_trees[surface];
+    walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window&) {
+        const uint32_t first = WideNode::leaf_first(leaf), count = WideNode::leaf_count(leaf);
+        for (uint32_t k = 0; k < count; ++k)
+            trace_patch(scene, context, tree.primitive_at(first + k), bundle);
+    });
+    return true;
+}
+
+/// How many of the rays, at most kBundleSize, leave one point together.
+inline uint32_t find_bundle(const cpu::TraceRay* rays, size_t count) {
+    const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
+    uint32_t size = 1;
+    while (size < most && rays[size].origin == rays[0].origin && rays[size].bias == rays[0].bias) ++size;
+    return size;
+}
+
+/// Nearest hits of up to kBundleSize rays from one point and of one bias. False where they are no bundle;
+/// `hits` is undefined then.
+inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* world,
+                         uint32_t count, cpu::TraceHit* hits) {
+    BundleRays rays;
+    rays.world = world, rays.hits = hits, rays.count = count;
+    for (uint32_t k = 0; k < kBundleSize; ++k) {
+        const cpu::TraceRay& ray = world[HWY_MIN(k, count - 1)];
+        rays.t[k] = k < count ? ray.t_max : 0.0f;
+        rays.direction[0][k] = ray.direction.x, rays.direction[1][k] = ray.direction.y;
+        rays.direction[2][k] = ray.direction.z;
+    }
+    for (uint32_t k = 0; k < count; ++k) hits[k] = {};
+    if (scene.instance_count == 1) return trace_instance(scene, context, 0, rays);
+    RayBundle bundle;
+    bundle.rays = &rays;
+    if (!enter_space(Affine{}, bundle)) return false;
+    walk_bundle(scene.instance_tree->nodes, bundle, [&](uint32_t leaf, const Window&) {
+        const uint32_t first = WideNode::leaf_first(leaf), size = WideNode::leaf_count(leaf);
+        for (uint32_t k = 0; k < size; ++k) {
+            const uint32_t instance = scene.instance_tree->primitive_at(first + k);
+            if (!trace_instance(scene, context, instance, rays)) trace_singly(scene, context, instance, rays);
+        }
+        for (uint32_t group = 0; group < kGroupCount; ++group)
+            bundle.group_farthest[group] = find_farthest(bundle, group);
+        update_farthest(bundle);
+    });
+    return true;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
