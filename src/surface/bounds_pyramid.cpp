@@ -39,12 +39,9 @@ void check_size(const Texture& texture) {
                                            texture.file, "write the image again"});
 }
 
-ChannelRange compute_block(const Texture& texture, uint32_t block_x, uint32_t block_y) {
-    const uint32_t x0 = block_x * kBlock, x1 = std::min(x0 + kBlock, texture.width);
-    const uint32_t y0 = block_y * kBlock, y1 = std::min(y0 + kBlock, texture.height);
-    ChannelRange range = make_empty_range();
-    for (uint32_t y = y0; y < y1; ++y)
-        for (uint32_t x = x0; x < x1; ++x) {
+[[noreturn]] void refuse_texel(const Texture& texture, const TexelRectangle& rectangle) {
+    for (uint32_t y = rectangle.y0; y <= rectangle.y1; ++y)
+        for (uint32_t x = rectangle.x0; x <= rectangle.x1; ++x) {
             const std::array<float, 3> texel = read_texel(texture, x, y);
             for (int c = 0; c < 3; ++c)
                 if (!std::isfinite(texel[c]))
@@ -52,9 +49,17 @@ ChannelRange compute_block(const Texture& texture, uint32_t block_x, uint32_t bl
                                 {fmt::format("map holds {} in channel {}",
                                              std::isnan(texel[c]) ? "NaN" : "infinity", c),
                                  fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
-            extend(range, texel, texel);
         }
-    return range;
+    throw Error(ErrorKind::bad_input, {"map holds NaN or infinity", texture.file, "repair the map"});
+}
+
+ChannelRange compute_block(const Texture& texture, uint32_t block_x, uint32_t block_y) {
+    const TexelRectangle block{block_x * kBlock, block_y * kBlock,
+                               std::min((block_x + 1) * kBlock, texture.width) - 1,
+                               std::min((block_y + 1) * kBlock, texture.height) - 1};
+    const std::optional<ChannelRange> range = find_texel_range(texture, block);
+    if (!range) refuse_texel(texture, block);
+    return *range;
 }
 
 } // namespace

@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "relief/scene.h"
+#include "surface/texel_range.h"
 
 namespace relief {
-
-struct ChannelRange {
-    std::array<float, 3> low, high;
-};
 
 /// Min/max pyramid over blocks of 8 x 8 texels, each level a quarter of the one below. Immutable, thread
 /// safe.

@@ -91,6 +91,12 @@ ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::Tile&
     const Texture& texture = *tile.texture;
     if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
         return tile.pyramid->query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+    const bool is_inside =
+        columns[0] >= 0 && rows[0] >= 0 && columns[1] < texture.width && rows[1] < texture.height;
+    if (is_inside)
+        if (const auto range = find_texel_range(
+                texture, {uint32_t(columns[0]), uint32_t(rows[0]), uint32_t(columns[1]), uint32_t(rows[1])}))
+            return *range;
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     ChannelRange range{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (int64_t y = rows[0]; y <= rows[1]; ++y) {
