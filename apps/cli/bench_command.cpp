@@ -139,14 +139,14 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report)
 #ifdef RELIEF_EMBREE
 /// One thread of the CPU engine; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
-    if (!o.scenes.empty() || o.size || !o.paper1_only.empty() || o.settings.engine != EngineKind::cpu)
+    if (!o.scenes.empty() || o.size || !o.paper1_only.empty() || o.settings.engine != EngineKind::cpu ||
+        o.settings.threads != 0)
         throw Error(ErrorKind::usage,
                     {"the suite triangles takes --runs, --mesh, --isa and --quick", "", ""});
     bench::TrianglesOptions options;
     options.runs = o.runs.value_or(options.runs);
     options.isa = o.settings.isa;
-    for (const std::string& file : o.meshes)
-        options.meshes.push_back(bench::make_triangle_mesh(file, load_mesh(file)));
+    options.meshes = load_meshes(o);
     const auto result = bench::run_triangles(o.is_quick ? make_quick_options(options) : options, report);
     return {result, bench::make_triangles_files(result)};
 }
