@@ -133,6 +133,13 @@ uint64_t take_serial() {
 
 } // namespace
 
+std::string embree_version() {
+    RTCDevice device = rtcNewDevice(nullptr);
+    const auto version = int(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION));
+    rtcReleaseDevice(device);
+    return fmt::format("{}.{}.{}", version / 10000, version / 100 % 100, version % 100);
+}
+
 struct EmbreeScene::Implementation {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
@@ -218,12 +225,13 @@ EmbreeRun EmbreeScene::trace(std::span<const Ray> rays, const EmbreeQuery& query
         query.is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     const Cast cast{self.scene, &context, rays.data(), self.displaced.count};
     const Clock::time_point start = Clock::now();
-    run_in_ranges(self.threads, rays.size(), kBatchSize, [&](size_t begin, size_t end) {
-        if (is_any)
-            occlude(cast, query.width, begin, end, run.occluded.data());
-        else
-            intersect(cast, query.width, begin, end, run.hits.data());
-    });
+    run_in_ranges(query.threads > 0 ? query.threads : self.threads, rays.size(), kBatchSize,
+                  [&](size_t begin, size_t end) {
+                      if (is_any)
+                          occlude(cast, query.width, begin, end, run.occluded.data());
+                      else
+                          intersect(cast, query.width, begin, end, run.hits.data());
+                  });
     run.seconds = seconds_since(start);
     for (const TreeHit& hit : run.hits) run.hit_count += hit.primitive != kNoIndex ? 1 : 0;
     for (const uint8_t occluded : run.occluded) run.hit_count += occluded;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "relief/scene.h"
@@ -23,6 +24,7 @@ struct EmbreeQuery {
     HitKind kind = HitKind::closest;
     int width = 1;            ///< 1, 8 or 16
     bool is_coherent = false; ///< told to Embree: neighbours start together and go the same way
+    int threads = 0;          ///< 0: those of the scene
 };
 
 struct EmbreeRun {
@@ -32,6 +34,9 @@ struct EmbreeRun {
         hits; ///< of closest hits; primitives of displaced patches first, then plain triangles
     std::vector<uint8_t> occluded; ///< of any hits
 };
+
+/// Version of the library that runs.
+std::string embree_version();
 
 class EmbreeScene {
   public:

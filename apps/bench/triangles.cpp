@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <string>
 
@@ -60,19 +59,6 @@ size_t count_differences(std::span<const TreeHit> a, std::span<const TreeHit> b)
         count += is_same ? 0 : 1;
     }
     return count;
-}
-
-using Measures = std::vector<std::function<double()>>;
-
-/// Each once to warm up, then all in turn; seconds of every run of each.
-std::vector<std::vector<double>> time_in_turn(const Measures& measures, int runs) {
-    std::vector<std::vector<double>> seconds(measures.size());
-    for (int run = 0; run <= runs; ++run)
-        for (size_t k = 0; k < measures.size(); ++k) {
-            const double measured = measures[k]();
-            if (run > 0) seconds[k].push_back(measured);
-        }
-    return seconds;
 }
 
 double get_median(const Json& part) { return part["median"].get<double>(); }
