@@ -70,6 +70,24 @@ Json summarize(std::vector<double> values) {
         {"median", get_median(values)}, {"lowest", *lowest}, {"highest", *highest}, {"runs", values.size()}};
 }
 
+std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measures, int runs) {
+    std::vector<std::vector<double>> seconds(measures.size());
+    for (int run = 0; run <= runs; ++run)
+        for (size_t k = 0; k < measures.size(); ++k) {
+            const double measured = measures[k]();
+            if (run > 0) seconds[k].push_back(measured);
+        }
+    return seconds;
+}
+
+Scene make_white(Scene scene) {
+    for (Material& material : scene.materials) {
+        material.base_color = {1, 1, 1};
+        material.base_color_texture = nullptr;
+    }
+    return scene;
+}
+
 void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variants, const Report& report) {
     for (int run = 0; run <= runs; ++run)
         for (Variant& variant : variants) render_variant(scene, variant, report, run);

@@ -26,6 +26,12 @@ struct Variant {
 /// {median, lowest, highest, runs}; of an even count the mean of the middle two. `values` is not empty.
 nlohmann::ordered_json summarize(std::vector<double> values);
 
+/// What one run of something took, seconds.
+using Measure = std::function<double()>;
+
+/// All in turn, first once to warm up, then `runs` times; seconds of every run that counts, of each.
+std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measures, int runs);
+
 /// The same of one number of each run.
 template <class Get> nlohmann::ordered_json summarize_runs(const std::vector<Statistics>& runs, Get get) {
     std::vector<double> values;
@@ -36,6 +42,9 @@ template <class Get> nlohmann::ordered_json summarize_runs(const std::vector<Sta
 /// Renders all variants once to warm up, then `runs` times in turn (a, b, c, a, b, c ...), so that a machine
 /// that changes its speed changes it for all. A variant that is refused for want of memory keeps the reason.
 void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variants, const Report& report);
+
+/// White, so that paths end where they leave the scene, not where they have grown dim.
+Scene make_white(Scene scene);
 
 /// Median seconds by stage, frame and preparation with their spread, bytes.
 nlohmann::ordered_json describe_frames(const std::vector<Statistics>& runs);

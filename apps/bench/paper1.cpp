@@ -34,15 +34,6 @@ RenderSettings make_direct_light(const Paper1Options& options) {
     return settings;
 }
 
-/// White, so that paths end where they leave the scene, not where they have grown dim.
-Scene make_white(Scene scene) {
-    for (Material& material : scene.materials) {
-        material.base_color = {1, 1, 1};
-        material.base_color_texture = nullptr;
-    }
-    return scene;
-}
-
 RenderSettings make_uncached(RenderSettings settings) {
     settings.bottom_cache_bytes = 0;
     return settings;

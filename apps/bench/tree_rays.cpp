@@ -50,16 +50,6 @@ float compute_diagonal(const Mesh& mesh) {
     return std::sqrt(dot(extent, extent));
 }
 
-/// Cosine-weighted about a unit normal.
-Vec3f draw_direction(const Vec3f& normal, uint32_t number) {
-    const float u = make_fraction(2 * number), v = make_fraction(2 * number + 1);
-    const Vec3f helper = std::fabs(normal.x) > 0.7f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0};
-    const Vec3f side = make_unit(cross(helper, normal)), other = cross(normal, side);
-    const float radius = std::sqrt(u), angle = 2 * kPi * v;
-    return add(add(scale(side, radius * std::cos(angle)), scale(other, radius * std::sin(angle))),
-               scale(normal, std::sqrt(std::max(1 - u, 1e-6f))));
-}
-
 } // namespace
 
 RaySet make_primary_rays(const Camera& camera, int width, int height) {
@@ -77,6 +67,15 @@ RaySet make_primary_rays(const Camera& camera, int width, int height) {
             set.rays.push_back(ray);
         }
     return set;
+}
+
+Vec3f draw_cosine_direction(const Vec3f& normal, uint32_t number) {
+    const float u = make_fraction(2 * number), v = make_fraction(2 * number + 1);
+    const Vec3f helper = std::fabs(normal.x) > 0.7f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0};
+    const Vec3f side = make_unit(cross(helper, normal)), other = cross(normal, side);
+    const float radius = std::sqrt(u), angle = 2 * kPi * v;
+    return add(add(scale(side, radius * std::cos(angle)), scale(other, radius * std::sin(angle))),
+               scale(normal, std::sqrt(std::max(1 - u, 1e-6f))));
 }
 
 std::vector<RaySet> make_secondary_rays(const Mesh& mesh, const RaySet& primary,
@@ -99,8 +98,8 @@ std::vector<RaySet> make_secondary_rays(const Mesh& mesh, const RaySet& primary,
         Ray ray;
         ray.origin = add(seen.origin, scale(seen.direction, hits[k].t));
         ray.t_min = 1e-4f * diagonal;
-        const Vec3f directions[] = {make_unit(to_light), draw_direction(normal, 2 * k),
-                                    draw_direction(normal, 2 * k + 1)};
+        const Vec3f directions[] = {make_unit(to_light), draw_cosine_direction(normal, 2 * k),
+                                    draw_cosine_direction(normal, 2 * k + 1)};
         for (size_t s = 0; s < sets.size(); ++s) {
             ray.direction = directions[s];
             ray.t_max =

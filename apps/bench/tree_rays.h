@@ -22,6 +22,9 @@ struct RaySet {
 /// One ray through the middle of each pixel, row by row, through a pinhole.
 RaySet make_primary_rays(const Camera& camera, int width, int height);
 
+/// By the cosine about a unit normal, the same for the same number.
+Vec3f draw_cosine_direction(const Vec3f& normal, uint32_t number);
+
 /// From each hit of the primary rays: a shadow ray along `to_light`, an occlusion ray of a tenth of the
 /// mesh's diagonal, and a diffuse ray; the latter two by the cosine about the normal on the side of the ray,
 /// the same for every run.

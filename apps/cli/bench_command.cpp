@@ -16,7 +16,10 @@
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
+#ifdef RELIEF_EMBREE
+#include "bench/peers.h"
 #include "bench/triangles.h"
+#endif
 #include "commands.h"
 #include "engine_options.h"
 #include "exit_codes.h"
@@ -38,10 +41,11 @@ struct BenchOptions {
     RenderSettings settings; ///< of the engine; the size is below
     std::optional<std::pair<int, int>> size;
     std::vector<std::string> scenes; ///< none: all of the suite
-    std::vector<std::string> meshes; ///< files
+    std::vector<std::string> meshes, scene_files;
     std::optional<int> runs;
-    bench::Paper1Options paper1;
-    std::vector<const char*> paper1_only; ///< options given that only paper1 has
+    std::optional<uint64_t> tessellated_limit_bytes;
+    std::optional<int> level;
+    std::vector<int> levels; ///< none: all of the suite
     bool is_quick = false, is_quiet = false;
 };
 
@@ -89,33 +93,17 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
 }
 
 SuiteResult run_paper1_suite(const BenchOptions& o, const bench::Report& report) {
-    if (!o.meshes.empty())
-        throw Error(ErrorKind::usage,
-                    {"paper1 measures scenes of its own", "--mesh", "paper2 and paper3 take meshes"});
-    bench::Paper1Options options = o.paper1;
-    const int level = options.settings.level;
+    bench::Paper1Options options;
     options.settings = make_settings(o, 1280, 720);
-    options.settings.level = level;
+    options.settings.level = o.level.value_or(options.settings.level);
+    options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
     options.scenes = check_scenes(o, bench::kPaper1Scenes);
     options.runs = o.runs.value_or(options.runs);
     const auto result = bench::run_paper1(o.is_quick ? make_quick_options(options) : options, report);
     return {result, bench::make_paper1_files(result)};
 }
 
-/// What only paper1 has.
-void refuse_options_of_paper1(const BenchOptions& o) {
-    const RenderSettings &s = o.settings, plain;
-    const char* option = nullptr;
-    if (s.bottom != plain.bottom) option = "--bottom";
-    if (s.isa != plain.isa) option = "--isa";
-    if (!o.paper1_only.empty()) option = o.paper1_only.front();
-    if (option)
-        throw Error(ErrorKind::usage,
-                    {fmt::format("{} has no such option", o.suite), option, "it is one of paper1"});
-}
-
 SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report) {
-    refuse_options_of_paper1(o);
     bench::Paper2Options options;
     options.settings = make_settings(o, 320, 180);
     options.scenes = check_scenes(o, structure_scene_names());
@@ -126,7 +114,6 @@ SuiteResult run_paper2_suite(const BenchOptions& o, const bench::Report& report)
 }
 
 SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report) {
-    refuse_options_of_paper1(o);
     bench::Paper3Options options;
     options.settings = make_settings(o, 640, 360);
     options.scenes = check_scenes(o, bench::paper3_scenes());
@@ -139,36 +126,102 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report)
 #ifdef RELIEF_EMBREE
 /// One thread of the CPU engine; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
-    if (!o.scenes.empty() || o.size || !o.paper1_only.empty() || o.settings.engine != EngineKind::cpu)
-        throw Error(ErrorKind::usage,
-                    {"the suite triangles takes --runs, --mesh, --isa and --quick", "", ""});
     bench::TrianglesOptions options;
     options.runs = o.runs.value_or(options.runs);
     options.isa = o.settings.isa;
-    for (const std::string& file : o.meshes)
-        options.meshes.push_back(bench::make_triangle_mesh(file, load_mesh(file)));
+    options.meshes = load_meshes(o);
     const auto result = bench::run_triangles(o.is_quick ? make_quick_options(options) : options, report);
     return {result, bench::make_triangles_files(result)};
+}
+
+/// Scenes of files take the place of the suite's own, unless those are asked for as well.
+SuiteResult run_peers_suite(const BenchOptions& o, const bench::Report& report) {
+    bench::PeersOptions options;
+    const RenderSettings settings = make_settings(o, options.width, options.height);
+    options.width = settings.width, options.height = settings.height;
+    options.isa = settings.isa, options.threads = settings.threads;
+    options.runs = o.runs.value_or(options.runs);
+    options.scenes = check_scenes(o, bench::peers_scene_names());
+    for (const std::string& file : o.scene_files) {
+        options.files.push_back(load_scene(file));
+        options.files.back().source = file;
+    }
+    if (!o.scene_files.empty()) options.scenes = o.scenes;
+    if (!o.levels.empty()) options.levels = o.levels;
+    options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
+    const auto result = bench::run_peers(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_peers_files(result)};
 }
 #endif
 
 struct Suite {
     std::string_view name, help;
     SuiteResult (*run)(const BenchOptions& options, const bench::Report& report);
+    std::vector<std::string_view> options; ///< those that not every suite has
 };
 
-constexpr Suite kSuites[] = {
-    {"paper1", "table and figures of Harada 2015 (default)", run_paper1_suite},
-    {"paper2", "builders and traversals over triangle meshes", run_paper2_suite},
-    {"paper3", "structures, traversals and render methods of GRAPP 2019", run_paper3_suite},
+const std::vector<Suite>& list_suites() {
+    static const std::vector<Suite> kSuites = {
+        {"paper1",
+         "table and figures of Harada 2015 (default)",
+         run_paper1_suite,
+         {"--scenes", "--size", "--level", "--tessellated-limit", "--engine", "--bottom", "--threads",
+          "--isa"}},
+        {"paper2",
+         "builders and traversals over triangle meshes",
+         run_paper2_suite,
+         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
+        {"paper3",
+         "structures, traversals and render methods of GRAPP 2019",
+         run_paper3_suite,
+         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
 #ifdef RELIEF_EMBREE
-    {"triangles", "plain triangle meshes on the CPU against Embree", run_triangles_suite},
+        {"triangles",
+         "plain triangle meshes on the CPU against Embree",
+         run_triangles_suite,
+         {"--mesh", "--isa"}},
+        {"peers",
+         "displaced surfaces on the CPU against Embree's three ways",
+         run_peers_suite,
+         {"--scenes", "--scene", "--levels", "--size", "--tessellated-limit", "--threads", "--isa"}},
 #endif
-};
+    };
+    return kSuites;
+}
+
+/// Options of this command line that not every suite has.
+std::vector<std::string_view> list_given(const BenchOptions& o) {
+    const RenderSettings plain;
+    const std::pair<std::string_view, bool> options[] = {
+        {"--scenes", !o.scenes.empty()},
+        {"--mesh", !o.meshes.empty()},
+        {"--scene", !o.scene_files.empty()},
+        {"--size", o.size.has_value()},
+        {"--level", o.level.has_value()},
+        {"--levels", !o.levels.empty()},
+        {"--tessellated-limit", o.tessellated_limit_bytes.has_value()},
+        {"--engine", o.settings.engine != plain.engine},
+        {"--bottom", o.settings.bottom != plain.bottom},
+        {"--threads", o.settings.threads != plain.threads},
+        {"--isa", o.settings.isa != plain.isa}};
+    std::vector<std::string_view> given;
+    for (const auto& [name, is_given] : options)
+        if (is_given) given.push_back(name);
+    return given;
+}
+
+void refuse_options_of_others(const Suite& suite, const BenchOptions& o) {
+    for (const std::string_view option : list_given(o)) {
+        if (std::find(suite.options.begin(), suite.options.end(), option) != suite.options.end()) continue;
+        throw Error(ErrorKind::usage, {fmt::format("{} has no such option", suite.name), std::string(option),
+                                       fmt::format("beside --runs, --quick, -o and -q it takes {}",
+                                                   fmt::join(suite.options, ", "))});
+    }
+}
 
 const Suite& find_suite(const std::string& name) {
     std::vector<std::string_view> names;
-    for (const Suite& suite : kSuites) {
+    for (const Suite& suite : list_suites()) {
         if (suite.name == name) return suite;
         names.push_back(suite.name);
     }
@@ -178,13 +231,14 @@ const Suite& find_suite(const std::string& name) {
 
 std::string describe_suites() {
     std::string text;
-    for (const Suite& suite : kSuites)
+    for (const Suite& suite : list_suites())
         text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
     return text;
 }
 
 int run_bench(const BenchOptions& options) {
     const Suite& suite = find_suite(options.suite);
+    refuse_options_of_others(suite, options);
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
@@ -209,17 +263,20 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
         [&o](const std::string& text) { o.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
     add("--scenes", "LIST",
         "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
+        "peers: of party,rock,rock_mild,rocks,rocks_mild,rock_close,rock_close_mild,pumpkin,bark; "
         "default: all",
         [&o](const std::string& text) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
         });
-    verb.add_option("--mesh", o.meshes, "not for paper1: measure this mesh, too; may be repeated")
+    verb.add_option("--mesh", o.meshes, "paper2, paper3, triangles: measure this mesh, too; may be repeated")
         ->type_name("FILE");
-    add("--tessellated-limit", "MB", "leave out pre-tessellated scenes above; default 4096",
+    verb.add_option("--scene", o.scene_files, "peers: measure this scene; may be repeated")
+        ->type_name("FILE");
+    add("--tessellated-limit", "MB",
+        "leave out pre-tessellated scenes above; default 4096 for paper1, 2048 for peers",
         [&o](const std::string& text) {
-            o.paper1_only.push_back("--tessellated-limit");
-            o.paper1.tessellated_limit_bytes =
+            o.tessellated_limit_bytes =
                 uint64_t(parse_integer("--tessellated-limit", text, 0, kMaxLimitMegabytes)) << 20;
         });
     verb.add_flag("--quick", o.is_quick, "tiny pictures and meshes, one run: only shows that it works");
@@ -230,15 +287,18 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
     const auto add = [&](const char* name, const char* value, const char* help, auto parse) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
-    add("--size", "WxH", "pixels; default 1280x720, 320x180 and 640x360 for paper1, 2 and 3",
+    add("--size", "WxH",
+        "pixels; default 1280x720 for paper1 and peers, 320x180 for paper2, 640x360 for paper3",
         [&o](const std::string& text) {
             const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
             o.size = {int(size[0]), int(size[1])};
         });
     add("--level", "auto|N", "paper1: from the size on screen (default), or 2^N cells a side",
+        [&o](const std::string& text) { o.level = parse_level(text); });
+    add("--levels", "LIST", "peers: levels to measure, of auto and 0 to 12; default 3,4,5,6,auto",
         [&o](const std::string& text) {
-            o.paper1_only.push_back("--level");
-            o.paper1.settings.level = parse_level(text);
+            for (const std::string& level : split(text, ',')) o.levels.push_back(parse_level(level));
+            if (o.levels.empty()) refuse_value("--levels", text, "a list of levels");
         });
 }
 

@@ -97,14 +97,22 @@ bool visit_primitive(const cpu::SceneView& scene, cpu::TraceContext& context, co
     return has_hit;
 }
 
+void evaluate_cells(const Surface& surface, const cpu::PatchCells& cells, Vec3f* vertices, size_t stride) {
+    VertexGrid grid;
+    evaluate_tile(surface, {cells.patch, cells.levels, cells.cell_x, cells.cell_y, cells.cell_count}, grid);
+    for (size_t r = 0; r <= cells.cell_count; ++r)
+        for (size_t c = 0; c <= cells.cell_count; ++c) {
+            const size_t slot = r * VertexGrid::kPitch + c;
+            vertices[r * stride + c] = {grid.axis[0][slot], grid.axis[1][slot], grid.axis[2][slot]};
+        }
+}
+
 } // namespace
 
 const cpu::Kernels& kernels(const char* name) {
-    static const cpu::Kernels kKernels{name,
-                                       closest_hits,
-                                       any_hits,
-                                       build_tree,
-                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
+    static const cpu::Kernels kKernels{
+        name,       closest_hits,   any_hits,
+        build_tree, evaluate_cells, {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

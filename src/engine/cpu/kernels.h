@@ -33,12 +33,23 @@ struct PrimitiveKernels {
     Function closest, any;
 };
 
+/// Cells [cell_x, cell_x + cell_count) x [cell_y, cell_y + cell_count) of a patch at its levels, at most
+/// 2^kTileLevel a side.
+struct PatchCells {
+    uint32_t patch;
+    PatchLevels levels;
+    uint32_t cell_x, cell_y, cell_count;
+};
+
 struct Kernels {
     const char* name;
     /// Nearest hits of `count` rays; neighbours in runs of 16 may be traced as one packet.
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
+    /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; a row starts `stride` after
+    /// the one before.
+    void (*evaluate_cells)(const Surface&, const PatchCells& cells, Vec3f* vertices, size_t stride);
     PrimitiveKernels primitive; ///< for walks of any other tree
 };
 

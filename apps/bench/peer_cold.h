@@ -1,0 +1,18 @@
+// First images from cold: scene and maps in memory, nothing made of them yet.
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/peer_rays.h"
+#include "bench/peer_scene.h"
+
+namespace relief::bench {
+
+/// {relief, triangles, grid, subdivision}, each with seconds of its parts (prepare, tessellate, build,
+/// primary, occlusion, diffuse), of the images first_primary, first_occlusion and first_diffuse, bytes, and
+/// the peak of what it took resident; in turns.
+nlohmann::ordered_json measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets);
+
+} // namespace relief::bench

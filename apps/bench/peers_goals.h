@@ -1,0 +1,13 @@
+// Which of the project's goals a result of the suite peers tells about, and whether they are met.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace relief::bench {
+
+/// A list of {name, scene, level, goal, bound, reached, ratio, unit, met}. `bound` is "at least" or "at
+/// most", `ratio` what was reached over the goal, or its inverse where less is better: 1 and more is met. Of
+/// levels 5 and auto, or of all where neither was measured. What was not measured is left out.
+nlohmann::ordered_json make_peers_goals(const nlohmann::ordered_json& result);
+
+} // namespace relief::bench
