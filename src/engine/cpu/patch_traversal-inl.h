@@ -70,9 +70,8 @@ template <Query kQuery>
 HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                     RayState& ray) {
     const cpu::Block& leaf = tree.blocks()[block];
-    Lanes16 vertex[3], x, y, z, cx[3], cy[3], cz[3];
-    for (int k = 0; k < 3; ++k) vertex[k] = Lanes16::load(leaf.vertex[k]);
-    shear_vertices(vertex, ray, x, y, z);
+    Lanes16 x, y, z, cx[3], cy[3], cz[3];
+    shear_vertices(leaf.vertex, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
     gather_corners(y, cy[0], cy[1], cy[2]);
     TriangleTest<16> test;
@@ -143,25 +142,47 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
-/// Nearest child first, all the way down. For Query::any, true at the first hit.
+/// Blocks of a list, nearest first; for Query::any as they come, since all of them are at hand already.
+template <Query kQuery>
+HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tree, EntryList& blocks,
+                             RayState& ray) {
+    bool has_hit = false;
+    if constexpr (kQuery == Query::closest) blocks.sort();
+    for (uint32_t k = 0; k < blocks.count; ++k) {
+        if (kQuery == Query::closest && blocks.distance(k) > ray.t_max * kBoxSlack) continue;
+        has_hit |= intersect_block<kQuery>(visit, tree, blocks.child(k), ray);
+        if (kQuery == Query::any && has_hit) return true;
+    }
+    return has_hit;
+}
+
+/// Everything of a tile along one ray. The boxes of all groups are tested before the first block: their loads
+/// overlap, and one list is sorted instead of many.
 template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
+    EntryList blocks;
+    Lanes8 entry8;
+    Lanes16 entry;
+    if (tree.level == 5) {
+        for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
+            const uint32_t g = uint32_t(__builtin_ctz(groups));
+            const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
+            blocks.append(mask, entry8, g * 8);
+        }
+        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+    }
+    if (tree.level == 3) {
+        const LaneMask mask = test_node(tree.group(0).bounds, ray, entry8);
+        blocks.append(mask, entry8, 0);
+        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+    }
     bool has_hit = false;
     const auto test_block = [&](uint32_t block) {
         has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
         return kQuery == Query::any && has_hit;
     };
-    Lanes16 entry;
-    Lanes8 entry8;
-    if (tree.level == 5) {
-        visit_in_order(test_node(tree.root(), ray, entry), entry, ray, [&](uint32_t g) {
-            const LaneMask mask = test_node(tree.group(int(g)), ray, entry8);
-            return visit_in_order(mask, entry8, ray, [&](uint32_t k) { return test_block(g * 8 + k); });
-        });
-    } else if (tree.level == 4) {
-        visit_in_order(test_node(tree.root(), ray, entry), entry, ray,
-                       [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
-    } else if (tree.level == 3) {
-        visit_in_order(test_node(tree.group(0), ray, entry8), entry8, ray, test_block);
+    if (tree.level == 4) {
+        const LaneMask mask = test_node(tree.root().bounds, ray, entry);
+        visit_in_order(mask, entry, ray, [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
     } else {
         for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
             if (test_block(block)) break;
@@ -180,7 +201,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
             .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
     Lanes16 entry;
     bool has_hit = false;
-    visit_in_order(test_node(node, ray, entry), entry, ray, [&](uint32_t child) {
+    visit_in_order(test_node(node.bounds, ray, entry), entry, ray, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         has_hit |= step + 1 == TileDirectory::step_count(depth)
                        ? trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), ray)
