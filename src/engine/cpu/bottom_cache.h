@@ -101,14 +101,18 @@ class BottomCache {
     /// call.
     const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
                                          const PatchLevels& levels, BuildTreeFunction build) {
-        if (const CachedTree* recent = find_recent(context, key))
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
             return static_cast<const BottomTree&>(*recent);
+        }
         return find_or_build_elsewhere(context, surface, key, levels, build);
     }
     const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
                                                  const TreeKey& key, const PatchLevels& levels) {
-        if (const CachedTree* recent = find_recent(context, key))
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
             return static_cast<const TileDirectory&>(*recent);
+        }
         return find_or_build_elsewhere(context, surface, key, levels);
     }
     /// One that this worker met lately, or null.
@@ -116,7 +120,6 @@ class BottomCache {
         const RecentTrees::Entry& entry = context.recent.place(key);
         if (entry.epoch != context.epoch.load(std::memory_order_relaxed) || !(entry.key == key))
             return nullptr;
-        ++context.counters.reused;
         return entry.tree;
     }
 

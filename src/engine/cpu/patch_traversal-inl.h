@@ -54,15 +54,18 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const cpu::TraceRay& world) 
     visit.cell_size = 1.0f / float(1u << level);
 }
 
+HWY_INLINE cpu::TreeKey make_key(const PatchVisit& visit, uint32_t tile) {
+    return {visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
+}
+
 HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
-    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels,
-                                                  build_tree);
+    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, make_key(visit, tile),
+                                                  visit.levels, build_tree);
 }
 
 HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile, pack_levels(visit.levels)};
-    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
+    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface,
+                                                       make_key(visit, cpu::kDirectoryTile), visit.levels);
 }
 
 /// Exact leaf: sixteen triangles at once.
@@ -97,8 +100,8 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
 /// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray
 /// that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
 template <Query kQuery>
-HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
-                                RayState& ray) {
+HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                  RayState& ray) {
     const cpu::Block& leaf = tree.blocks()[block];
     alignas(32) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
@@ -182,7 +185,8 @@ template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::Bott
     };
     if (tree.level == 4) {
         const LaneMask mask = test_node(tree.root().bounds, ray, entry);
-        visit_in_order(mask, entry, ray, [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
+        visit_in_order(mask, entry, ray,
+                       [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
     } else {
         for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
             if (test_block(block)) break;

@@ -87,47 +87,61 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayState& ray, 
     return less_equal(entry, exit * Lanes<W>(kBoxSlack));
 }
 
-/// The same for the boxes of a node, lower x y z, upper x y z: which plane is near is known before it is loaded.
+/// The same for the boxes of a node, lower x y z, upper x y z: which plane is near is known before it is
+/// loaded.
 template <size_t W>
 HWY_INLINE LaneMask test_node(const float (&bounds)[6][W], const RayState& ray, Lanes<W>& entry) {
     Lanes<W> near[3], far[3];
     for (int k = 0; k < 3; ++k) {
         const Lanes<W> reciprocal(ray.reciprocal[k]);
         near[k] = (Lanes<W>::load(bounds[ray.near_plane[k]]) - Lanes<W>(ray.near_origin[k])) * reciprocal;
-        far[k] =
-            (Lanes<W>::load(bounds[2 * k + 3 - ray.near_plane[k]]) - Lanes<W>(ray.far_origin[k])) * reciprocal;
+        far[k] = (Lanes<W>::load(bounds[2 * k + 3 - ray.near_plane[k]]) - Lanes<W>(ray.far_origin[k])) *
+                 reciprocal;
     }
     entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
     const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));
     return less_equal(entry, exit * Lanes<W>(kBoxSlack));
 }
 
-/// Bounds of the children of a quantised node, by the decoder that the builder checked with.
-HWY_INLINE void decode_node(const WideNode& node, Lanes8 (&bound)[6]) {
+/// The same for the children of a quantised node, by the decoder that the builder checked with.
+HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8& entry) {
+    Lanes8 near[3], far[3];
     for (int k = 0; k < 3; ++k) {
+        const bool is_negative = ray.near_plane[k] != k;
+        const uint8_t* const near_codes = is_negative ? node.upper[k] : node.lower[k];
+        const uint8_t* const far_codes = is_negative ? node.lower[k] : node.upper[k];
         const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
-        bound[k] = origin + Lanes8::load_codes(node.lower[k]) * scale;
-        bound[3 + k] = origin + Lanes8::load_codes(node.upper[k]) * scale;
+        const Lanes8 reciprocal(ray.reciprocal[k]);
+        near[k] = (origin + Lanes8::load_codes(near_codes) * scale - Lanes8(ray.near_origin[k])) * reciprocal;
+        far[k] = (origin + Lanes8::load_codes(far_codes) * scale - Lanes8(ray.far_origin[k])) * reciprocal;
     }
+    entry = max(max(near[0], near[1]), max(near[2], Lanes8(ray.t_min)));
+    const Lanes8 exit = min(min(far[0], far[1]), min(far[2], Lanes8(ray.t_max)));
+    return less_equal(entry, exit * Lanes8(kBoxSlack)) & ((1u << node.child_count) - 1);
 }
 
-/// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child, so
-/// that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will do).
+/// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child,
+/// so that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will
+/// do).
 struct EntryList {
     static constexpr uint32_t kChildMask = 127, kCapacity = 128;
     alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored
     uint32_t count = 0;
 
-    /// Appends the lanes of `mask` as children first, first + 1...
+    /// Appends the lanes of `mask` as children first, first + 1...; `first` is a multiple of W.
     template <size_t W> HWY_INLINE void append(LaneMask mask, const Lanes<W>& entry, uint32_t first) {
-        using D = typename Lanes<W>::D;
-        const hn::RebindToUnsigned<D> d;
+        // Read from memory: compilers make a mess of a vector that counts up from a variable.
+        alignas(64) static constexpr uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                              8, 9, 10, 11, 12, 13, 14, 15};
+        const hn::RebindToUnsigned<typename Lanes<W>::D> d;
         constexpr size_t kLanes = Lanes<W>::kLanes;
         for (size_t p = 0; p < Lanes<W>::kParts; ++p) {
-            const auto child = hn::Iota(d, first + uint32_t(p * kLanes));
-            const auto keys = hn::Or(hn::AndNot(hn::Set(d, kChildMask), hn::BitCast(d, entry.part[p])), child);
-            const uint8_t bits[8] = {uint8_t(mask >> (p * kLanes)), uint8_t(mask >> (p * kLanes + 8))};
-            count += uint32_t(hn::CompressStore(keys, hn::LoadMaskBits(d, bits), d, key + count));
+            const auto distance = hn::AndNot(hn::Set(d, kChildMask), hn::BitCast(d, entry.part[p]));
+            const auto child = hn::Or(hn::Set(d, first), hn::Load(d, kNumbers + p * kLanes));
+            const LaneMask part = mask >> (p * kLanes);
+            const uint8_t bits[8] = {uint8_t(part), uint8_t(part >> 8)};
+            hn::CompressStore(hn::Or(distance, child), hn::LoadMaskBits(d, bits), d, key + count);
+            count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
         }
     }
 
