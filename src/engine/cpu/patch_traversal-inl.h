@@ -19,18 +19,15 @@ struct PatchVisit {
     const Surface* surface;
     uint32_t instance, surface_index, patch;
     PatchLevels levels;
-    float cell_size; ///< of (u, v)
 };
 
 /// Levels of the surface that a ray sees: the field's lowered by its bias.
 HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
                                   uint32_t patch, uint32_t bias) {
     const Instance& placed = scene.instances[instance];
-    PatchVisit visit{&scene,         &context, &scene.surfaces[placed.surface],       instance,
-                     placed.surface, patch,    placed.levels->at(patch).biased(bias), 0};
-    visit.cell_size = 1.0f / float(1u << visit.levels.patch);
     ++context.counters.pairs_emitted;
-    return visit;
+    return {&scene,         &context, &scene.surfaces[placed.surface],      instance,
+            placed.surface, patch,    placed.levels->at(patch).biased(bias)};
 }
 
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
@@ -51,7 +48,6 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const cpu::TraceRay& world) 
         uint8_t(scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.levels.patch));
     visit.levels.patch = level;
     visit.levels.edge = {level, level, level, level};
-    visit.cell_size = 1.0f / float(1u << level);
 }
 
 HWY_INLINE cpu::TreeKey make_key(const PatchVisit& visit, uint32_t tile) {
@@ -85,14 +81,15 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
     if constexpr (kQuery == Query::any) return true;
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    const float cell_size = 1.0f / float(1u << visit.levels.patch);
     offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
         hit.patch = visit.patch;
         hit.levels = pack_levels(visit.levels);
         hit.i = uint16_t(tree.cell_x + column + (lane & 3));
         hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
         hit.is_upper = uint8_t(lane >> 3);
-        hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * visit.cell_size;
-        hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * visit.cell_size;
+        hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * cell_size;
+        hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * cell_size;
     });
     return true;
 }
@@ -116,6 +113,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
+    const float cell_size = 1.0f / float(1u << visit.levels.patch);
     alignas(32) float distance[8];
     entry.store(distance);
     bool has_hit = false;
@@ -131,7 +129,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
         hit.levels = pack_levels(visit.levels);
         hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
         hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
-        hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;
+        hit.u = (float(hit.i) + 0.5f) * cell_size, hit.v = (float(hit.j) + 0.5f) * cell_size;
         offer_hit(ray, hit);
         has_hit = true;
     }

@@ -15,25 +15,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
+HWY_INLINE LaneMask test_node(const cpu::PolygonNode& node, const RayState& ray, Lanes8& entry) {
+    return test_node(node.bounds, ray, entry);
+}
+
 /// A walk through a wide tree that stops at every primitive and goes on when asked.
 struct TreeCursor {
-    uint32_t size = 0;                       ///< of the stack
+    uint32_t size;                           ///< of the stack
     uint32_t leaf_first = 0, leaf_count = 0; ///< what is left of the leaf
     StackEntry stack[kStackSize];
 
     /// `root` is a child word; 0 is the whole tree.
-    HWY_INLINE void begin(const WideBvh& tree, uint32_t root, const RayState& ray) {
-        size = tree.nodes.empty() ? 0 : 1;
-        leaf_count = 0;
-        stack[0] = {root, ray.t_min};
-    }
+    HWY_INLINE TreeCursor(uint32_t root, const RayState& ray) : size(1) { stack[0] = {root, ray.t_min}; }
 
     /// The next primitive of the tree whose box the ray enters before ray.t_max, or kNoIndex.
-    HWY_INLINE uint32_t next(const WideBvh& tree, const RayState& ray) {
+    template <class Node>
+    HWY_INLINE uint32_t next(const Node* nodes, const WideBvh& tree, const RayState& ray) {
         while (leaf_count == 0) {
             if (size == 0) return kNoIndex;
             const StackEntry top = stack[--size];
-            if (top.entry <= ray.t_max * kBoxSlack) descend(tree, top.child, ray);
+            if (top.entry <= ray.t_max * kBoxSlack) descend(nodes, top.child, ray);
         }
         --leaf_count;
         return tree.primitive_at(leaf_first++);
@@ -41,9 +42,9 @@ struct TreeCursor {
 
   private:
     /// To the nearest leaf below `child`; the rest goes on the stack.
-    HWY_INLINE void descend(const WideBvh& tree, uint32_t child, const RayState& ray) {
+    template <class Node> HWY_INLINE void descend(const Node* nodes, uint32_t child, const RayState& ray) {
         while (!WideNode::is_leaf(child)) {
-            const WideNode& node = tree.nodes[child];
+            const Node& node = nodes[child];
             Lanes8 entry;
             const LaneMask mask = test_node(node, ray, entry);
             if (mask == 0) return;
@@ -69,15 +70,17 @@ struct TreeCursor {
     }
 };
 
-/// Walks the subtree of `root` and calls visit(primitive) until it is true.
-template <class Visit>
-HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ray, Visit visit) {
-    TreeCursor cursor;
-    cursor.begin(tree, root, ray);
-    for (uint32_t primitive = cursor.next(tree, ray); primitive != kNoIndex;
-         primitive = cursor.next(tree, ray))
+/// Walks the subtree of `root` and calls visit(primitive) until it is true. `nodes` are those of the tree.
+template <class Node, class Visit>
+HWY_INLINE bool walk_tree(const Node* nodes, const WideBvh& tree, uint32_t root, const RayState& ray,
+                          Visit visit) {
+    if (tree.nodes.empty()) return false;
+    TreeCursor cursor(root, ray);
+    while (true) {
+        const uint32_t primitive = cursor.next(nodes, tree, ray);
+        if (primitive == kNoIndex) return false;
         if (visit(primitive)) return true;
-    return false;
+    }
 }
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
@@ -138,10 +141,13 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
     if (!scene.surfaces[surface].has_displacement)
         return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
     const WideBvh& tree = scene.surface_trees[surface];
-    return walk_tree(tree, root, ray, [&](uint32_t patch) {
+    const auto visit = [&](uint32_t patch) {
         const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
-    });
+    };
+    const cpu::OpenNodes& nodes = scene.open_nodes[surface];
+    return nodes.empty() ? walk_tree(tree.nodes.data(), tree, root, ray, visit)
+                         : walk_tree(nodes.data(), tree, root, ray, visit);
 }
 
 /// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
@@ -149,15 +155,16 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(*scene.instance_tree, root, best, [&](uint32_t instance) {
-        RayState ray = best;
-        ray.instance = instance;
-        enter_object(world, scene.instances[instance].object_from_world, ray);
-        const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
-        best.t_max = ray.t_max;
-        best.hit = ray.hit;
-        return is_hit;
-    });
+    return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, root, best,
+                     [&](uint32_t instance) {
+                         RayState ray = best;
+                         ray.instance = instance;
+                         enter_object(world, scene.instances[instance].object_from_world, ray);
+                         const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
+                         best.t_max = ray.t_max;
+                         best.hit = ray.hit;
+                         return is_hit;
+                     });
 }
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
