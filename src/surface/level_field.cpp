@@ -115,13 +115,4 @@ LevelField LevelField::compute(const Surface& surface, const Affine& world_from_
     return field;
 }
 
-PatchLevels LevelField::at(uint32_t patch) const {
-    if (packed_.empty()) return fixed_;
-    const uint32_t packed = packed_[patch];
-    PatchLevels levels;
-    levels.patch = uint8_t(packed >> 16);
-    for (int edge = 0; edge < 4; ++edge) levels.edge[edge] = uint8_t(packed >> (4 * edge) & 15u);
-    return levels;
-}
-
 } // namespace relief

@@ -96,15 +96,20 @@ CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
             if (!tree->is_recent.load(std::memory_order_relaxed))
                 tree->is_recent.store(1, std::memory_order_relaxed);
             ++context.counters.reused;
+            remember(context, *tree);
             return tree;
         }
     }
     return nullptr;
 }
 
-const BottomTree& BottomCache::find_or_build_tree(TraceContext& context, const Surface& surface,
-                                                  const TreeKey& key, const PatchLevels& levels,
-                                                  BuildTreeFunction build) {
+void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
+    context.recent.place(tree.key) = {tree.key, &tree, context.epoch.load(std::memory_order_relaxed)};
+}
+
+const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                       const TreeKey& key, const PatchLevels& levels,
+                                                       BuildTreeFunction build) {
     if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
     const Timer timer;
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
@@ -125,7 +130,7 @@ const BottomTree& BottomCache::find_or_build_tree(TraceContext& context, const S
     return *tree;
 }
 
-const TileDirectory& BottomCache::find_or_build_directory(TraceContext& context, const Surface& surface,
+const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                                           const TreeKey& key, const PatchLevels& levels) {
     if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
     const Timer timer;

@@ -38,6 +38,23 @@ struct CastCounters {
     void add(const CastCounters& other);
 };
 
+/// What a worker found last, one place a hash of the key: most look-ups end here, without a look at the table
+/// or the tree. An entry serves while the epoch in which it was made lasts: nothing was taken out since.
+struct RecentTrees {
+    static constexpr size_t kCount = 2048;
+    struct Entry {
+        TreeKey key;
+        const CachedTree* tree = nullptr;
+        uint64_t epoch = 0; ///< 0: empty
+    };
+    std::vector<Entry> entries = std::vector<Entry>(kCount);
+
+    Entry& place(const TreeKey& key) {
+        const uint32_t mixed = (key.patch + key.tile * 0x9e3779b1u + key.surface * 0x85ebca6bu) * 0xc2b2ae35u;
+        return entries[((mixed ^ key.levels * 0x27d4eb2fu) >> 16) % kCount];
+    }
+};
+
 /// What one worker needs while it traces a batch. Taken with BottomCache::acquire, given back with release.
 struct TraceContext {
     std::atomic<uint64_t> epoch{0}; ///< 0: holds no tree
@@ -49,6 +66,7 @@ struct TraceContext {
         uint64_t epoch;
     };
     std::vector<Retired> retired;
+    RecentTrees recent;
     struct AlignedFree {
         void operator()(void* memory) const;
     };
@@ -71,14 +89,39 @@ class BottomCache {
     void release(TraceContext& context);
 
     /// To be called between rays: trees returned before may be freed afterwards.
-    void refresh(TraceContext& context) const { context.epoch.store(epoch_.load()); }
+    void refresh(TraceContext& context) const {
+        // Looked at again after the store: what is taken out from here on stays until the next refresh, and
+        // what was taken out before is not among the recent trees of this epoch.
+        for (uint64_t now = epoch_.load(); context.epoch.load(std::memory_order_relaxed) != now;
+             now = epoch_.load())
+            context.epoch.store(now);
+    }
 
     /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
     /// call.
     const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
-                                         const PatchLevels& levels, BuildTreeFunction build);
+                                         const PatchLevels& levels, BuildTreeFunction build) {
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
+            return static_cast<const BottomTree&>(*recent);
+        }
+        return find_or_build_elsewhere(context, surface, key, levels, build);
+    }
     const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
-                                                 const TreeKey& key, const PatchLevels& levels);
+                                                 const TreeKey& key, const PatchLevels& levels) {
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
+            return static_cast<const TileDirectory&>(*recent);
+        }
+        return find_or_build_elsewhere(context, surface, key, levels);
+    }
+    /// One that this worker met lately, or null.
+    const CachedTree* find_recent(TraceContext& context, const TreeKey& key) const {
+        const RecentTrees::Entry& entry = context.recent.place(key);
+        if (entry.epoch != context.epoch.load(std::memory_order_relaxed) || !(entry.key == key))
+            return nullptr;
+        return entry.tree;
+    }
 
     /// Bytes held now and at most so far, table included.
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
@@ -87,7 +130,13 @@ class BottomCache {
     std::vector<CastCounters> sum_casts() const;
 
   private:
+    const BottomTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                              const TreeKey& key, const PatchLevels& levels,
+                                              BuildTreeFunction build);
+    const TileDirectory& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                 const TreeKey& key, const PatchLevels& levels);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
+    static void remember(TraceContext& context, const CachedTree& tree);
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/cpu/bottom_cache.h"
+#include "engine/cpu/open_nodes.h"
 #include "engine/cpu/polygon_tree.h"
 #include "engine/cpu/tracer.h"
 #include "structures/wide_bvh.h"
@@ -17,6 +18,7 @@ struct SceneView {
     const Surface* surfaces = nullptr;
     uint32_t instance_count = 0;
     const WideBvh* surface_trees = nullptr; ///< one a surface, over its patches; empty without displacement
+    const OpenNodes* open_nodes = nullptr;  ///< of surface_trees, or empty
     const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
     const WideBvh* instance_tree = nullptr;     ///< over the instances
     BottomCache* cache = nullptr;

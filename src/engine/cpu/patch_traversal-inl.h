@@ -19,18 +19,15 @@ struct PatchVisit {
     const Surface* surface;
     uint32_t instance, surface_index, patch;
     PatchLevels levels;
-    float cell_size; ///< of (u, v)
 };
 
 /// Levels of the surface that a ray sees: the field's lowered by its bias.
 HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
                                   uint32_t patch, uint32_t bias) {
     const Instance& placed = scene.instances[instance];
-    PatchVisit visit{&scene,         &context, &scene.surfaces[placed.surface],       instance,
-                     placed.surface, patch,    placed.levels->at(patch).biased(bias), 0};
-    visit.cell_size = 1.0f / float(1u << visit.levels.patch);
     ++context.counters.pairs_emitted;
-    return visit;
+    return {&scene,         &context, &scene.surfaces[placed.surface],      instance,
+            placed.surface, patch,    placed.levels->at(patch).biased(bias)};
 }
 
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
@@ -51,18 +48,20 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const cpu::TraceRay& world) 
         uint8_t(scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.levels.patch));
     visit.levels.patch = level;
     visit.levels.edge = {level, level, level, level};
-    visit.cell_size = 1.0f / float(1u << level);
+}
+
+HWY_INLINE cpu::TreeKey make_key(const PatchVisit& visit, uint32_t tile) {
+    return {visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
 }
 
 HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
-    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, key, visit.levels,
-                                                  build_tree);
+    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, make_key(visit, tile),
+                                                  visit.levels, build_tree);
 }
 
 HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    const cpu::TreeKey key{visit.surface_index, visit.patch, cpu::kDirectoryTile, pack_levels(visit.levels)};
-    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface, key, visit.levels);
+    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface,
+                                                       make_key(visit, cpu::kDirectoryTile), visit.levels);
 }
 
 /// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
@@ -71,13 +70,14 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
                                 uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    const float cell_size = 1.0f / float(1u << visit.levels.patch);
     hit.patch = visit.patch;
     hit.levels = pack_levels(visit.levels);
     hit.i = uint16_t(tree.cell_x + column + (lane & 3));
     hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
     hit.is_upper = uint8_t(lane >> 3);
-    hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * visit.cell_size;
-    hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * visit.cell_size;
+    hit.u = (float(hit.i) + (hit.is_upper ? weight_b : weight_b + weight_c)) * cell_size;
+    hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * cell_size;
 }
 
 /// Exact leaf: sixteen triangles at once.
@@ -85,9 +85,8 @@ template <Query kQuery>
 HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                     RayState& ray) {
     const cpu::Block& leaf = tree.blocks()[block];
-    Lanes16 vertex[3], x, y, z, cx[3], cy[3], cz[3];
-    for (int k = 0; k < 3; ++k) vertex[k] = Lanes16::load(leaf.vertex[k]);
-    shear_vertices(vertex, ray, x, y, z);
+    Lanes16 x, y, z, cx[3], cy[3], cz[3];
+    shear_vertices(leaf.vertex, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
     gather_corners(y, cy[0], cy[1], cy[2]);
     TriangleTest<16> test;
@@ -105,8 +104,8 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
 /// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray
 /// that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
 template <Query kQuery>
-HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
-                                RayState& ray) {
+HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                  RayState& ray) {
     const cpu::Block& leaf = tree.blocks()[block];
     alignas(32) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
@@ -121,6 +120,7 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
+    const float cell_size = 1.0f / float(1u << visit.levels.patch);
     alignas(32) float distance[8];
     entry.store(distance);
     bool has_hit = false;
@@ -136,7 +136,7 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
         hit.levels = pack_levels(visit.levels);
         hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
         hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
-        hit.u = (float(hit.i) + 0.5f) * visit.cell_size, hit.v = (float(hit.j) + 0.5f) * visit.cell_size;
+        hit.u = (float(hit.i) + 0.5f) * cell_size, hit.v = (float(hit.j) + 0.5f) * cell_size;
         offer_hit(ray.hit, ray.t_max, hit);
         has_hit = true;
     }
@@ -150,25 +150,48 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
-/// Nearest child first, all the way down. For Query::any, true at the first hit.
+/// Blocks of a list, nearest first; for Query::any as they come, since all of them are at hand already.
+template <Query kQuery>
+HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tree, EntryList& blocks,
+                             RayState& ray) {
+    bool has_hit = false;
+    if constexpr (kQuery == Query::closest) blocks.sort();
+    for (uint32_t k = 0; k < blocks.count; ++k) {
+        if (kQuery == Query::closest && blocks.distance(k) > ray.t_max * kBoxSlack) continue;
+        has_hit |= intersect_block<kQuery>(visit, tree, blocks.child(k), ray);
+        if (kQuery == Query::any && has_hit) return true;
+    }
+    return has_hit;
+}
+
+/// Everything of a tile along one ray. The boxes of all groups are tested before the first block: their loads
+/// overlap, and one list is sorted instead of many.
 template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
+    EntryList blocks;
+    Lanes8 entry8;
+    Lanes16 entry;
+    if (tree.level == 5) {
+        for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
+            const uint32_t g = uint32_t(__builtin_ctz(groups));
+            const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
+            blocks.append(mask, entry8, g * 8);
+        }
+        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+    }
+    if (tree.level == 3) {
+        const LaneMask mask = test_node(tree.group(0).bounds, ray, entry8);
+        blocks.append(mask, entry8, 0);
+        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+    }
     bool has_hit = false;
     const auto test_block = [&](uint32_t block) {
         has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
         return kQuery == Query::any && has_hit;
     };
-    Lanes16 entry;
-    Lanes8 entry8;
-    if (tree.level == 5) {
-        visit_in_order(test_node(tree.root(), ray, entry), entry, ray, [&](uint32_t g) {
-            const LaneMask mask = test_node(tree.group(int(g)), ray, entry8);
-            return visit_in_order(mask, entry8, ray, [&](uint32_t k) { return test_block(g * 8 + k); });
-        });
-    } else if (tree.level == 4) {
-        visit_in_order(test_node(tree.root(), ray, entry), entry, ray,
+    if (tree.level == 4) {
+        const LaneMask mask = test_node(tree.root().bounds, ray, entry);
+        visit_in_order(mask, entry, ray,
                        [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
-    } else if (tree.level == 3) {
-        visit_in_order(test_node(tree.group(0), ray, entry8), entry8, ray, test_block);
     } else {
         for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
             if (test_block(block)) break;
@@ -187,7 +210,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
             .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
     Lanes16 entry;
     bool has_hit = false;
-    visit_in_order(test_node(node, ray, entry), entry, ray, [&](uint32_t child) {
+    visit_in_order(test_node(node.bounds, ray, entry), entry, ray, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         has_hit |= step + 1 == TileDirectory::step_count(depth)
                        ? trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), ray)

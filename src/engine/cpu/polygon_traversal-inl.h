@@ -59,8 +59,9 @@ template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleB
 }
 
 /// Puts the children of `mask`, at least three, on the stack, the nearest on top.
-HWY_INLINE void push_children(const cpu::PolygonNode& node, LaneMask mask, const float* distance,
-                              StackEntry* stack, uint32_t& size) {
+template <class Node>
+HWY_INLINE void push_children(const Node& node, LaneMask mask, const float* distance, StackEntry* stack,
+                              uint32_t& size) {
     const auto take = [&] {
         const uint32_t k = uint32_t(__builtin_ctz(mask));
         mask &= mask - 1;

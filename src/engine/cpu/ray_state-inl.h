@@ -12,6 +12,7 @@
 #endif
 
 #include <cmath>
+#include <cstring>
 
 #include "engine/cpu/kernels.h"
 #include "math/affine.h"
@@ -29,6 +30,8 @@ using scalar::kLeastSpeed;
 struct RayState {
     float origin[3], direction[3], reciprocal[3];
     float lower_origin[3], upper_origin[3]; ///< that lower and upper planes of boxes are measured from
+    float near_origin[3], far_origin[3];    ///< the same, in the order in which the ray meets the planes
+    int near_plane[3];                      ///< row of a node's bounds that the ray meets first: k or 3 + k
     int axis[3];                            ///< two minor axes and the major one
     float shear[3];                         ///< of the minor axes; 1 / direction along the major one
     float t_min, t_max;
@@ -51,6 +54,10 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
         ray.reciprocal[k] = 1.0f / (is_still ? kLeastSpeed : ray.direction[k]);
         ray.lower_origin[k] = ray.origin[k] + margin;
         ray.upper_origin[k] = ray.origin[k] - margin;
+        const bool is_negative = ray.reciprocal[k] < 0;
+        ray.near_plane[k] = is_negative ? 3 + k : k;
+        ray.near_origin[k] = is_negative ? ray.upper_origin[k] : ray.lower_origin[k];
+        ray.far_origin[k] = is_negative ? ray.lower_origin[k] : ray.upper_origin[k];
     }
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
     // Choices of values and a table: no processor foresees which axis it will be.
@@ -80,45 +87,93 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayState& ray, 
     return less_equal(entry, exit * Lanes<W>(kBoxSlack));
 }
 
-HWY_INLINE LaneMask test_node(const cpu::Node16& node, const RayState& ray, Lanes16& entry) {
-    Lanes16 bound[6];
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes16::load(node.bounds[k]);
-    return test_boxes(bound, ray, entry);
-}
-
-HWY_INLINE LaneMask test_node(const cpu::Node8& node, const RayState& ray, Lanes8& entry) {
-    Lanes8 bound[6];
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
-    return test_boxes(bound, ray, entry);
-}
-
-/// Bounds of the children of a quantised node, by the decoder that the builder checked with.
-HWY_INLINE void decode_node(const WideNode& node, Lanes8 (&bound)[6]) {
+/// The same for the boxes of a node, lower x y z, upper x y z: which plane is near is known before it is
+/// loaded.
+template <size_t W>
+HWY_INLINE LaneMask test_node(const float (&bounds)[6][W], const RayState& ray, Lanes<W>& entry) {
+    Lanes<W> near[3], far[3];
     for (int k = 0; k < 3; ++k) {
-        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
-        bound[k] = origin + Lanes8::load_codes(node.lower[k]) * scale;
-        bound[3 + k] = origin + Lanes8::load_codes(node.upper[k]) * scale;
+        const Lanes<W> reciprocal(ray.reciprocal[k]);
+        near[k] = (Lanes<W>::load(bounds[ray.near_plane[k]]) - Lanes<W>(ray.near_origin[k])) * reciprocal;
+        far[k] = (Lanes<W>::load(bounds[2 * k + 3 - ray.near_plane[k]]) - Lanes<W>(ray.far_origin[k])) *
+                 reciprocal;
     }
+    entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
+    const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));
+    return less_equal(entry, exit * Lanes<W>(kBoxSlack));
 }
+
+/// The same for the children of a quantised node, by the decoder that the builder checked with.
+HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8& entry) {
+    Lanes8 near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+        const bool is_negative = ray.near_plane[k] != k;
+        const uint8_t* const near_codes = is_negative ? node.upper[k] : node.lower[k];
+        const uint8_t* const far_codes = is_negative ? node.lower[k] : node.upper[k];
+        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
+        const Lanes8 reciprocal(ray.reciprocal[k]);
+        near[k] = (origin + Lanes8::load_codes(near_codes) * scale - Lanes8(ray.near_origin[k])) * reciprocal;
+        far[k] = (origin + Lanes8::load_codes(far_codes) * scale - Lanes8(ray.far_origin[k])) * reciprocal;
+    }
+    entry = max(max(near[0], near[1]), max(near[2], Lanes8(ray.t_min)));
+    const Lanes8 exit = min(min(far[0], far[1]), min(far[2], Lanes8(ray.t_max)));
+    return less_equal(entry, exit * Lanes8(kBoxSlack)) & ((1u << node.child_count) - 1);
+}
+
+/// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child,
+/// so that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will
+/// do).
+struct EntryList {
+    static constexpr uint32_t kChildMask = 127, kCapacity = 128;
+    alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored
+    uint32_t count = 0;
+
+    /// Appends the lanes of `mask` as children first, first + 1...; `first` is a multiple of W.
+    template <size_t W> HWY_INLINE void append(LaneMask mask, const Lanes<W>& entry, uint32_t first) {
+        // Read from memory: compilers make a mess of a vector that counts up from a variable.
+        alignas(64) static constexpr uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                              8, 9, 10, 11, 12, 13, 14, 15};
+        const hn::RebindToUnsigned<typename Lanes<W>::D> d;
+        constexpr size_t kLanes = Lanes<W>::kLanes;
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p) {
+            const auto distance = hn::AndNot(hn::Set(d, kChildMask), hn::BitCast(d, entry.part[p]));
+            const auto child = hn::Or(hn::Set(d, first), hn::Load(d, kNumbers + p * kLanes));
+            const LaneMask part = mask >> (p * kLanes);
+            const uint8_t bits[8] = {uint8_t(part), uint8_t(part >> 8)};
+            hn::CompressStore(hn::Or(distance, child), hn::LoadMaskBits(d, bits), d, key + count);
+            count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
+        }
+    }
+
+    HWY_INLINE void sort() {
+        for (uint32_t k = 1; k < count; ++k) {
+            const uint32_t next = key[k];
+            uint32_t slot = k;
+            for (; slot > 0 && key[slot - 1] > next; --slot) key[slot] = key[slot - 1];
+            key[slot] = next;
+        }
+    }
+
+    uint32_t child(uint32_t k) const { return key[k] & kChildMask; }
+    /// Not above the entry distance.
+    float distance(uint32_t k) const {
+        const uint32_t bits = key[k] & ~kChildMask;
+        float result;
+        std::memcpy(&result, &bits, sizeof(result));
+        return result;
+    }
+};
 
 /// Calls visit(child) for the lanes of `mask`, nearest entry first, while they begin before ray.t_max; stops
 /// on true.
 template <size_t W, class Visit>
 HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RayState& ray, Visit visit) {
     if ((mask & (mask - 1)) == 0) return mask != 0 && visit(uint32_t(__builtin_ctz(mask)));
-    alignas(64) float distance[W];
-    entry.store(distance);
-    uint32_t order[W], count = 0;
-    for (; mask; mask &= mask - 1) {
-        const uint32_t child = uint32_t(__builtin_ctz(mask));
-        uint32_t slot = count++;
-        for (; slot > 0 && distance[order[slot - 1]] > distance[child]; --slot) order[slot] = order[slot - 1];
-        order[slot] = child;
-    }
-    for (uint32_t k = 0; k < count; ++k) {
-        if (distance[order[k]] > ray.t_max * kBoxSlack) return false;
-        if (visit(order[k])) return true;
-    }
+    EntryList entries;
+    entries.append(mask, entry, 0);
+    entries.sort();
+    for (uint32_t k = 0; k < entries.count; ++k)
+        if (entries.distance(k) <= ray.t_max * kBoxSlack && visit(entries.child(k))) return true;
     return false;
 }
 
@@ -183,7 +238,18 @@ HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, Tria
     test_distances(z, ray.shear[2], ray.t_min, ray.t_max, test);
 }
 
-/// Vertices relative to the ray: sheared x and y, and z along the major axis.
+/// Vertices in memory, an axis a row, relative to the ray: sheared x and y, and z along the major axis.
+template <size_t W>
+HWY_INLINE void shear_vertices(const float (&vertex)[3][W], const RayState& ray, Lanes<W>& x, Lanes<W>& y,
+                               Lanes<W>& z) {
+    z = Lanes<W>::load(vertex[ray.axis[2]]) - Lanes<W>(ray.origin[ray.axis[2]]);
+    x = (Lanes<W>::load(vertex[ray.axis[0]]) - Lanes<W>(ray.origin[ray.axis[0]])) -
+        Lanes<W>(ray.shear[0]) * z;
+    y = (Lanes<W>::load(vertex[ray.axis[1]]) - Lanes<W>(ray.origin[ray.axis[1]])) -
+        Lanes<W>(ray.shear[1]) * z;
+}
+
+/// The same for vertices in registers.
 template <size_t W>
 HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray, Lanes<W>& x, Lanes<W>& y,
                                Lanes<W>& z) {

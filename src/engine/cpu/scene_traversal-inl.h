@@ -15,44 +15,72 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8& entry) {
-    Lanes8 bound[6];
-    decode_node(node, bound);
-    return test_boxes(bound, ray, entry) & ((1u << node.child_count) - 1);
+HWY_INLINE LaneMask test_node(const cpu::PolygonNode& node, const RayState& ray, Lanes8& entry) {
+    return test_node(node.bounds, ray, entry);
 }
 
-/// Walks the subtree of `root` (a child word; 0 is the whole tree) and calls visit(primitive, entry) until it
-/// is true.
-template <class Visit>
-HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ray, Visit visit) {
-    if (tree.nodes.empty()) return false;
+/// A walk through a wide tree that stops at every primitive and goes on when asked.
+struct TreeCursor {
+    uint32_t size;                           ///< of the stack
+    uint32_t leaf_first = 0, leaf_count = 0; ///< what is left of the leaf
     StackEntry stack[kStackSize];
-    uint32_t size = 0;
-    stack[size++] = {root, ray.t_min};
-    while (size > 0) {
-        const StackEntry top = stack[--size];
-        if (top.entry > ray.t_max * kBoxSlack) continue;
-        if (WideNode::is_leaf(top.child)) {
-            const uint32_t first = WideNode::leaf_first(top.child), count = WideNode::leaf_count(top.child);
-            for (uint32_t k = 0; k < count; ++k)
-                if (visit(tree.primitive_at(first + k), top.entry)) return true;
-            continue;
+
+    /// `root` is a child word; 0 is the whole tree.
+    HWY_INLINE TreeCursor(uint32_t root, const RayState& ray) : size(1) { stack[0] = {root, ray.t_min}; }
+
+    /// The next primitive of the tree whose box the ray enters before ray.t_max, or kNoIndex.
+    template <class Node>
+    HWY_INLINE uint32_t next(const Node* nodes, const WideBvh& tree, const RayState& ray) {
+        while (leaf_count == 0) {
+            if (size == 0) return kNoIndex;
+            const StackEntry top = stack[--size];
+            if (top.entry <= ray.t_max * kBoxSlack) descend(nodes, top.child, ray);
         }
-        const WideNode& node = tree.nodes[top.child];
-        Lanes8 entry;
-        LaneMask mask = test_node(node, ray, entry);
-        alignas(32) float distance[8];
-        entry.store(distance);
-        DCHECK(size + 8 <= kStackSize);
-        const uint32_t base = size;
-        for (; mask; mask &= mask - 1) {
-            const uint32_t k = uint32_t(__builtin_ctz(mask));
-            uint32_t slot = size++;
-            for (; slot > base && stack[slot - 1].entry < distance[k]; --slot) stack[slot] = stack[slot - 1];
-            stack[slot] = {node.child[k], distance[k]};
-        }
+        --leaf_count;
+        return tree.primitive_at(leaf_first++);
     }
-    return false;
+
+  private:
+    /// To the nearest leaf below `child`; the rest goes on the stack.
+    template <class Node> HWY_INLINE void descend(const Node* nodes, uint32_t child, const RayState& ray) {
+        while (!WideNode::is_leaf(child)) {
+            const Node& node = nodes[child];
+            Lanes8 entry;
+            const LaneMask mask = test_node(node, ray, entry);
+            if (mask == 0) return;
+            const uint32_t first = uint32_t(__builtin_ctz(mask));
+            child = node.child[first];
+            const LaneMask others = mask & (mask - 1);
+            if (others == 0) continue;
+            alignas(32) float distance[8];
+            entry.store(distance);
+            DCHECK(size + 8 <= kStackSize);
+            if ((others & (others - 1)) == 0) {
+                const uint32_t second = uint32_t(__builtin_ctz(others));
+                const bool is_first_nearer = distance[first] <= distance[second];
+                const uint32_t far = is_first_nearer ? second : first;
+                stack[size++] = {node.child[far], distance[far]};
+                child = node.child[is_first_nearer ? first : second];
+                continue;
+            }
+            push_children(node, mask, distance, stack, size);
+            child = stack[--size].child;
+        }
+        leaf_first = WideNode::leaf_first(child), leaf_count = WideNode::leaf_count(child);
+    }
+};
+
+/// Walks the subtree of `root` and calls visit(primitive) until it is true. `nodes` are those of the tree.
+template <class Node, class Visit>
+HWY_INLINE bool walk_tree(const Node* nodes, const WideBvh& tree, uint32_t root, const RayState& ray,
+                          Visit visit) {
+    if (tree.nodes.empty()) return false;
+    TreeCursor cursor(root, ray);
+    while (true) {
+        const uint32_t primitive = cursor.next(nodes, tree, ray);
+        if (primitive == kNoIndex) return false;
+        if (visit(primitive)) return true;
+    }
 }
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
@@ -83,6 +111,17 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
     return true;
 }
 
+/// A displaced patch, timed where the batch is.
+template <Query kQuery> HWY_INLINE bool visit_patch(const PatchVisit& visit, RayState& ray) {
+    cpu::TraceContext& context = *visit.context;
+    if (!context.is_timed) return trace_patch<kQuery>(visit, ray);
+    const Timer timer;
+    const double built_before = context.counters.bottom_build_s;
+    const bool has_hit = trace_patch<kQuery>(visit, ray);
+    context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
+    return has_hit;
+}
+
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
 HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
@@ -91,12 +130,7 @@ HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& 
     if (!surface.has_displacement) return trace_polygon<kQuery>(surface, patch, ray);
     PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
     if (scene.lod == LodRule::ray) choose_ray_level(visit, world);
-    if (!context.is_timed) return trace_patch<kQuery>(visit, ray);
-    const Timer timer;
-    const double built_before = context.counters.bottom_build_s;
-    const bool has_hit = trace_patch<kQuery>(visit, ray);
-    context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
-    return has_hit;
+    return visit_patch<kQuery>(visit, ray);
 }
 
 /// The subtree of `root` of one instance's surface. `ray` is in the object's space.
@@ -107,10 +141,13 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
     if (!scene.surfaces[surface].has_displacement)
         return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
     const WideBvh& tree = scene.surface_trees[surface];
-    return walk_tree(tree, root, ray, [&](uint32_t patch, float) {
+    const auto visit = [&](uint32_t patch) {
         const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
-    });
+    };
+    const cpu::OpenNodes& nodes = scene.open_nodes[surface];
+    return nodes.empty() ? walk_tree(tree.nodes.data(), tree, root, ray, visit)
+                         : walk_tree(nodes.data(), tree, root, ray, visit);
 }
 
 /// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
@@ -118,15 +155,16 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(*scene.instance_tree, root, best, [&](uint32_t instance, float) {
-        RayState ray = best;
-        ray.instance = instance;
-        enter_object(world, scene.instances[instance].object_from_world, ray);
-        const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
-        best.t_max = ray.t_max;
-        best.hit = ray.hit;
-        return is_hit;
-    });
+    return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, root, best,
+                     [&](uint32_t instance) {
+                         RayState ray = best;
+                         ray.instance = instance;
+                         enter_object(world, scene.instances[instance].object_from_world, ray);
+                         const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
+                         best.t_max = ray.t_max;
+                         best.hit = ray.hit;
+                         return is_hit;
+                     });
 }
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.

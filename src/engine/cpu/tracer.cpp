@@ -133,6 +133,7 @@ struct Tracer::Implementation {
     WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
     WalkTrees walk_trees;
     std::vector<WideBvh> surface_trees;
+    std::vector<OpenNodes> surface_nodes;
     std::vector<PolygonTree> polygon_trees;
     WideBvh instance_tree;
     std::unique_ptr<BottomCache> cache;
@@ -155,6 +156,7 @@ struct Tracer::Implementation {
             boxes.push_back(surface.has_displacement ? surface_trees.back().bounds
                                                      : polygon_trees.back().bounds);
         }
+        for (const WideBvh& tree : surface_trees) surface_nodes.push_back(open_nodes(tree));
         instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
     }
 
@@ -213,6 +215,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
                  scene_->surfaces.data(),
                  uint32_t(scene_->instances.size()),
                  self.surface_trees.data(),
+                 self.surface_nodes.data(),
                  self.polygon_trees.data(),
                  &self.instance_tree,
                  self.cache.get(),
@@ -280,6 +283,8 @@ void Tracer::add_statistics(Statistics& statistics) const {
     self.add_casts(statistics);
     statistics.structures_bytes += self.instance_tree.byte_count() + self.walk_trees.byte_count();
     for (const WideBvh& tree : self.surface_trees) statistics.structures_bytes += tree.byte_count();
+    for (const OpenNodes& nodes : self.surface_nodes)
+        statistics.structures_bytes += nodes.size() * sizeof(PolygonNode);
     for (const PolygonTree& tree : self.polygon_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();
     for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();
