@@ -45,6 +45,12 @@ struct VertexRandom {
     float u_roulette = 0, u_emitter = 0; ///< drawn where they are needed only
 };
 
+/// A wide bounce that has started on the surface of its path's ray.
+struct BounceRay {
+    uint32_t path;
+    bool is_flipped; ///< as of its vertex
+};
+
 struct ShadowRay {
     uint32_t path;
     Vec3f contribution;
@@ -62,17 +68,19 @@ class TileTracer {
     void start_path(Path& path) const;
     void trace_paths(int depth);
     void shade_paths();
-    bool shade_path(uint32_t index);
+    bool shade_path(uint32_t index, const SurfacePoint& point);
     void add_background(Path& path) const;
     void record_first_hit(Path& path, const Vertex& vertex) const;
     void add_emission(Path& path, const Vertex& vertex) const;
     void sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random);
+    void make_points();
+    void coarsen_bounces();
     bool continue_path(Path& path, const Vertex& vertex, const VertexRandom& random);
     static bool survives_roulette(Path& path, float u_roulette);
     void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
     void trace_shadow_rays(int depth);
     void finish_paths();
-    Vertex make_vertex(const Path& path);
+    Vertex make_vertex(const Path& path, const SurfacePoint& point) const;
     VertexRandom draw_random(const Path& path) const;
 
     const Tracer& tracer_;
@@ -89,7 +97,9 @@ class TileTracer {
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
-    PatchSamplesCache patches_;
+    PointScratch scratch_;
+    std::vector<SurfacePoint> points_; ///< of the paths in active_
+    std::vector<BounceRay> bounces_;   ///< those that may start on a coarser surface
 };
 
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
@@ -158,16 +168,20 @@ void TileTracer::shade_paths() {
         return !paths_[i].hit.is_hit();
     };
     active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished_outside), active_.end());
-    const auto is_finished = [this](uint32_t i) { return !shade_path(i); };
-    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished), active_.end());
+    make_points();
+    size_t kept = 0;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (shade_path(active_[k], points_[k])) active_[kept++] = active_[k];
+    active_.resize(kept);
+    coarsen_bounces();
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
 
 /// Adds the light that reaches one vertex; true when the path goes on, its next ray set.
-bool TileTracer::shade_path(uint32_t index) {
+bool TileTracer::shade_path(uint32_t index, const SurfacePoint& point) {
     Path& path = paths_[index];
-    const Vertex vertex = make_vertex(path);
+    const Vertex vertex = make_vertex(path, point);
     if (path.depth == 0) record_first_hit(path, vertex);
     add_emission(path, vertex);
     const VertexRandom random = draw_random(path);
@@ -183,10 +197,10 @@ void TileTracer::add_background(Path& path) const {
         path.result.radiance += lights_.environment_radiance(path.ray.direction);
 }
 
-Vertex TileTracer::make_vertex(const Path& path) {
+Vertex TileTracer::make_vertex(const Path& path, const SurfacePoint& point) const {
     const PreparedScene& scene = tracer_.scene();
     Vertex v;
-    v.point = tracer_.make_surface_point(path.hit, patches_);
+    v.point = point;
     v.material = scene.materials[scene.instances[path.hit.instance].material];
     if (v.material.base_color_texture)
         v.material.base_color =
@@ -276,18 +290,37 @@ bool TileTracer::survives_roulette(Path& path, float u_roulette) {
     return true;
 }
 
-/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
 void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) {
-    const TraceHit& hit = path.hit;
-    uint32_t bias = hit.bias;
-    Vec3f origin = tracer_.offset_origin(vertex.point, direction);
-    if (is_wide && settings_.level == kAutoLevel && bias < scalar::kLargestBias) {
-        const SurfacePoint coarse =
-            tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
-        const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
-        if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
+    const uint32_t bias = path.hit.bias;
+    if (is_wide && settings_.level == kAutoLevel && bias < scalar::kLargestBias)
+        bounces_.push_back({uint32_t(&path - paths_.data()), vertex.is_flipped});
+    path.ray = {tracer_.offset_origin(vertex.point, direction), 0, direction, kInfinity, bias};
+}
+
+/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
+void TileTracer::coarsen_bounces() {
+    hits_.clear();
+    for (const BounceRay& bounce : bounces_) {
+        const TraceHit& hit = paths_[bounce.path].hit;
+        hits_.push_back(tracer_.locate_on(hit, hit.bias + 1u));
     }
-    path.ray = {origin, 0, direction, kInfinity, bias};
+    points_.resize(hits_.size());
+    tracer_.evaluate_points(hits_, points_, scratch_);
+    for (size_t k = 0; k < bounces_.size(); ++k) {
+        TraceRay& ray = paths_[bounces_[k].path].ray;
+        const float side =
+            dot(points_[k].geometric_normal, ray.direction) * (bounces_[k].is_flipped ? -1.0f : 1.0f);
+        if (side > 0) ray.origin = tracer_.offset_origin(points_[k], ray.direction), ++ray.bias;
+    }
+    bounces_.clear();
+}
+
+/// Points of the hits of all paths that are still on their way.
+void TileTracer::make_points() {
+    hits_.clear();
+    for (const uint32_t i : active_) hits_.push_back(paths_[i].hit);
+    points_.resize(hits_.size());
+    tracer_.make_surface_points(hits_, points_, scratch_);
 }
 
 void TileTracer::trace_shadow_rays(int depth) {
