@@ -78,9 +78,7 @@ RELIEF_WIDE_UNARY(sqrt, Sqrt)
 // As in the one-lane door: the first operand where neither is less, nan included.
 HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a); }
 HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
-HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) {
-    return min(max(a, low), high);
-}
+HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) { return min(max(a, low), high); }
 
 struct Vec2 {
     Float x, y;
@@ -136,8 +134,8 @@ HWY_INLINE Vec3 make_unit(const Vec3& a) {
 #define FN HWY_INLINE
 #define EXACT
 #include "shared/basis.h"
-#include "shared/surface_point.h"
 #include "shared/shading_normal.h"
+#include "shared/surface_point.h"
 #undef FN
 #undef EXACT
 

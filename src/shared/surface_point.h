@@ -16,8 +16,8 @@ struct TrianglePoint {
     Float area_per_uv; ///< world area over its share of the patch's (u, v)
 };
 
-/// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`: (i,
-/// j); `side`: cells along the patch.
+/// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`:
+/// (i, j); `side`: cells along the patch.
 FN CornerWeights weigh_cell_corners(Vec2 at, Vec2 cell, Bool is_upper, Float side) {
     Float x = clamp(at.x * side - cell.x, Float(0.0f), Float(1.0f));
     Float y = clamp(at.y * side - cell.y, Float(0.0f), Float(1.0f));
@@ -52,7 +52,8 @@ FN Float bound_position_error(Float corner, Float row, Float translation, Float 
 
 /// uv in a displaced patch; corners in their order.
 FN Vec2 blend_patch_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
-    return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) + (c3 * (Float(1.0f) - at.x) + c2 * at.x) * at.y;
+    return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) +
+           (c3 * (Float(1.0f) - at.x) + c2 * at.x) * at.y;
 }
 
 /// uv in a plain polygon: linear on each of its two triangles, as their positions are.

@@ -12,8 +12,8 @@
 
 namespace relief {
 
-/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it. As wide
-/// as four registers of four floats, so that SIMD kernels can load it whole.
+/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it. As
+/// wide as four registers of four floats, so that SIMD kernels can load it whole.
 struct alignas(16) VertexData {
     Vec3f position{};
     Vec2f uv{};

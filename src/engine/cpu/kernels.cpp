@@ -11,7 +11,6 @@
 
 #include "engine/cpu/kernels.h"
 #include "engine/cpu/packet_traversal-inl.h"
-#include "engine/cpu/surface_points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -88,9 +87,7 @@ const cpu::Kernels& kernels(const char* name) {
                                        closest_hits,
                                        any_hits,
                                        build_tree,
-                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>},
-                                       {make_point_batch<PointKind::cell>,
-                                        make_point_batch<PointKind::shading>}};
+                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

@@ -6,7 +6,6 @@
 
 #include "engine/cpu/bottom_cache.h"
 #include "engine/cpu/polygon_tree.h"
-#include "engine/cpu/surface_points.h"
 #include "engine/cpu/tracer.h"
 #include "structures/wide_bvh.h"
 
@@ -41,7 +40,6 @@ struct Kernels {
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
     PrimitiveKernels primitive; ///< for walks of any other tree
-    PointKernels points;
 };
 
 /// Kernels for an instruction set, or nullptr where it was not compiled in or this machine lacks it.

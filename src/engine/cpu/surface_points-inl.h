@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "engine/cpu/patch_evaluation-inl.h"
-#include "engine/cpu/surface_points.h"
+#include "engine/cpu/shading_kernels.h"
 #include "math/wide-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,7 +41,7 @@ struct LaneQuads {
 
 /// What sixteen hits bring, lane by lane.
 struct HitLanes {
-    LaneQuads corner[4][4];                   ///< VertexData of the patch's corners, four floats a part
+    LaneQuads corner[4][4]; ///< VertexData of the patch's corners, four floats a part
     LaneQuads world_from_object[3], object_from_world[3];
     alignas(64) float u[16], v[16], i[16], j[16], side[16], turn[16];
     alignas(64) float is_upper[16], is_seam[4][16]; ///< not 0: true
@@ -72,7 +72,8 @@ inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& lev
     if ((is_left || moved.i == n) && (is_low || moved.j == n))
         is_foreign = samples.is_corner_foreign(is_low ? (is_left ? 0 : 1) : (is_left ? 3 : 2));
     const float step = 1.0f / float(n);
-    lanes.vertex_u[vertex][lane] = float(moved.i) * step, lanes.vertex_v[vertex][lane] = float(moved.j) * step;
+    lanes.vertex_u[vertex][lane] = float(moved.i) * step,
+    lanes.vertex_v[vertex][lane] = float(moved.j) * step;
     if (!is_foreign) return;
     const Vec3f p = evaluate_vertex(samples, levels, at.i, at.j);
     lanes.is_foreign[vertex] |= LaneMask(1) << lane;
@@ -151,7 +152,8 @@ HWY_INLINE WideVec3 fetch_decoded(const MapLanes& from, const CornerLanes& corne
     return {decode(0), decode(1), decode(2)};
 }
 
-HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners, const WideVec2& at) {
+HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners,
+                                        const WideVec2& at) {
     const WideVec3 base = corners.blend_vector(kPosition, at), d = fetch_decoded(from, corners, at);
     if (!from.map.is_tangent) return base + d;
     const WideVec3 t = corners.blend_vector(kFrame, at), b = corners.blend_vector(kFrame + 3, at),
@@ -161,8 +163,8 @@ HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes&
             base.z + wide::carry_through_frame(d.x, d.y, d.z, t.z, b.z, n.z)};
 }
 
-HWY_INLINE WideVec3 evaluate_cell_vertex(const HitLanes& lanes, const MapLanes& from, const CornerLanes& corners,
-                                         int vertex) {
+HWY_INLINE WideVec3 evaluate_cell_vertex(const HitLanes& lanes, const MapLanes& from,
+                                         const CornerLanes& corners, int vertex) {
     const WideVec3 own = evaluate_own_vertex(
         from, corners, {Lanes16::load(lanes.vertex_u[vertex]), Lanes16::load(lanes.vertex_v[vertex])});
     LaneMask which = lanes.is_foreign[vertex];
@@ -243,10 +245,8 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
     const WideVec2 ends_u = wide::find_difference_ends(at.x, half_cell, is_seam(3), is_seam(1));
     const WideVec2 ends_v = wide::find_difference_ends(at.y, half_cell, is_seam(0), is_seam(2));
     const auto fetch = [&](const WideVec2& place) HWY_ATTR { return fetch_decoded(from, corners, place); };
-    along_u.displacement =
-        (fetch({ends_u.y, at.y}) - fetch({ends_u.x, at.y})) / (ends_u.y - ends_u.x);
-    along_v.displacement =
-        (fetch({at.x, ends_v.y}) - fetch({at.x, ends_v.x})) / (ends_v.y - ends_v.x);
+    along_u.displacement = (fetch({ends_u.y, at.y}) - fetch({ends_u.x, at.y})) / (ends_u.y - ends_u.x);
+    along_v.displacement = (fetch({at.x, ends_v.y}) - fetch({at.x, ends_v.x})) / (ends_v.y - ends_v.x);
     if (!from.map.is_tangent)
         return wide::make_displaced_normal(wide::displace_derivative(along_u, normal),
                                            wide::displace_derivative(along_v, normal), normal);
@@ -258,8 +258,8 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
 }
 
 /// Writes the members of SurfacePoint before position_error, four floats at a time, and it.
-inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count, const LaneQuads (&quads)[3],
-                         const float* position_errors) {
+inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count,
+                         const LaneQuads (&quads)[3], const float* position_errors) {
     static_assert(offsetof(cpu::SurfacePoint, position_error) == 48);
     for (size_t lane = 0; lane < count; ++lane) {
         const uint32_t k = batch.order[first + lane];
@@ -273,14 +273,16 @@ inline void store_points(const cpu::PointBatch& batch, size_t first, size_t coun
 
 enum class PointKind { cell, shading };
 
-template <PointKind kKind> HWY_NOINLINE void make_points(const cpu::PointBatch& batch, size_t first, size_t count) {
+template <PointKind kKind>
+HWY_NOINLINE void make_points(const cpu::PointBatch& batch, size_t first, size_t count) {
     HitLanes lanes;
     if (count < 16) {
         std::memset(&lanes, 0, sizeof lanes);
         for (float& side : lanes.side) side = 1;
     }
     for (LaneMask& mask : lanes.is_foreign) mask = 0;
-    for (size_t lane = 0; lane < count; ++lane) load_hit(batch, batch.hits[batch.order[first + lane]], lane, lanes);
+    for (size_t lane = 0; lane < count; ++lane)
+        load_hit(batch, batch.hits[batch.order[first + lane]], lane, lanes);
 
     const cpu::TraceHit& any = batch.hits[batch.order[first]];
     const Surface& surface = batch.scene.surfaces[batch.scene.instances[any.instance].surface];
@@ -293,9 +295,9 @@ template <PointKind kKind> HWY_NOINLINE void make_points(const cpu::PointBatch& 
     if constexpr (kKind == PointKind::shading) {
         const AffineLanes inverse(lanes.object_from_world);
         const WideVec3 smooth = compute_shading_normals(lanes, from, corners);
-        shading_normal = wide::orient_shading_normal(
-            inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y + inverse.rows[2] * smooth.z,
-            cell.triangle.normal);
+        shading_normal = wide::orient_shading_normal(inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y +
+                                                         inverse.rows[2] * smooth.z,
+                                                     cell.triangle.normal);
         const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
         uv = {corners.blend(kUv, at), corners.blend(kUv + 1, at)};
     }

@@ -109,7 +109,8 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
     return point;
 }
 
-SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
+SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit,
+                                const PatchSamples* samples) {
     const Instance& instance = scene.instances[hit.instance];
     const Surface& surface = scene.surfaces[instance.surface];
     const int level = unpack_levels(hit.levels).patch;

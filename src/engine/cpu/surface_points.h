@@ -6,24 +6,10 @@
 #include <optional>
 #include <span>
 
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/tracer.h"
 
 namespace relief::cpu {
-
-/// Hits on patches of one displaced surface whose first corners share a tile that has a map.
-struct PointBatch {
-    const PreparedScene& scene;
-    PatchSamplesCache& patches;
-    const TraceHit* hits;
-    const uint32_t* order; ///< numbers of the hits that are meant, and of their points
-    size_t count;
-    SurfacePoint* points;
-};
-
-struct PointKernels {
-    void (*cell_points)(const PointBatch&);    ///< as Tracer::evaluate_point: no shading normal, no uv
-    void (*shading_points)(const PointBatch&); ///< as Tracer::make_surface_point
-};
 
 /// False where samples need an exception: nothing to fetch, or a fetch beside the map.
 inline bool can_batch_points(const Surface& surface, uint32_t patch) {

@@ -26,6 +26,7 @@ constexpr uint64_t kTimedBatchInterval = 32;
 
 struct Tracer::Implementation {
     const Kernels* kernels = nullptr;
+    const ShadingKernels* shading = nullptr;
     WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
     WalkTrees walk_trees;
     std::vector<WideBvh> surface_trees;
@@ -101,6 +102,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
                                                 "", "`relief devices` lists those that work"});
+    self.shading = &find_shading_kernels(self.kernels->name);
     self.make_trees(*scene_, settings);
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
     const float pixel =
@@ -152,14 +154,12 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
 
 void Tracer::make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
                                  PointScratch& scratch) const {
-    make_points(*scene_, implementation_->kernels->points.shading_points, make_shading_point, hits, points,
-                scratch);
+    make_points(*scene_, implementation_->shading->shading_points, make_shading_point, hits, points, scratch);
 }
 
 void Tracer::evaluate_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
                              PointScratch& scratch) const {
-    make_points(*scene_, implementation_->kernels->points.cell_points, make_cell_point, hits, points,
-                scratch);
+    make_points(*scene_, implementation_->shading->cell_points, make_cell_point, hits, points, scratch);
 }
 
 TraceHit Tracer::locate_on(const TraceHit& hit, uint32_t bias) const {
