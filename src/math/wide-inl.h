@@ -80,6 +80,55 @@ HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a
 HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
 HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) { return min(max(a, low), high); }
 
+/// One 32-bit number a lane; arithmetic wraps around.
+struct Uint {
+    using D = hn::RebindToUnsigned<Float::D>;
+    hn::Vec<D> part[Float::kParts];
+
+    Uint() = default;
+    HWY_INLINE Uint(uint32_t value) {
+        for (auto& p : part) p = hn::Set(D(), value);
+    }
+    static HWY_INLINE Uint load(const uint32_t* aligned) {
+        Uint r;
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * Float::kLanes);
+        return r;
+    }
+    /// Of numbers below 2^31.
+    HWY_INLINE explicit operator Float() const {
+        Float r;
+        for (size_t p = 0; p < Float::kParts; ++p)
+            r.part[p] = hn::ConvertTo(Float::D(), hn::BitCast(hn::RebindToSigned<D>(), part[p]));
+        return r;
+    }
+};
+using uint = Uint;
+
+#define RELIEF_WIDE_UINT(name, assignment, function)                                                         \
+    HWY_INLINE Uint name(const Uint& a, const Uint& b) {                                                     \
+        Uint r;                                                                                              \
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
+        return r;                                                                                            \
+    }                                                                                                        \
+    HWY_INLINE Uint& assignment(Uint& a, const Uint& b) { return a = name(a, b); }
+RELIEF_WIDE_UINT(operator+, operator+=, Add)
+RELIEF_WIDE_UINT(operator*, operator*=, Mul)
+RELIEF_WIDE_UINT(operator^, operator^=, Xor)
+RELIEF_WIDE_UINT(operator&, operator&=, And)
+RELIEF_WIDE_UINT(operator|, operator|=, Or)
+#undef RELIEF_WIDE_UINT
+
+HWY_INLINE Uint operator<<(const Uint& a, uint32_t count) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftLeftSame(a.part[p], int(count));
+    return r;
+}
+HWY_INLINE Uint operator>>(const Uint& a, uint32_t count) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftRightSame(a.part[p], int(count));
+    return r;
+}
+
 struct Vec2 {
     Float x, y;
 };
@@ -135,6 +184,7 @@ HWY_INLINE Vec3 make_unit(const Vec3& a) {
 #define EXACT
 #include "shared/basis.h"
 #include "shared/shading_normal.h"
+#include "shared/sobol.h"
 #include "shared/surface_point.h"
 #undef FN
 #undef EXACT

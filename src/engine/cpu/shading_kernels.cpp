@@ -9,6 +9,7 @@
 #define HWY_TARGET_INCLUDE "engine/cpu/shading_kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include "engine/cpu/random_pairs-inl.h"
 #include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/surface_points-inl.h"
 
@@ -17,7 +18,7 @@ namespace relief::HWY_NAMESPACE {
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
     static const cpu::ShadingKernels kKernels{name, make_point_batch<PointKind::cell>,
-                                              make_point_batch<PointKind::shading>};
+                                              make_point_batch<PointKind::shading>, draw_pairs};
     return kKernels;
 }
 

@@ -166,6 +166,8 @@ TraceHit Tracer::locate_on(const TraceHit& hit, uint32_t bias) const {
     return locate_hit(*scene_, hit.instance, hit.patch, {hit.u, hit.v}, bias);
 }
 
+const ShadingKernels& Tracer::shading_kernels() const { return *implementation_->shading; }
+
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
     return scalar::offset_origin(point.position, point.geometric_normal, point.position_error, direction);
 }

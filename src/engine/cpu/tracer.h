@@ -48,6 +48,8 @@ struct SurfacePoint {
     uint32_t patch = kNoIndex;
 };
 
+struct ShadingKernels;
+
 /// What one thread needs for many points at once.
 struct PointScratch {
     PatchSamplesCache patches;
@@ -91,6 +93,7 @@ class Tracer {
     void add_statistics(Statistics& statistics) const;
 
     const PreparedScene& scene() const { return *scene_; }
+    const ShadingKernels& shading_kernels() const;
 
   private:
     struct Implementation;
