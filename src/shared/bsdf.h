@@ -59,8 +59,29 @@ FN float coat_albedo(Bsdf b, GgxAlbedo e) {
     return b.coat_f0 * e.scale + b.coat_f90 * e.bias + b.coat_multiple * (1.0f - e.scale - e.bias);
 }
 
-/// `cos_o`: cosine of the outgoing direction, > 0.
-FN Bsdf make_bsdf(BsdfParameters p, float cos_o) {
+/// That of a material without coat or metal, whatever the outgoing direction: what make_general_bsdf gives.
+FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
+    Vec3 zero = {0.0f, 0.0f, 0.0f};
+    Bsdf b;
+    b.f0 = zero;
+    b.f90 = 0.0f;
+    b.roughness = p.roughness;
+    b.alpha = max(p.roughness * p.roughness, kMinAlpha);
+    b.multiple = zero;
+    b.diffuse = p.base_color * (1.0f / kPi);
+    b.coat_f0 = 0.0f;
+    b.coat_f90 = 0.0f;
+    b.coat_multiple = 0.0f;
+    b.escape_multiple = 0.0f;
+    b.escape_coat = 1.0f;
+    b.specular_probability = 0.0f;
+    return b;
+}
+
+/// No light but that of the diffuse base, unattenuated.
+FN bool is_diffuse(Bsdf b) { return b.f90 == 0.0f; }
+
+FN Bsdf make_general_bsdf(BsdfParameters p, float cos_o) {
     float dielectric = 1.0f - p.metallic;
     float root = (p.ior - 1.0f) / (p.ior + 1.0f);
     float coat_f0 = root * root;
@@ -98,6 +119,12 @@ FN Bsdf make_bsdf(BsdfParameters p, float cos_o) {
     return b;
 }
 
+/// `cos_o`: cosine of the outgoing direction, > 0.
+FN Bsdf make_bsdf(BsdfParameters p, float cos_o) {
+    if (p.metallic == 0.0f && p.ior == 1.0f) return make_diffuse_bsdf(p);
+    return make_general_bsdf(p, cos_o);
+}
+
 /// Smith's lambda of GGX; cos_theta > 0.
 FN float ggx_lambda(float alpha, float cos_theta) {
     float cos2 = cos_theta * cos_theta;
@@ -126,6 +153,11 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     BsdfValue result = {zero, 0.0f};
     if (!(wo.z > 0.0f && wi.z > 0.0f)) return result;
+    if (is_diffuse(b)) {
+        result.value = b.diffuse * wi.z;
+        result.pdf = cosine_hemisphere_pdf(wi.z);
+        return result;
+    }
     Vec3 h = normalize(wo + wi);
     float lambda_o = ggx_lambda(b.alpha, wo.z);
     float lambda_i = ggx_lambda(b.alpha, wi.z);
@@ -156,8 +188,11 @@ FN Vec3 sample_ggx_reflection(float alpha, Vec3 wo, Vec2 u) {
 /// Draws an incoming direction for `wo`: `u_lobe` in [0, 1) picks the lobe, `u` the direction within it.
 FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, float u_lobe, Vec2 u) {
     bool is_specular = u_lobe < b.specular_probability;
-    Vec3 wi = select(is_specular, sample_ggx_reflection(b.alpha, wo, u), square_to_cosine_hemisphere(u));
-    wi = normalize(wi);
+    Vec3 wi;
+    if (is_specular)
+        wi = normalize(sample_ggx_reflection(b.alpha, wo, u));
+    else
+        wi = normalize(square_to_cosine_hemisphere(u));
     BsdfValue v = evaluate_bsdf(b, wo, wi);
     BsdfSample result = {wi, v.value * (v.pdf > 0.0f ? 1.0f / v.pdf : 0.0f), v.pdf, is_specular};
     return result;

@@ -20,16 +20,23 @@ const uint kBsdfPair = 2u;
 const uint kRoulettePair = 3u; ///< (roulette, emitter)
 
 /// Pair `kind` of the vertex that `depth` bounces lead to.
+FN uint find_bounce_pair(uint depth, uint kind) { return kFirstBouncePair + depth * kPairsPerBounce + kind; }
+
 FN Vec2 draw_bounce_pair(uint pixel_seed, uint sample_index, uint depth, uint kind) {
-    return sobol_pair(pixel_seed, sample_index, kFirstBouncePair + depth * kPairsPerBounce + kind);
+    return sobol_pair(pixel_seed, sample_index, find_bounce_pair(depth, kind));
 }
 
-/// Ray through a random point of pixel (x, y).
-FN CameraRay start_camera_ray(CameraFrame camera, Vec2 corner, uint pixel_seed, uint sample_index) {
-    Vec2 position = corner + sobol_pair(pixel_seed, sample_index, kPixelPair);
+/// Ray through a point of the picture, in pixels.
+FN CameraRay aim_camera_ray(CameraFrame camera, Vec2 position, uint pixel_seed, uint sample_index) {
     if (camera.aperture_radius > 0.0f)
         return make_camera_ray(camera, position, sobol_pair(pixel_seed, sample_index, kLensPair));
     return make_pinhole_ray(camera, position);
+}
+
+/// Ray through a random point of the pixel whose top left corner is given.
+FN CameraRay start_camera_ray(CameraFrame camera, Vec2 corner, uint pixel_seed, uint sample_index) {
+    Vec2 position = corner + sobol_pair(pixel_seed, sample_index, kPixelPair);
+    return aim_camera_ray(camera, position, pixel_seed, sample_index);
 }
 
 /// What a base colour may be once textures have been multiplied in.

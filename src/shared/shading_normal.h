@@ -4,7 +4,7 @@
 #define RELIEF_SHADING_NORMAL_H
 #endif
 
-FN Vec3 interpolate(Vec3 a, Vec3 b, float s) { return a * (1.0f - s) + b * s; }
+FN Vec3 interpolate(Vec3 a, Vec3 b, Float s) { return a * (Float(1.0f) - s) + b * s; }
 
 /// Corners in their order around the patch.
 FN Vec3 interpolate_quad(Vec3 c0, Vec3 c1, Vec3 c2, Vec3 c3, Vec2 at) {
@@ -12,16 +12,16 @@ FN Vec3 interpolate_quad(Vec3 c0, Vec3 c1, Vec3 c2, Vec3 c3, Vec2 at) {
 }
 
 FN Vec3 interpolate_triangle(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
-    return c0 * (1.0f - at.x) + c1 * (at.x - at.y) + c2 * at.y;
+    return c0 * (Float(1.0f) - at.x) + c1 * (at.x - at.y) + c2 * at.y;
 }
 
 /// Normal of an undisplaced polygon from its vertices' normals, blended, and the cross product of the edges
 /// of the triangle that the point is in.
 FN Vec3 make_plain_normal(Vec3 blended, Vec3 plane) {
-    Vec3 zero = {0.0f, 0.0f, 0.0f};
+    Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
     Vec3 normal = make_unit(blended);
-    if (normal == zero) return make_unit(plane);
-    return select(dot(normal, plane) < 0.0f, -normal, normal);
+    Vec3 turned = select(dot(normal, plane) < Float(0.0f), -normal, normal);
+    return select(normal == zero, make_unit(plane), turned);
 }
 
 /// Derivative of what makes up a displaced point, along u or along v.
@@ -33,15 +33,15 @@ struct SurfaceDerivative {
 
 /// Derivative of a bilinear patch along one direction, at `s` across: from p to q on the near side, from r to
 /// t on the far side.
-FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, float s) { return interpolate(q - p, t - r, s); }
+FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, Float s) { return interpolate(q - p, t - r, s); }
 
 /// Ends of the central difference one cell wide about `at`. The uvs run on into the neighbour, except at a
 /// seam, where they would run into another part of the map.
-FN Vec2 find_difference_ends(float at, uint level, bool is_low_seam, bool is_high_seam) {
-    float half_cell = 0.5f / float(1u << level);
-    float low = at - half_cell;
-    float high = at + half_cell;
-    Vec2 ends = {is_low_seam ? max(low, 0.0f) : low, is_high_seam ? min(high, 1.0f) : high};
+FN Vec2 find_difference_ends(Float at, Float half_cell, Bool is_low_seam, Bool is_high_seam) {
+    Float low = at - half_cell;
+    Float high = at + half_cell;
+    Vec2 ends = {select(is_low_seam, max(low, Float(0.0f)), low),
+                 select(is_high_seam, min(high, Float(1.0f)), high)};
     return ends;
 }
 
@@ -63,7 +63,7 @@ FN Vec3 displace_derivative_through(SurfaceDerivative along, Basis frame, Vec3 d
 
 /// From the displaced derivatives; `normal`, the interpolated one, where they vanish.
 FN Vec3 make_displaced_normal(Vec3 along_u, Vec3 along_v, Vec3 normal) {
-    Vec3 zero = {0.0f, 0.0f, 0.0f};
+    Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
     Vec3 result = make_unit(cross(along_u, along_v));
     return select(result == zero, normal, result);
 }

@@ -69,7 +69,7 @@ FN UintPair sobol_bits(uint pixel_seed, uint index, uint pair) {
 }
 
 /// Number in [0, 1) from the upper 24 bits, all that a float holds.
-FN float uint_to_unit(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
+FN Float uint_to_unit(uint bits) { return Float(bits >> 8u) * Float(5.9604644775390625e-8f); }
 
 /// Point in [0, 1)^2 of sample `index` in a pair of dimensions.
 FN Vec2 sobol_pair(uint pixel_seed, uint index, uint pair) {

@@ -94,10 +94,8 @@ VertexData blend_line(const VertexData& a, const VertexData& b, float s) {
 PatchSamples::PatchSamples(const Surface& surface, uint32_t patch) : map_(&surface.map) {
     const Quad& quad = surface.quads[patch];
     for (int k = 0; k < 4; ++k) corners_[k] = load_vertex(surface, quad.vertex[k]);
-    if (!surface.frames.empty())
-        for (int k = 0; k < 4; ++k)
-            normals_[k] =
-                surface.map.is_tangent ? corners_[k].frame.n : unpack_normal(surface.frames[quad.vertex[k]]);
+    if (!surface.frames.empty() && !surface.map.is_tangent)
+        for (int k = 0; k < 4; ++k) corners_[k].frame.n = unpack_normal(surface.frames[quad.vertex[k]]);
     for (int k = 0; k < 4; ++k) {
         const uint32_t own[2] = {quad.vertex[k], quad.vertex[(k + 1) & 3]};
         const uint32_t dominant = surface.dominant(own[0]);

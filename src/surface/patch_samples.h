@@ -12,8 +12,9 @@
 
 namespace relief {
 
-/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it.
-struct VertexData {
+/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it. As
+/// wide as four registers of four floats, so that SIMD kernels can load it whole.
+struct alignas(16) VertexData {
     Vec3f position{};
     Vec2f uv{};
     Frame frame{};
@@ -60,9 +61,8 @@ class PatchSamples {
     /// True where corner k is displaced by another vertex than the patch's own.
     bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }
 
+    /// Their frames hold the unit normal whether the map is tangent or not; zero on a surface without frames.
     const std::array<VertexData, 4>& corners() const { return corners_; }
-    /// Unit normals of the corners, whether the map is tangent or not; zero on a surface without frames.
-    const std::array<Vec3f, 4>& normals() const { return normals_; }
     const VertexData& first_of_line(int k) const { return lines_[k].first; }
     const VertexData& second_of_line(int k) const { return lines_[k].second; }
 
@@ -73,7 +73,6 @@ class PatchSamples {
     };
     const DisplacementMap* map_;
     std::array<VertexData, 4> corners_, dominants_;
-    std::array<Vec3f, 4> normals_{};
     std::array<Line, 4> lines_;
     std::array<bool, 4> is_corner_foreign_{};
 };

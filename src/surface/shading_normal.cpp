@@ -57,7 +57,7 @@ Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples
     const std::array<VertexData, 4>& c = samples.corners();
     scalar::SurfaceDerivative along_u = blend_difference(c[0], c[1], c[3], c[2], v);
     scalar::SurfaceDerivative along_v = blend_difference(c[0], c[3], c[1], c[2], u);
-    Vec3f normal = normalize(blend_normals(samples.normals(), {u, v}));
+    Vec3f normal = normalize(blend_normals({c[0].frame.n, c[1].frame.n, c[2].frame.n, c[3].frame.n}, {u, v}));
     if (normal == Vec3f{}) normal = normalize(cross(along_u.base, along_v.base));
 
     const auto fetch = [&](float at_u, float at_v) {
@@ -66,7 +66,7 @@ Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples
         return fetch_displacement(surface.map, c[0].tile, uv);
     };
     const auto find_ends = [&](float at, int low_edge, int high_edge) {
-        return scalar::find_difference_ends(at, uint32_t(level), surface.is_seam(patch, low_edge),
+        return scalar::find_difference_ends(at, 0.5f / float(1u << level), surface.is_seam(patch, low_edge),
                                             surface.is_seam(patch, high_edge));
     };
     const Vec2f ends_u = find_ends(u, 3, 1), ends_v = find_ends(v, 0, 2);

@@ -122,12 +122,14 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
         uint32_t flips = 0;
         for (uint32_t k = 0; k < kCount; ++k) {
             const ShadingCase& c = cases[k];
+            const cpu::LightSet& lights = bench().cpu_lights;
+            const Vec2f place = lights.locate_environment(c.ray.direction);
             Vec3f expected{};
             if (depth > 0)
-                expected = c.path.throughput * bench().cpu_lights.gather(c.path.previous, c.ray.direction,
-                                                                         c.hit.t, c.path.bsdf_pdf);
+                expected = c.path.throughput *
+                           lights.gather({c.path.previous, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, place);
             else if (!c.hit.is_hit())
-                expected = bench().cpu_lights.environment_radiance(c.ray.direction);
+                expected = lights.environment_radiance(place);
             if (!(compare(paths[k].radiance, expected) < 2e-3f)) ++flips;
         }
         EXPECT_LE(flips, kAllowedFlips) << "depth " << depth;

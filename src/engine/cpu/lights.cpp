@@ -1,8 +1,15 @@
 #include "engine/cpu/lights.h"
 
 #include <algorithm>
+#include <array>
 
 namespace relief::cpu {
+
+namespace {
+
+constexpr size_t kBlock = 32; ///< points that lights are drawn for together
+
+} // namespace
 
 LightSet::LightSet(const Tracer& tracer) : tracer_(tracer), emitters_(make_emitter_table(tracer.scene())) {
     const PreparedScene& scene = tracer.scene();
@@ -17,42 +24,77 @@ float LightSet::total_irradiance(const Vec3f& position) const {
     return total;
 }
 
-std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumbers& random) const {
-    const Vec3f& position = at.position;
+LightSet::Pick LightSet::pick_source(const Vec3f& position, float u_light) const {
     const float total = total_irradiance(position);
-    if (!(total > 0)) return std::nullopt;
-    const float target = random.u_light * total;
+    if (!(total > 0)) return {nullptr, 0};
+    const float target = u_light * total;
     size_t picked = 0;
     float estimate = scalar::estimate_irradiance(sources_[0], position);
     for (float running = estimate; running <= target && picked + 1 < sources_.size(); running += estimate)
         estimate = scalar::estimate_irradiance(sources_[++picked], position);
-    const scalar::LightSourceData& source = sources_[picked];
-    LightSample result;
-    if (source.kind == scalar::kSourceEnvironment) {
-        const std::optional<LightSample> drawn = draw_environment(at, random.u);
-        if (!drawn) return std::nullopt;
-        result = *drawn;
-    } else if (source.kind == scalar::kSourceSun) {
-        result = {scalar::draw_sun(source, random.u), std::nullopt};
-    } else if (source.kind == scalar::kSourcePoint) {
-        result = {scalar::draw_point_light(source, position, random.u), std::nullopt};
-    } else {
-        result = draw_emitter(at, random.u_emitter, random.u);
-    }
-    if (!(result.pdf > 0) || dot(result.direction, at.normal) <= 0) return std::nullopt;
-    const float probability = estimate / total;
-    result.pdf *= probability;
-    result.weight *= 1 / probability;
-    return result;
+    return {&sources_[picked], estimate / total};
 }
 
-std::optional<LightSample> LightSet::draw_environment(const Receiver& at, const Vec2f& u) const {
-    const auto drawn = environment_->draw_direction(u);
+/// Not from the environment.
+LightSample LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random) const {
+    if (pick.source->kind == scalar::kSourceSun)
+        return {scalar::draw_sun(*pick.source, random.u), std::nullopt};
+    if (pick.source->kind == scalar::kSourcePoint)
+        return {scalar::draw_point_light(*pick.source, at.position, random.u), std::nullopt};
+    return draw_emitter(at, random.u_emitter, random.u);
+}
+
+std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumbers& random) const {
+    std::optional<LightSample> drawn;
+    draw_block({&at, 1}, {&random, 1}, {&drawn, 1});
+    return drawn;
+}
+
+void LightSet::draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                    std::span<std::optional<LightSample>> drawn) const {
+    for (size_t first = 0; first < at.size(); first += kBlock) {
+        const size_t count = std::min(kBlock, at.size() - first);
+        draw_block(at.subspan(first, count), random.subspan(first, count), drawn.subspan(first, count));
+    }
+}
+
+void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                          std::span<std::optional<LightSample>> drawn) const {
+    std::array<Pick, kBlock> picks;
+    std::array<uint32_t, kBlock> receivers; // of light from the environment
+    std::array<Vec2f, kBlock> u;
+    std::array<EnvironmentLight::DirectionSample, kBlock> directions;
+    size_t count = 0;
+    const auto finish = [&](size_t k, const LightSample& sample) {
+        drawn[k].reset();
+        if (!(sample.pdf > 0) || dot(sample.direction, at[k].normal) <= 0) return;
+        drawn[k] = sample;
+        drawn[k]->pdf *= picks[k].probability;
+        drawn[k]->weight *= 1 / picks[k].probability;
+    };
+    for (size_t k = 0; k < at.size(); ++k) {
+        picks[k] = pick_source(at[k].position, random[k].u_light);
+        if (!picks[k].source)
+            drawn[k].reset();
+        else if (picks[k].source->kind == scalar::kSourceEnvironment)
+            receivers[count] = uint32_t(k), u[count++] = random[k].u;
+        else
+            finish(k, draw_from(picks[k], at[k], random[k]));
+    }
+    if (count == 0) return;
+    environment_->draw_directions({u.data(), count}, {directions.data(), count});
     // Half of the directions lead into the surface: the image, far too large for a cache, is not read for
     // them.
-    if (!(drawn.pdf > 0) || dot(drawn.direction, at.normal) <= 0) return std::nullopt;
-    const Vec3f weight = environment_->radiance(drawn) * (1 / drawn.pdf);
-    return LightSample{{drawn.direction, scalar::make_infinity(), weight, drawn.pdf}, std::nullopt};
+    const auto is_lit = [&](size_t n) {
+        return directions[n].pdf > 0 && dot(directions[n].direction, at[receivers[n]].normal) > 0;
+    };
+    for (size_t n = 0; n < count; ++n)
+        if (is_lit(n)) environment_->prefetch_radiance(directions[n].position);
+    for (size_t n = 0; n < count; ++n) {
+        const EnvironmentLight::DirectionSample& found = directions[n];
+        const Vec3f weight = is_lit(n) ? environment_->radiance(found) * (1 / found.pdf) : Vec3f{};
+        finish(receivers[n], {{found.direction, scalar::make_infinity(), weight, found.pdf}, std::nullopt});
+    }
 }
 
 LightSample LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u) const {
@@ -87,22 +129,29 @@ float LightSet::emitter_pdf(const Vec3f& origin, const SurfacePoint& point) cons
     return probability * emitter_density(first + point.patch, origin, point);
 }
 
-Vec3f LightSet::environment_radiance(const Vec3f& direction) const {
-    return environment_ ? environment_->radiance(direction) : Vec3f{};
+Vec3f LightSet::environment_radiance(const Vec2f& position) const {
+    return environment_ ? environment_->radiance(position) : Vec3f{};
 }
 
-Vec3f LightSet::gather(const Vec3f& origin, const Vec3f& direction, float distance, float bsdf_pdf) const {
+Vec2f LightSet::locate_environment(const Vec3f& direction) const {
+    if (!environment_) return {};
+    const Vec2f position = environment_->locate(direction);
+    environment_->prefetch_radiance(position);
+    return position;
+}
+
+Vec3f LightSet::gather(const BounceRay& ray, const Vec2f& position) const {
     Vec3f sum{};
-    const float total = total_irradiance(origin);
+    const float total = total_irradiance(ray.origin);
     for (const scalar::LightSourceData& source : sources_) {
-        scalar::LightSeen seen = scalar::meet_light(source, origin, direction, distance);
-        if (source.kind == scalar::kSourceEnvironment && distance == scalar::make_infinity()) {
-            const EnvironmentLight::Lookup found = environment_->look_up(direction);
+        scalar::LightSeen seen = scalar::meet_light(source, ray.origin, ray.direction, ray.distance);
+        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity()) {
+            const EnvironmentLight::Lookup found = environment_->look_up(ray.direction, position);
             seen = {found.radiance, found.pdf};
         }
         if (seen.radiance == Vec3f{}) continue;
-        const float share = total > 0 ? scalar::estimate_irradiance(source, origin) / total : 0.0f;
-        sum += seen.radiance * scalar::power_heuristic(bsdf_pdf, seen.pdf * share);
+        const float share = total > 0 ? scalar::estimate_irradiance(source, ray.origin) / total : 0.0f;
+        sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
     }
     return sum;
 }

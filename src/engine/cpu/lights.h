@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/cpu/environment_light.h"
@@ -38,17 +39,29 @@ class LightSet {
         Vec2f u;
     };
     std::optional<LightSample> draw(const Receiver& at, const RandomNumbers& random) const;
+    /// The same of many points, whose reads of the image overlap; drawn[k] belongs to at[k].
+    void draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+              std::span<std::optional<LightSample>> drawn) const;
 
     /// False: `u_emitter` is never looked at.
     bool has_emitters() const { return emitters_.size() > 0; }
 
-    /// Radiance of the environment along a direction; black without one.
-    Vec3f environment_radiance(const Vec3f& direction) const;
+    /// Where the environment's image is seen along a direction. What is to be read there starts to be loaded:
+    /// locate all before reading any.
+    Vec2f locate_environment(const Vec3f& direction) const;
+    /// Radiance of the environment there; black without one.
+    Vec3f environment_radiance(const Vec2f& position) const;
 
-    /// Light of the environment (when `distance` is infinite), suns and point lights that a bounce ray meets
-    /// within `distance`, each weighted against its chance of being drawn from `origin`; `bsdf_pdf` is the
-    /// ray's own density.
-    Vec3f gather(const Vec3f& origin, const Vec3f& direction, float distance, float bsdf_pdf) const;
+    /// A bounce ray, and how far it came.
+    struct BounceRay {
+        Vec3f origin, direction;
+        float distance; ///< infinity: out of the scene
+        float bsdf_pdf; ///< the ray's own density
+    };
+    /// Light of the environment, suns and point lights that a bounce ray meets, each weighted against its
+    /// chance of being drawn from the origin. `position`: locate_environment(direction), where the distance
+    /// is infinite.
+    Vec3f gather(const BounceRay& ray, const Vec2f& position) const;
 
     /// Density with which draw() from `origin` would have found a point of an emissive surface.
     float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
@@ -57,7 +70,15 @@ class LightSet {
 
   private:
     float total_irradiance(const Vec3f& position) const;
-    std::optional<LightSample> draw_environment(const Receiver& at, const Vec2f& u) const;
+    /// One light, and the probability of having picked it.
+    struct Pick {
+        const scalar::LightSourceData* source; ///< null: all is dark
+        float probability;
+    };
+    Pick pick_source(const Vec3f& position, float u_light) const;
+    LightSample draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random) const;
+    void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                    std::span<std::optional<LightSample>> drawn) const;
     LightSample draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u) const;
     float emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const;
 

@@ -1,11 +1,16 @@
 #include "engine/cpu/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "base/timer.h"
 #include "engine/camera_frame.h"
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/textures.h"
 #include "math/scalar.h"
 
@@ -16,33 +21,31 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kPacketEdge = 4;
 
+/// What a path brings from vertex to vertex; its ray and hit are in the wave.
 struct Path {
-    int x = 0, y = 0;
-    uint32_t seed = 0; ///< of the pixel
-    int depth = 0;     ///< vertices behind it: 0 for a camera ray
-    TraceRay ray;
-    TraceHit hit;
     Vec3f throughput{1, 1, 1};
     Vec3f previous{};   ///< the vertex that the ray left
     float bsdf_pdf = 0; ///< with which the ray was drawn there
+    int x = 0, y = 0;
     FilmSample result;
+};
+
+/// A material at one point, textures looked up.
+struct PointMaterial {
+    Vec3f base_color, emission;
+    float roughness, metallic, ior;
 };
 
 /// A hit made ready for shading; normals on the viewer's side.
 struct Vertex {
     SurfacePoint point;
-    bool is_flipped;     ///< the viewer is on the side opposite to the winding
-    Material material;   ///< textures looked up
+    bool is_flipped; ///< the viewer is on the side opposite to the winding
+    uint32_t bias;   ///< of the surface that was hit
+    float distance;  ///< that the ray came
+    PointMaterial material;
     scalar::Basis basis; ///< about the bent shading normal
     Vec3f wo_local;
     scalar::Bsdf bsdf;
-};
-
-/// Random numbers of one vertex.
-struct VertexRandom {
-    float u_light, u_lobe;
-    Vec2f light, bsdf;
-    float u_roulette = 0, u_emitter = 0; ///< drawn where they are needed only
 };
 
 struct ShadowRay {
@@ -50,8 +53,15 @@ struct ShadowRay {
     Vec3f contribution;
 };
 
+/// A bounce that may move onto a coarser surface.
+struct WideBounce {
+    uint32_t place;  ///< in the wave
+    bool is_flipped; ///< as of its vertex
+};
+
 /// The wavefront of one tile: all paths of one sample advance together, so that their rays go to the tracer
-/// in packets.
+/// in packets and their hits to the kernels of shading. Entry k of the wave's arrays belongs to the path
+/// active_[k].
 class TileTracer {
   public:
     TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters);
@@ -59,21 +69,26 @@ class TileTracer {
 
   private:
     void start_paths();
-    void start_path(Path& path) const;
-    void trace_paths(int depth);
+    void trace_paths();
     void shade_paths();
-    bool shade_path(uint32_t index);
-    void add_background(Path& path) const;
+    void add_backgrounds();
+    void drop_misses();
+    void draw_random();
+    void draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
+    void start_vertices(size_t first, size_t count);
+    Vertex make_vertex(size_t k) const;
+    PointMaterial make_material(uint32_t instance, const Vec2f& uv) const;
+    bool shade_path(size_t k, const Vertex& vertex, const std::optional<LightSample>& light, size_t next);
     void record_first_hit(Path& path, const Vertex& vertex) const;
     void add_emission(Path& path, const Vertex& vertex) const;
-    void sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random);
-    bool continue_path(Path& path, const Vertex& vertex, const VertexRandom& random);
-    static bool survives_roulette(Path& path, float u_roulette);
-    void start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide);
-    void trace_shadow_rays(int depth);
+    void sample_light(uint32_t index, const Vertex& vertex, const LightSample& light);
+    bool continue_path(size_t k, const Vertex& vertex, size_t next);
+    bool survives_roulette(Path& path, float u_roulette) const;
+    void coarsen_bounces();
+    void trace_shadow_rays();
     void finish_paths();
-    Vertex make_vertex(const Path& path);
-    VertexRandom draw_random(const Path& path) const;
+
+    static constexpr size_t kBlock = 32; ///< vertices that are at work at once: as many as a cache holds
 
     const Tracer& tracer_;
     const LightSet& lights_;
@@ -82,14 +97,29 @@ class TileTracer {
     TileCounters& counters_;
     scalar::CameraFrame camera_;
     uint32_t sample_index_ = 0;
-    std::vector<Path> paths_;      ///< in packets of kPacketEdge squared pixels
+    int depth_ = 0;               ///< vertices behind the wave: 0 for camera rays
+    std::vector<Path> paths_;     ///< in packets of kPacketEdge squared pixels
+    std::vector<uint32_t> seeds_; ///< of the pixels of paths_
+
     std::vector<uint32_t> active_; ///< paths still on their way, in order
     std::vector<TraceRay> rays_;
     std::vector<TraceHit> hits_;
+    std::vector<Vec2f> places_; ///< in the environment's image, of rays that hit nothing
+    std::vector<SurfacePoint> points_;
+    std::vector<uint32_t> wave_seeds_;
+    std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
+
+    std::array<Vertex, kBlock> vertices_;
+    std::array<LightSet::Receiver, kBlock> receivers_;
+    std::array<LightSet::RandomNumbers, kBlock> light_random_;
+    std::array<std::optional<LightSample>, kBlock> lights_drawn_;
+
+    std::vector<WideBounce> bounces_;
+    std::vector<TraceHit> coarse_hits_; ///< where they would start
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
-    PatchSamplesCache patches_;
+    PointScratch scratch_;
 };
 
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
@@ -105,97 +135,128 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
                 for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x) {
                     Path path;
                     path.x = x, path.y = y;
-                    path.seed = scalar::make_pixel_seed(settings_.seed, uint32_t(x), uint32_t(y));
                     paths_.push_back(path);
+                    seeds_.push_back(scalar::make_pixel_seed(settings_.seed, uint32_t(x), uint32_t(y)));
                 }
 }
 
 void TileTracer::trace_sample(int index) {
     sample_index_ = uint32_t(index);
     start_paths();
-    for (int depth = 0; !active_.empty(); ++depth) {
-        trace_paths(depth);
+    for (depth_ = 0; !active_.empty(); ++depth_) {
+        trace_paths();
         shade_paths();
-        trace_shadow_rays(depth);
+        trace_shadow_rays();
     }
     finish_paths();
 }
 
 void TileTracer::start_paths() {
-    active_.clear();
+    draw_pairs(seeds_, scalar::kPixelPair, places_);
+    active_.clear(), rays_.clear();
     for (uint32_t i = 0; i < paths_.size(); ++i) {
-        start_path(paths_[i]);
+        Path& path = paths_[i];
+        const Vec2f position = Vec2f{float(path.x), float(path.y)} + places_[i];
+        const scalar::CameraRay ray = scalar::aim_camera_ray(camera_, position, seeds_[i], sample_index_);
+        path.throughput = {1, 1, 1};
+        path.result = {};
+        path.result.cost = 1;
         active_.push_back(i);
+        rays_.push_back({ray.origin, 0, ray.direction, kInfinity, 0});
     }
     counters_.camera_rays += paths_.size();
 }
 
-void TileTracer::start_path(Path& path) const {
-    const Vec2f corner{float(path.x), float(path.y)};
-    const scalar::CameraRay ray = scalar::start_camera_ray(camera_, corner, path.seed, sample_index_);
-    path.depth = 0;
-    path.ray = {ray.origin, 0, ray.direction, kInfinity, 0};
-    path.throughput = {1, 1, 1};
-    path.result = {};
-    path.result.cost = 1;
-}
-
-void TileTracer::trace_paths(int depth) {
-    rays_.clear();
-    for (uint32_t i : active_) rays_.push_back(paths_[i].ray);
-    hits_.assign(active_.size(), TraceHit{});
-    tracer_.closest_hits(rays_, hits_, depth);
-    for (size_t k = 0; k < active_.size(); ++k) paths_[active_[k]].hit = hits_[k];
+void TileTracer::trace_paths() {
+    hits_.assign(rays_.size(), TraceHit{});
+    tracer_.closest_hits(rays_, hits_, depth_);
 }
 
 void TileTracer::shade_paths() {
     const Timer timer;
-    shadow_rays_.clear();
-    shadows_.clear();
-    // The background in a short loop of its own: reads of the image, which wait for memory, overlap.
-    const auto is_finished_outside = [this](uint32_t i) {
-        add_background(paths_[i]);
-        return !paths_[i].hit.is_hit();
-    };
-    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished_outside), active_.end());
-    const auto is_finished = [this](uint32_t i) { return !shade_path(i); };
-    active_.erase(std::remove_if(active_.begin(), active_.end(), is_finished), active_.end());
+    shadow_rays_.clear(), shadows_.clear();
+    bounces_.clear(), coarse_hits_.clear();
+    add_backgrounds();
+    drop_misses();
+    points_.resize(hits_.size());
+    tracer_.make_surface_points(hits_, points_, scratch_);
+    draw_random();
+    size_t next = 0;
+    for (size_t first = 0; first < active_.size(); first += kBlock) {
+        const size_t count = std::min(kBlock, active_.size() - first);
+        start_vertices(first, count);
+        for (size_t k = 0; k < count; ++k)
+            if (shade_path(first + k, vertices_[k], lights_drawn_[k], next)) ++next;
+    }
+    active_.resize(next), rays_.resize(next);
+    coarsen_bounces();
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
 
-/// Adds the light that reaches one vertex; true when the path goes on, its next ray set.
-bool TileTracer::shade_path(uint32_t index) {
-    Path& path = paths_[index];
-    const Vertex vertex = make_vertex(path);
-    if (path.depth == 0) record_first_hit(path, vertex);
-    add_emission(path, vertex);
-    const VertexRandom random = draw_random(path);
-    sample_light(index, vertex, random);
-    return path.depth < settings_.bounces && continue_path(path, vertex, random);
+/// Light of rays that leave the scene, and of lamps that are met on the way. The image is read in a loop of
+/// its own: waits for memory overlap.
+void TileTracer::add_backgrounds() {
+    places_.resize(active_.size());
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (!hits_[k].is_hit()) places_[k] = lights_.locate_environment(rays_[k].direction);
+    for (size_t k = 0; k < active_.size(); ++k) {
+        Path& path = paths_[active_[k]];
+        if (depth_ > 0)
+            path.result.radiance +=
+                path.throughput *
+                lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, places_[k]);
+        else if (!hits_[k].is_hit())
+            path.result.radiance += lights_.environment_radiance(places_[k]);
+    }
 }
 
-void TileTracer::add_background(Path& path) const {
-    if (path.depth > 0)
-        path.result.radiance +=
-            path.throughput * lights_.gather(path.previous, path.ray.direction, path.hit.t, path.bsdf_pdf);
-    else if (!path.hit.is_hit())
-        path.result.radiance += lights_.environment_radiance(path.ray.direction);
+void TileTracer::drop_misses() {
+    size_t kept = 0;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit())
+            active_[kept] = active_[k], rays_[kept] = rays_[k], hits_[kept] = hits_[k], ++kept;
+    active_.resize(kept), rays_.resize(kept), hits_.resize(kept);
 }
 
-Vertex TileTracer::make_vertex(const Path& path) {
-    const PreparedScene& scene = tracer_.scene();
+void TileTracer::draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
+    drawn.resize(seeds.size());
+    tracer_.shading_kernels().draw_pairs(seeds.data(), seeds.size(), sample_index_, pair, drawn.data());
+}
+
+/// The roulette's pair only where it is needed.
+void TileTracer::draw_random() {
+    wave_seeds_.clear();
+    for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]);
+    const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.has_emitters();
+    for (const uint32_t kind :
+         {scalar::kPickPair, scalar::kLightPair, scalar::kBsdfPair, scalar::kRoulettePair}) {
+        if (kind == scalar::kRoulettePair && !needs_roulette)
+            random_[kind].assign(active_.size(), Vec2f{});
+        else
+            draw_pairs(wave_seeds_, scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
+    }
+}
+
+/// Vertices of the wave from `first` on, each with a light drawn.
+void TileTracer::start_vertices(size_t first, size_t count) {
+    for (size_t k = 0; k < count; ++k) {
+        vertices_[k] = make_vertex(first + k);
+        const SurfacePoint& point = vertices_[k].point;
+        receivers_[k] = {point.position, point.geometric_normal, vertices_[k].bias};
+        light_random_[k] = {random_[scalar::kPickPair][first + k].x,
+                            random_[scalar::kRoulettePair][first + k].y,
+                            random_[scalar::kLightPair][first + k]};
+    }
+    lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
+}
+
+Vertex TileTracer::make_vertex(size_t k) const {
     Vertex v;
-    v.point = tracer_.make_surface_point(path.hit, patches_);
-    v.material = scene.materials[scene.instances[path.hit.instance].material];
-    if (v.material.base_color_texture)
-        v.material.base_color =
-            v.material.base_color * fetch_texture(*v.material.base_color_texture, v.point.uv);
-    if (v.material.roughness_texture)
-        v.material.roughness *= fetch_texture(*v.material.roughness_texture, v.point.uv).x;
-    v.material.base_color = scalar::limit_color(v.material.base_color);
-    v.material.roughness = std::clamp(v.material.roughness, 0.0f, 1.0f);
-    const Vec3f wo = -path.ray.direction;
+    v.point = points_[k];
+    v.bias = hits_[k].bias, v.distance = hits_[k].t;
+    v.material = make_material(hits_[k].instance, v.point.uv);
+    const Vec3f wo = -rays_[k].direction;
     v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
     if (v.is_flipped) {
         v.point.geometric_normal = -v.point.geometric_normal;
@@ -208,43 +269,63 @@ Vertex TileTracer::make_vertex(const Path& path) {
     return v;
 }
 
+PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) const {
+    const PreparedScene& scene = tracer_.scene();
+    const Material& material = scene.materials[scene.instances[instance].material];
+    PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
+                    material.ior};
+    if (material.base_color_texture)
+        m.base_color = m.base_color * fetch_texture(*material.base_color_texture, uv);
+    if (material.roughness_texture) m.roughness *= fetch_texture(*material.roughness_texture, uv).x;
+    m.base_color = scalar::limit_color(m.base_color);
+    m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
+    return m;
+}
+
+/// Adds the light that reaches one vertex; true when the path goes on, in place `next` of the wave.
+bool TileTracer::shade_path(size_t k, const Vertex& vertex, const std::optional<LightSample>& light,
+                            size_t next) {
+    Path& path = paths_[active_[k]];
+    if (depth_ == 0) record_first_hit(path, vertex);
+    add_emission(path, vertex);
+    if (light) sample_light(active_[k], vertex, *light);
+    return depth_ < settings_.bounces && continue_path(k, vertex, next);
+}
+
 void TileTracer::record_first_hit(Path& path, const Vertex& vertex) const {
     path.result.alpha = 1;
-    path.result.depth = path.hit.t;
+    path.result.depth = vertex.distance;
     path.result.shading_normal = vertex.point.shading_normal;
     path.result.geometric_normal = vertex.point.geometric_normal;
     path.result.position = vertex.point.position;
     path.result.albedo = vertex.material.base_color;
     path.result.uv = vertex.point.uv;
-    path.result.id = path.hit.instance + 1;
+    path.result.id = vertex.point.instance + 1;
 }
 
 void TileTracer::add_emission(Path& path, const Vertex& vertex) const {
     const Vec3f& emission = vertex.material.emission;
     if (emission == Vec3f{}) return;
-    const float light_pdf = path.depth > 0 ? lights_.emitter_pdf(path.previous, vertex.point) : 0.0f;
-    const float weight = path.depth > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
+    const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, vertex.point) : 0.0f;
+    const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
     path.result.radiance += path.throughput * emission * weight;
 }
 
 /// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
 /// there.
-void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const VertexRandom& random) {
+void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const LightSample& light) {
     Path& path = paths_[index];
     const SurfacePoint& point = vertex.point;
-    const auto light = lights_.draw({point.position, point.geometric_normal, path.hit.bias},
-                                    {random.u_light, random.u_emitter, random.light});
-    if (!light) return;
-    const Vec3f wi = scalar::to_local(vertex.basis, light->direction);
+    const Vec3f wi = scalar::to_local(vertex.basis, light.direction);
     const scalar::BsdfValue bsdf = scalar::evaluate_bsdf(vertex.bsdf, vertex.wo_local, wi);
-    const bool is_last = path.depth == settings_.bounces;
-    const float weight = is_last ? 1.0f : scalar::power_heuristic(light->pdf, bsdf.pdf);
-    const Vec3f contribution = path.throughput * bsdf.value * light->weight * weight;
+    const bool is_last = depth_ == settings_.bounces;
+    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, bsdf.pdf);
+    const Vec3f contribution = path.throughput * bsdf.value * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
-    TraceRay ray{tracer_.offset_origin(point, light->direction), 0, light->direction, light->distance,
-                 path.hit.bias};
-    if (light->emitter) {
-        const Vec3f to = tracer_.offset_origin(*light->emitter, -light->direction) - ray.origin;
+    TraceRay ray{tracer_.offset_origin(point, light.direction), 0, light.direction, light.distance,
+                 vertex.bias};
+    if (light.emitter) {
+        const Vec3f to = tracer_.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to) * (1 - 1e-6f);
         ray.direction = normalize(to);
     }
@@ -253,46 +334,51 @@ void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const Vertex
     path.result.cost += 1;
 }
 
-bool TileTracer::continue_path(Path& path, const Vertex& vertex, const VertexRandom& random) {
-    const scalar::BsdfSample drawn =
-        scalar::sample_bsdf(vertex.bsdf, vertex.wo_local, random.u_lobe, random.bsdf);
+/// What lies before k in the wave has been shaded, so that its place can be taken.
+bool TileTracer::continue_path(size_t k, const Vertex& vertex, size_t next) {
+    Path& path = paths_[active_[k]];
+    const scalar::BsdfSample drawn = scalar::sample_bsdf(
+        vertex.bsdf, vertex.wo_local, random_[scalar::kPickPair][k].y, random_[scalar::kBsdfPair][k]);
     const Vec3f direction = normalize(scalar::from_local(vertex.basis, drawn.direction));
     if (drawn.weight == Vec3f{} || dot(vertex.point.geometric_normal, direction) <= 0) return false;
     path.throughput = path.throughput * drawn.weight;
-    if (!is_finite(path.throughput) || !survives_roulette(path, random.u_roulette)) return false;
+    if (!is_finite(path.throughput) || !survives_roulette(path, random_[scalar::kRoulettePair][k].x))
+        return false;
     path.previous = vertex.point.position;
     path.bsdf_pdf = drawn.pdf;
-    start_bounce_ray(path, vertex, direction,
-                     scalar::is_wide_bounce(drawn.is_specular, vertex.material.roughness));
     path.result.cost += 1;
-    ++path.depth;
+    const bool is_wide = scalar::is_wide_bounce(drawn.is_specular, vertex.material.roughness);
+    if (is_wide && settings_.level == kAutoLevel && vertex.bias < scalar::kLargestBias) {
+        bounces_.push_back({uint32_t(next), vertex.is_flipped});
+        coarse_hits_.push_back(tracer_.locate_on(hits_[k], vertex.bias + 1));
+    }
+    active_[next] = active_[k];
+    rays_[next] = {tracer_.offset_origin(vertex.point, direction), 0, direction, kInfinity, vertex.bias};
     return true;
 }
 
-bool TileTracer::survives_roulette(Path& path, float u_roulette) {
-    const float probability = scalar::survival_probability(uint32_t(path.depth), path.throughput);
+bool TileTracer::survives_roulette(Path& path, float u_roulette) const {
+    const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
     if (u_roulette >= probability) return false;
     path.throughput *= 1 / probability;
     return true;
 }
 
 /// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
-void TileTracer::start_bounce_ray(Path& path, const Vertex& vertex, const Vec3f& direction, bool is_wide) {
-    const TraceHit& hit = path.hit;
-    uint32_t bias = hit.bias;
-    Vec3f origin = tracer_.offset_origin(vertex.point, direction);
-    if (is_wide && settings_.level == kAutoLevel && bias < scalar::kLargestBias) {
-        const SurfacePoint coarse =
-            tracer_.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, bias + 1, patches_);
-        const float side = dot(coarse.geometric_normal, direction) * (vertex.is_flipped ? -1.0f : 1.0f);
-        if (side > 0) origin = tracer_.offset_origin(coarse, direction), ++bias;
+void TileTracer::coarsen_bounces() {
+    points_.resize(coarse_hits_.size());
+    tracer_.evaluate_points(coarse_hits_, points_, scratch_);
+    for (size_t k = 0; k < bounces_.size(); ++k) {
+        TraceRay& ray = rays_[bounces_[k].place];
+        const float side =
+            dot(points_[k].geometric_normal, ray.direction) * (bounces_[k].is_flipped ? -1.0f : 1.0f);
+        if (side > 0) ray.origin = tracer_.offset_origin(points_[k], ray.direction), ++ray.bias;
     }
-    path.ray = {origin, 0, direction, kInfinity, bias};
 }
 
-void TileTracer::trace_shadow_rays(int depth) {
+void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
-    tracer_.any_hits(shadow_rays_, occluded_, depth);
+    tracer_.any_hits(shadow_rays_, occluded_, depth_);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
     counters_.shadow_rays += shadow_rays_.size();
@@ -302,19 +388,6 @@ void TileTracer::finish_paths() {
     const Timer timer;
     for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
     counters_.film_s += timer.seconds();
-}
-
-VertexRandom TileTracer::draw_random(const Path& path) const {
-    const auto draw_pair = [&](uint32_t kind) {
-        return scalar::draw_bounce_pair(path.seed, sample_index_, uint32_t(path.depth), kind);
-    };
-    const Vec2f pick = draw_pair(scalar::kPickPair);
-    VertexRandom random{pick.x, pick.y, draw_pair(scalar::kLightPair), draw_pair(scalar::kBsdfPair)};
-    if (uint32_t(path.depth) >= scalar::kRouletteDepth || lights_.has_emitters()) {
-        const Vec2f pair = draw_pair(scalar::kRoulettePair);
-        random.u_roulette = pair.x, random.u_emitter = pair.y;
-    }
-    return random;
 }
 
 } // namespace

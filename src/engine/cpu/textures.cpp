@@ -15,17 +15,37 @@ Vec3f make_color(const Texture& texture, const std::array<float, 4>& channels) {
 
 Vec2f size_of(const Texture& texture) { return {float(texture.width), float(texture.height)}; }
 
-/// Bilinear value at a place in texels from the centre of texel (0, 0); repeated in x.
-Vec3f fetch_bilinear(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
+/// The four texels about a place in texels from the centre of texel (0, 0); repeated in x.
+struct Footprint {
+    uint32_t x0, x1, y0, y1;
+    float fx, fy;
+};
+
+Footprint find_footprint(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
     const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
-    const float fx = at.x - whole_x, fy = at.y - whole_y;
     const auto column = [&](int64_t i) { return uint32_t(wrap_index(i, texture.width, WrapMode::repeat)); };
     const auto row = [&](int64_t i) { return uint32_t(wrap_index(i, texture.height, wrap_y)); };
-    const uint32_t x0 = column(int64_t(whole_x)), x1 = column(int64_t(whole_x) + 1);
-    const uint32_t y0 = row(int64_t(whole_y)), y1 = row(int64_t(whole_y) + 1);
-    return make_color(texture, filter_channels(read_channels(texture, x0, y0), read_channels(texture, x1, y0),
-                                               read_channels(texture, x0, y1), read_channels(texture, x1, y1),
-                                               fx, fy));
+    const int64_t x = int64_t(whole_x), y = int64_t(whole_y);
+    return {column(x), column(x + 1), row(y), row(y + 1), at.x - whole_x, at.y - whole_y};
+}
+
+Vec3f fetch_bilinear(const Texture& texture, const Footprint& at) {
+    return make_color(texture, filter_channels(read_channels(texture, at.x0, at.y0),
+                                               read_channels(texture, at.x1, at.y0),
+                                               read_channels(texture, at.x0, at.y1),
+                                               read_channels(texture, at.x1, at.y1), at.fx, at.fy));
+}
+
+Footprint find_latlong(const Texture& texture, const Vec2f& position) {
+    return find_footprint(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
+}
+
+void prefetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
+    const size_t offset = 4 * (size_t(y) * texture.width + x);
+    if (texture.halves.empty())
+        __builtin_prefetch(texture.floats.data() + offset);
+    else
+        __builtin_prefetch(texture.halves.data() + offset);
 }
 
 } // namespace
@@ -36,11 +56,19 @@ Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
 
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
-    return fetch_bilinear(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat);
+    return fetch_bilinear(
+        texture, find_footprint(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat));
 }
 
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
-    return fetch_bilinear(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
+    return fetch_bilinear(texture, find_latlong(texture, position));
+}
+
+void prefetch_latlong(const Texture& texture, const Vec2f& position) {
+    const Footprint at = find_latlong(texture, position);
+    // Both texels of a row mostly share a line of the cache.
+    prefetch_texel(texture, at.x1, at.y0);
+    prefetch_texel(texture, at.x1, at.y1);
 }
 
 } // namespace relief::cpu

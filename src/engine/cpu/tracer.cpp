@@ -1,7 +1,6 @@
 #include "engine/cpu/tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
+#include "engine/cpu/surface_points.h"
 #include "engine/cpu/tree_walks.h"
 #include "engine/scene_trees.h"
 #include "math/scalar.h"
@@ -22,114 +22,11 @@ namespace {
 /// much in all of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
-/// Corners of a micro-triangle, object space.
-using Corners = std::array<Vec3f, 3>;
-
-/// A triangle's own, or those of a cell of the patch; `samples` is null on a surface without displacement.
-Corners make_corners(const Surface& surface, const PatchSamples* samples, const PatchLevels& levels,
-                     const TraceHit& hit) {
-    if (!samples) {
-        const Quad& quad = surface.quads[hit.patch];
-        return {surface.positions[quad.vertex[0]], surface.positions[quad.vertex[hit.is_upper ? 2 : 1]],
-                surface.positions[quad.vertex[hit.is_upper ? 3 : 2]]};
-    }
-    const auto vertex = [&](uint32_t i, uint32_t j) {
-        return evaluate_vertex(*samples, levels, hit.i + i, hit.j + j);
-    };
-    return {vertex(0, 0), hit.is_upper ? vertex(1, 1) : vertex(1, 0),
-            hit.is_upper ? vertex(0, 1) : vertex(1, 1)};
-}
-
-float bound_position_error(const Affine& world_from_object, const Corners& corners, const Vec3f& position) {
-    float corner = 0, row = 0;
-    for (const Vec3f& p : corners) corner = std::max(corner, scalar::largest_coordinate(p));
-    for (const Vec3f& r : world_from_object.rows) row = std::max(row, scalar::sum_magnitudes(r));
-    return scalar::bound_position_error(corner, row,
-                                        scalar::largest_coordinate(world_from_object.translation),
-                                        scalar::largest_coordinate(position));
-}
-
-Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
-    if (surface.uvs.empty()) return {};
-    const Quad& quad = surface.quads[patch];
-    const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
-    return surface.has_displacement ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
-                                    : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
-}
-
-TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv,
-                    uint32_t bias) {
-    const Instance& placed = scene.instances[instance];
-    TraceHit hit;
-    hit.instance = instance, hit.patch = patch;
-    hit.bias = uint8_t(bias);
-    const PatchLevels levels = placed.levels->at(patch).biased(bias);
-    hit.levels = pack_levels(levels);
-    const bool is_triangle = scene.surfaces[placed.surface].quads[patch].is_triangle();
-    const scalar::CellPlace place = scalar::locate_cell(is_triangle, 1u << levels.patch, uv.x, uv.y);
-    hit.u = place.u, hit.v = place.v;
-    hit.i = uint16_t(place.i), hit.j = uint16_t(place.j), hit.is_upper = place.is_upper;
-    return hit;
-}
-
-/// Nothing on a surface without displacement.
-std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit) {
-    const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
-    return surface.has_displacement ? std::optional<PatchSamples>(std::in_place, surface, hit.patch)
-                                    : std::nullopt;
-}
-
-/// The same through a cache; null on a surface without displacement.
-const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit,
-                                 PatchSamplesCache& patches) {
-    const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
-    return surface.has_displacement ? &patches.get(surface, hit.patch) : nullptr;
-}
-
-/// Position, geometric normal and area; `samples` is null on a surface without displacement.
-SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
-    const Instance& instance = scene.instances[hit.instance];
-    const Surface& surface = scene.surfaces[instance.surface];
-    const PatchLevels levels = unpack_levels(hit.levels);
-    const Corners corners = make_corners(surface, samples, levels, hit);
-    const auto& [a, b, c] = corners;
-    const float side = float(1u << levels.patch);
-    const scalar::CornerWeights weights =
-        scalar::weigh_corners({hit.u, hit.v, hit.i, hit.j, hit.is_upper != 0}, side);
-
-    SurfacePoint point;
-    point.instance = hit.instance, point.patch = hit.patch;
-    const Affine& world_from_object = instance.world_from_object;
-    const scalar::TrianglePoint triangle = scalar::make_triangle_point(
-        transform_point(world_from_object, scalar::blend_corners(a, b, c, weights)),
-        transform_vector(world_from_object, b - a), transform_vector(world_from_object, c - a),
-        instance.is_mirrored ? -1.0f : 1.0f,
-        scalar::triangle_uv_area(surface.quads[hit.patch].is_triangle(), side));
-    point.position = triangle.position;
-    point.geometric_normal = triangle.normal;
-    point.area_per_uv = triangle.area_per_uv;
-    point.position_error = bound_position_error(world_from_object, corners, point.position);
-    return point;
-}
-
-/// The same with shading normal and uv.
-SurfacePoint make_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples) {
-    const Instance& instance = scene.instances[hit.instance];
-    const Surface& surface = scene.surfaces[instance.surface];
-    const int level = unpack_levels(hit.levels).patch;
-    SurfacePoint point = make_cell_point(scene, hit, samples);
-    const Vec3f smooth = samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
-                                 : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
-    point.shading_normal = scalar::orient_shading_normal(transform_normal(instance.object_from_world, smooth),
-                                                         point.geometric_normal);
-    point.uv = interpolate_uv(surface, hit.patch, hit.u, hit.v);
-    return point;
-}
-
 } // namespace
 
 struct Tracer::Implementation {
     const Kernels* kernels = nullptr;
+    const ShadingKernels* shading = nullptr;
     WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
     WalkTrees walk_trees;
     std::vector<WideBvh> surface_trees;
@@ -207,6 +104,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
                                                 "", "`relief devices` lists those that work"});
+    self.shading = &find_shading_kernels(self.kernels->name);
     self.make_trees(*scene_, settings);
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
     const float pixel =
@@ -248,11 +146,7 @@ void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occlude
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
     const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
-    return make_point(*scene_, hit, samples ? &*samples : nullptr);
-}
-
-SurfacePoint Tracer::make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const {
-    return make_point(*scene_, hit, find_samples(*scene_, hit, patches));
+    return make_shading_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
@@ -261,11 +155,21 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
     return make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
-SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
-                                    PatchSamplesCache& patches) const {
-    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
-    return make_cell_point(*scene_, hit, find_samples(*scene_, hit, patches));
+void Tracer::make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                                 PointScratch& scratch) const {
+    make_points(*scene_, implementation_->shading->shading_points, make_shading_point, hits, points, scratch);
 }
+
+void Tracer::evaluate_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                             PointScratch& scratch) const {
+    make_points(*scene_, implementation_->shading->cell_points, make_cell_point, hits, points, scratch);
+}
+
+TraceHit Tracer::locate_on(const TraceHit& hit, uint32_t bias) const {
+    return locate_hit(*scene_, hit.instance, hit.patch, {hit.u, hit.v}, bias);
+}
+
+const ShadingKernels& Tracer::shading_kernels() const { return *implementation_->shading; }
 
 Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
     return scalar::offset_origin(point.position, point.geometric_normal, point.position_error, direction);

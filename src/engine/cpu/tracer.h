@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "engine/prepared_scene.h"
 #include "relief/render.h"
@@ -47,6 +48,15 @@ struct SurfacePoint {
     uint32_t patch = kNoIndex;
 };
 
+struct ShadingKernels;
+
+/// What one thread needs for many points at once.
+struct PointScratch {
+    PatchSamplesCache patches;
+    std::vector<uint64_t> keys;
+    std::vector<uint32_t> order;
+};
+
 /// Immutable after construction apart from the bottom-tree cache, which takes care of itself. Thread safe.
 class Tracer {
   public:
@@ -63,14 +73,18 @@ class Tracer {
 
     /// All that shading needs to know of a hit.
     SurfacePoint make_surface_point(const TraceHit& hit) const;
-    /// The same by way of the caller's cache of patches.
-    SurfacePoint make_surface_point(const TraceHit& hit, PatchSamplesCache& patches) const;
+    /// The same of many, none of which is a miss; points[k] belongs to hits[k].
+    void make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                             PointScratch& scratch) const;
 
     /// Point (u, v) of a patch on surface M_bias: used to sample lights, and to start a bounce ray of a
     /// coarser bias on the surface that it sees. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
-    SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias,
-                                PatchSamplesCache& patches) const;
+    /// The same of many places, each given by locate_on.
+    void evaluate_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                         PointScratch& scratch) const;
+    /// The place of a hit on surface M_bias.
+    TraceHit locate_on(const TraceHit& hit, uint32_t bias) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
     /// along the geometric normal, to the side that the direction is on.
@@ -79,6 +93,7 @@ class Tracer {
     void add_statistics(Statistics& statistics) const;
 
     const PreparedScene& scene() const { return *scene_; }
+    const ShadingKernels& shading_kernels() const;
 
   private:
     struct Implementation;

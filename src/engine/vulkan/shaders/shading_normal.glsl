@@ -34,7 +34,7 @@ SurfaceDerivative differentiate(VertexData a, VertexData b, VertexData c, Vertex
 }
 
 vec2 find_ends(SurfaceData s, uint patch_index, uint level, float at, uvec2 edges) {
-    return find_difference_ends(at, level, is_seam(s, patch_index, edges.x), is_seam(s, patch_index, edges.y));
+    return find_difference_ends(at, 0.5 / float(1u << level), is_seam(s, patch_index, edges.x), is_seam(s, patch_index, edges.y));
 }
 
 vec3 compute_displaced_normal(SurfaceData s, PatchCorners c, uint patch_index, uint level, vec2 at) {

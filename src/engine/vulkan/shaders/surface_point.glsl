@@ -5,6 +5,7 @@
 #include "engine/vulkan/shaders/patch_evaluation.glsl"
 #include "shared/warp.h"
 #include "shared/surface_point.h"
+#include "shared/cell_place.h"
 #include "shared/shading_normal.h"
 #include "shared/device_rays.h"
 

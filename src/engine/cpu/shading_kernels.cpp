@@ -1,0 +1,60 @@
+// Compiles the kernels of shading once for each instruction set (Highway's foreach_target), apart from those
+// that trace: both take long.
+
+// As in kernels.cpp.
+#define HWY_COMPILE_ALL_ATTAINABLE
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/cpu/shading_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include "engine/cpu/random_pairs-inl.h"
+#include "engine/cpu/shading_kernels.h"
+#include "engine/cpu/surface_points-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+const cpu::ShadingKernels& shading_kernels(const char* name) {
+    static const cpu::ShadingKernels kKernels{name, make_point_batch<PointKind::cell>,
+                                              make_point_batch<PointKind::shading>, draw_pairs};
+    return kKernels;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include <cstring>
+
+namespace relief::cpu {
+
+const ShadingKernels& find_shading_kernels(const char* name) {
+    const ShadingKernels* const all[] = {
+#if HWY_TARGETS & HWY_AVX3
+        &N_AVX3::shading_kernels("avx512"),
+#endif
+#if HWY_TARGETS & HWY_AVX2
+        &N_AVX2::shading_kernels("avx2"),
+#endif
+#if HWY_TARGETS & HWY_SSE4
+        &N_SSE4::shading_kernels("sse4"),
+#endif
+#if HWY_TARGETS & HWY_NEON
+        &N_NEON::shading_kernels("neon"),
+#endif
+#if HWY_TARGETS & HWY_EMU128
+        &N_EMU128::shading_kernels("scalar"),
+#endif
+    };
+    const ShadingKernels* found = all[0];
+    for (const ShadingKernels* kernels : all)
+        if (std::strcmp(kernels->name, name) == 0) found = kernels;
+    return *found;
+}
+
+} // namespace relief::cpu
+
+#endif
