@@ -32,20 +32,21 @@ constexpr double kFirstSampleGoal = 10, kRenderGoal = 3, kMemoryGoal = 1.0 / 5;
 /// more.
 constexpr double kMaskTolerance = 0.02, kBrightnessTolerance = 0.1;
 
-constexpr const char* kComparable[] = {
+constexpr const char* kAboutTimes =
     "Times are from the scene in memory to the picture in memory. Cycles: from the call of the render, "
-    "without the "
-    "time in which the log says that maps are read. Relief: preparation and rendering of `relief render`. "
-    "Neither "
-    "has the start of the program, the reading of meshes or the writing of pictures in it. `with_reading_s` "
-    "has the "
-    "reading: of maps for Cycles, of the whole scene for Relief.",
+    "without "
+    "the time in which the log says that maps are read. Relief: preparation and rendering of `relief "
+    "render`. "
+    "Neither has the start of the program, the reading of meshes or the writing of pictures in it. "
+    "`with_reading_s` has the reading: of maps for Cycles, of the whole scene for Relief.";
+constexpr const char* kAboutWork =
     "Cycles dices at 1 pixel, by the size of the undisplaced surface; Relief chooses levels for cells of 1 "
-    "pixel. Both "
-    "sample light and surface, with the same bounces; a path may end earlier by chance in Cycles.",
-    "Memory is the most that a process had resident, the program itself included: on both sides from the "
-    "start of the "
-    "program. `cycles_own_peak_bytes` is what Cycles counts of its own."};
+    "pixel. Both sample light and surface, with the same bounces, and end dim paths by chance, each by its "
+    "own "
+    "rule.";
+constexpr const char* kAboutMemory =
+    "Memory is the most that a process had resident since its start, the program itself included. "
+    "`cycles_own_peak_bytes` is what Cycles counts of its own.";
 
 struct Case {
     int samples = 1, bounces = 0, importance_map = kImportanceMap;
@@ -131,7 +132,7 @@ class CyclesSuite {
                                {"threads", threads_},      {"runs", options_.runs},
                                {"dicing_rate_pixels", 1},  {"importance_map", kImportanceMap},
                                {"scenes", options_.scenes}};
-        result_["comparable"] = kComparable;
+        result_["comparable"] = {kAboutTimes, kAboutWork, kAboutMemory};
         result_["scenes"] = Json::array(), result_["goals"] = Json::array();
     }
 

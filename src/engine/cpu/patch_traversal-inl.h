@@ -146,6 +146,7 @@ HWY_INLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& 
 template <Query kQuery>
 HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                 RayState& ray) {
+    ++visit.context->counters.blocks;
     return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, ray)
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
@@ -153,14 +154,17 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
 /// Nearest child first, all the way down. For Query::any, true at the first hit.
 template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
     bool has_hit = false;
+    uint64_t& nodes = visit.context->counters.patch_nodes;
     const auto test_block = [&](uint32_t block) {
         has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
         return kQuery == Query::any && has_hit;
     };
     Lanes16 entry;
     Lanes8 entry8;
+    nodes += tree.level >= 3;
     if (tree.level == 5) {
         visit_in_order(test_node(tree.root(), ray, entry), entry, ray, [&](uint32_t g) {
+            ++nodes;
             const LaneMask mask = test_node(tree.group(int(g)), ray, entry8);
             return visit_in_order(mask, entry8, ray, [&](uint32_t k) { return test_block(g * 8 + k); });
         });
@@ -187,6 +191,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
             .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
     Lanes16 entry;
     bool has_hit = false;
+    ++visit.context->counters.patch_nodes;
     visit_in_order(test_node(node, ray, entry), entry, ray, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         has_hit |= step + 1 == TileDirectory::step_count(depth)

@@ -24,7 +24,8 @@ HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8&
 /// Walks the subtree of `root` (a child word; 0 is the whole tree) and calls visit(primitive, entry) until it
 /// is true.
 template <class Visit>
-HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ray, Visit visit) {
+HWY_INLINE bool walk_tree(const WideBvh& tree, cpu::TraceContext& context, uint32_t root, const RayState& ray,
+                          Visit visit) {
     if (tree.nodes.empty()) return false;
     StackEntry stack[kStackSize];
     uint32_t size = 0;
@@ -40,6 +41,7 @@ HWY_INLINE bool walk_tree(const WideBvh& tree, uint32_t root, const RayState& ra
         }
         const WideNode& node = tree.nodes[top.child];
         Lanes8 entry;
+        ++context.counters.upper_nodes;
         LaneMask mask = test_node(node, ray, entry);
         alignas(32) float distance[8];
         entry.store(distance);
@@ -107,7 +109,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
     if (!scene.surfaces[surface].has_displacement)
         return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
     const WideBvh& tree = scene.surface_trees[surface];
-    return walk_tree(tree, root, ray, [&](uint32_t patch, float) {
+    return walk_tree(tree, context, root, ray, [&](uint32_t patch, float) {
         const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
     });
@@ -118,7 +120,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(*scene.instance_tree, root, best, [&](uint32_t instance, float) {
+    return walk_tree(*scene.instance_tree, context, root, best, [&](uint32_t instance, float) {
         RayState ray = best;
         ray.instance = instance;
         enter_object(world, scene.instances[instance].object_from_world, ray);
