@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cycles.h"
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
@@ -123,6 +124,19 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const bench::Report& report)
     return {result, bench::make_paper3_files(result)};
 }
 
+/// Scenes of its own, rendered by this very command.
+SuiteResult run_cycles_suite(const BenchOptions& o, const bench::Report& report) {
+    bench::CyclesOptions options;
+    options.settings = make_settings(o, 1280, 720);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.relief = std::filesystem::read_symlink("/proc/self/exe");
+    options.runs = o.runs.value_or(options.runs);
+    check_scenes(o, bench::cycles_scene_names());
+    if (!o.scenes.empty()) options.scenes = o.scenes;
+    const auto result = bench::run_cycles(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_cycles_files(result)};
+}
+
 #ifdef RELIEF_EMBREE
 /// One thread of the CPU engine; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
@@ -175,6 +189,10 @@ const std::vector<Suite>& list_suites() {
          "structures, traversals and render methods of GRAPP 2019",
          run_paper3_suite,
          {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
+        {"cycles",
+         "displaced scenes beside Blender's Cycles, where `blender` is found",
+         run_cycles_suite,
+         {"--scenes", "--size", "--threads"}},
 #ifdef RELIEF_EMBREE
         {"triangles",
          "plain triangle meshes on the CPU against Embree",
@@ -259,12 +277,12 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
     const auto add = [&](const char* name, const char* value, const char* help, auto parse) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
-    add("--runs", "N", "that count, after one to warm up; default 5",
+    add("--runs", "N", "that count, after one to warm up; default 5, of cycles 3",
         [&o](const std::string& text) { o.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
     add("--scenes", "LIST",
         "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
         "peers: of party,rock,rock_mild,rocks,rocks_mild,rock_close,rock_close_mild,pumpkin,bark; "
-        "default: all",
+        "cycles: of rock,rocks,rock_close,pumpkin,ear; default: all, of cycles rock,rocks,pumpkin",
         [&o](const std::string& text) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
@@ -288,7 +306,7 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
     add("--size", "WxH",
-        "pixels; default 1280x720 for paper1 and peers, 320x180 for paper2, 640x360 for paper3",
+        "pixels; default 1280x720 for paper1, peers and cycles, 320x180 for paper2, 640x360 for paper3",
         [&o](const std::string& text) {
             const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
             o.size = {int(size[0]), int(size[1])};

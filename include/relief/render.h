@@ -76,6 +76,10 @@ struct Statistics {
            film_s = 0;
     uint64_t camera_rays = 0, shadow_rays = 0, bounce_rays = 0;
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
+    /// Of the CPU engine's own walk over displaced surfaces: nodes above the patches and within them, each
+    /// once for all the rays that visit it together, and blocks of triangles, once a ray. For any number of
+    /// threads and any cache the same.
+    uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0;
     uint64_t bottom_built = 0, bottom_reused = 0;
     std::vector<uint64_t> bottom_levels; ///< trees built at level 0, 1, 2, ...
     uint64_t geometry_bytes = 0, structures_bytes = 0, displacement_bytes = 0, bottom_cache_bytes = 0;

@@ -19,12 +19,12 @@ uint64_t read_number(const char* file) {
     return stream >> value ? value : kUnknown;
 }
 
-uint64_t read_meminfo_available() {
-    std::ifstream stream("/proc/meminfo");
-    std::string key;
+/// Bytes behind a key of a file whose lines are "Key: N kB", or other text.
+uint64_t read_bytes(const char* file, const std::string& wanted) {
+    std::ifstream stream(file);
     uint64_t kibibytes = 0;
-    while (stream >> key >> kibibytes) {
-        if (key == "MemAvailable:") return kibibytes * 1024;
+    for (std::string key; stream >> key;) {
+        if (key == wanted) return stream >> kibibytes ? kibibytes * 1024 : kUnknown;
         stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
     }
     return kUnknown;
@@ -42,12 +42,15 @@ std::string processor_name() {
 }
 
 uint64_t peak_resident_bytes() {
+    // getrusage also counts what the process held before it became this program: at times that of its parent.
+    const uint64_t peak = read_bytes("/proc/self/status", "VmHWM:");
+    if (peak != kUnknown) return peak;
     rusage usage{};
     return getrusage(RUSAGE_SELF, &usage) == 0 ? uint64_t(usage.ru_maxrss) * 1024 : 0;
 }
 
 uint64_t available_memory_bytes() {
-    uint64_t available = read_meminfo_available();
+    uint64_t available = read_bytes("/proc/meminfo", "MemAvailable:");
     const uint64_t limit = read_number("/sys/fs/cgroup/memory.max");
     const uint64_t used = read_number("/sys/fs/cgroup/memory.current");
     if (limit != kUnknown && used != kUnknown)

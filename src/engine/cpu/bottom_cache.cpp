@@ -40,6 +40,7 @@ void TraceContext::AlignedFree::operator()(void* memory) const { std::free(memor
 void TraceCounters::add(const TraceCounters& other) {
     pairs_emitted += other.pairs_emitted, pairs_with_hit += other.pairs_with_hit;
     built += other.built, reused += other.reused;
+    upper_nodes += other.upper_nodes, patch_nodes += other.patch_nodes, blocks += other.blocks;
     for (int level = 0; level <= kMaxLevel; ++level) built_at_level[level] += other.built_at_level[level];
     bottom_build_s += other.bottom_build_s, sampled_bottom_s += other.sampled_bottom_s;
 }

@@ -23,6 +23,7 @@ struct TraceCounters {
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
     uint64_t built = 0, reused = 0;
     uint64_t built_at_level[kMaxLevel + 1] = {};
+    uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0; ///< visited; see Statistics
     double bottom_build_s = 0;
     double sampled_bottom_s = 0; ///< in patches, of the batches that were timed patch by patch
 

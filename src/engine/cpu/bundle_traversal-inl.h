@@ -58,6 +58,7 @@ HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& 
     gather_corners(v[bundle.axis[2]], cz[0], cz[1], cz[2]);
     visit_rays(
         find_window(v, bundle), bundle, [&](uint32_t ray) __attribute__((always_inline)) {
+            ++visit.patch.context->counters.blocks;
             visit.tested[ray / 64] |= uint64_t(1) << ray % 64;
             Lanes16 x, y, cx[3], cy[3];
             shear_points(v, bundle, ray, x, y);
@@ -115,9 +116,12 @@ HWY_INLINE void visit_children(const cpu::Node8& node, const RayBundle& bundle, 
 }
 
 HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayBundle& bundle) {
+    uint64_t& nodes = visit.patch.context->counters.patch_nodes;
     const auto test_block = [&](uint32_t block) { trace_block(visit, tree, block, bundle); };
+    nodes += tree.level >= 3;
     if (tree.level == 5) {
         visit_children(tree.root(), bundle, [&](uint32_t g) {
+            ++nodes;
             visit_children(tree.group(int(g)), bundle, [&](uint32_t k) { test_block(g * 8 + k); });
         });
     } else if (tree.level == 4) {
@@ -136,6 +140,7 @@ inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& direct
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step);
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + y * side + x];
+    ++visit.patch.context->counters.patch_nodes;
     visit_children(node, bundle, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         if (step + 1 == TileDirectory::step_count(depth))
@@ -185,13 +190,13 @@ struct WalkEntry {
 };
 
 /// Calls visit(child, window) for the leaves of a tree of wide nodes that rays may meet something nearer in,
-/// nearest first.
+/// nearest first. Returns how many nodes were visited.
 template <class Nodes, class Visit>
-HWY_INLINE void walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit visit) {
+HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit visit) {
     using Node = typename Nodes::value_type;
-    if (nodes.empty()) return;
+    if (nodes.empty()) return 0;
     WalkEntry stack[kStackSize];
-    uint32_t size = 0;
+    uint32_t size = 0, visited = 0;
     stack[size++] = {0, 0, 0, 0};
     while (size > 0) {
         const WalkEntry top = stack[--size];
@@ -204,6 +209,7 @@ HWY_INLINE void walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit v
             continue;
         }
         const Node& node = nodes[top.child];
+        ++visited;
         load_bounds(node, bound);
         LaneMask mask = test_boxes(bound, bundle, nearest) & ((1u << count_children(node)) - 1);
         alignas(32) float depth[8];
@@ -217,6 +223,7 @@ HWY_INLINE void walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit v
             stack[slot] = {node.child[k], depth[k], top.child, k};
         }
     }
+    return visited;
 }
 
 /// Eight triangles of a surface without displacement; lanes without one are NaN, and no ray meets them.
@@ -272,7 +279,7 @@ inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
         return true;
     }
     const WideBvh& tree = scene.surface_trees[surface];
-    walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window&) {
+    context.counters.upper_nodes += walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window&) {
         const uint32_t first = WideNode::leaf_first(leaf), count = WideNode::leaf_count(leaf);
         for (uint32_t k = 0; k < count; ++k)
             trace_patch(scene, context, tree.primitive_at(first + k), bundle);
@@ -305,16 +312,18 @@ inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context
     RayBundle bundle;
     bundle.rays = &rays;
     if (!enter_space(Affine{}, bundle)) return false;
-    walk_bundle(scene.instance_tree->nodes, bundle, [&](uint32_t leaf, const Window&) {
-        const uint32_t first = WideNode::leaf_first(leaf), size = WideNode::leaf_count(leaf);
-        for (uint32_t k = 0; k < size; ++k) {
-            const uint32_t instance = scene.instance_tree->primitive_at(first + k);
-            if (!trace_instance(scene, context, instance, rays)) trace_singly(scene, context, instance, rays);
-        }
-        for (uint32_t group = 0; group < kGroupCount; ++group)
-            bundle.group_farthest[group] = find_farthest(bundle, group);
-        update_farthest(bundle);
-    });
+    context.counters.upper_nodes +=
+        walk_bundle(scene.instance_tree->nodes, bundle, [&](uint32_t leaf, const Window&) {
+            const uint32_t first = WideNode::leaf_first(leaf), size = WideNode::leaf_count(leaf);
+            for (uint32_t k = 0; k < size; ++k) {
+                const uint32_t instance = scene.instance_tree->primitive_at(first + k);
+                if (!trace_instance(scene, context, instance, rays))
+                    trace_singly(scene, context, instance, rays);
+            }
+            for (uint32_t group = 0; group < kGroupCount; ++group)
+                bundle.group_farthest[group] = find_farthest(bundle, group);
+            update_farthest(bundle);
+        });
     return true;
 }
 

@@ -107,11 +107,14 @@ HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree
 template <Query kQuery>
 void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& packet, LaneMask mask,
                 LaneMask& hits) {
+    uint64_t& nodes = visit.context->counters.patch_nodes;
     const auto test_block = [&](uint32_t block, LaneMask entered) {
         trace_block<kQuery>(visit, tree, block, packet, entered, hits);
     };
+    nodes += tree.level >= 3;
     if (tree.level == 5) {
         visit_children(tree.root(), 16, packet, mask, [&](uint32_t g, LaneMask entered) {
+            ++nodes;
             visit_children(tree.group(int(g)), 8, packet, entered,
                            [&](uint32_t k, LaneMask left) { test_block(g * 8 + k, left); });
         });
@@ -135,6 +138,7 @@ void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step), x = index % side, y = index / side;
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + index];
+    ++visit.context->counters.patch_nodes;
     visit_children(node, fanout * fanout, packet, mask, [&](uint32_t child, LaneMask entered) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         if (step + 1 == TileDirectory::step_count(depth))
@@ -191,13 +195,14 @@ HWY_INLINE uint32_t count_children(const cpu::PolygonNode& node) {
 }
 
 /// Walks a tree of wide nodes with the packet. visit_leaf(child, mask) takes the leaves, go_alone(child,
-/// lane) a subtree that few rays enter.
+/// lane) a subtree that few rays enter. Returns how many nodes were visited together.
 template <class Nodes, class VisitLeaf, class GoAlone>
-void walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf visit_leaf, GoAlone go_alone) {
+uint32_t walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf visit_leaf,
+                     GoAlone go_alone) {
     using Node = typename Nodes::value_type;
-    if (nodes.empty()) return;
+    if (nodes.empty()) return 0;
     PacketEntry stack[kStackSize];
-    uint32_t size = 0;
+    uint32_t size = 0, visited = 0;
     stack[size++] = {0, mask, 0};
     while (size > 0) {
         PacketEntry top = stack[--size];
@@ -214,6 +219,7 @@ void walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf vi
             continue;
         }
         const Node& node = nodes[top.child];
+        ++visited;
         const uint32_t base = size, count = count_children(node);
         DCHECK(size + 8 <= kStackSize);
         for (uint32_t k = 0; k < count; ++k) {
@@ -225,6 +231,7 @@ void walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLeaf vi
             stack[slot] = {node.child[k], entered, nearest};
         }
     }
+    return visited;
 }
 
 /// Everything of one instance for the lanes of `mask`.
@@ -247,7 +254,8 @@ HWY_INLINE void walk_surface(const cpu::SceneView& scene, cpu::TraceContext& con
                 take_hit(lane, intersect_triangles<kQuery>(block, packet.ray[lane]));
             }
         };
-        return walk_packet(tree.nodes, packet, mask, visit_block, go_alone);
+        walk_packet(tree.nodes, packet, mask, visit_block, go_alone);
+        return;
     }
     const WideBvh& tree = scene.surface_trees[surface];
     const auto visit_leaf = [&](uint32_t leaf, LaneMask entered) {
@@ -255,7 +263,7 @@ HWY_INLINE void walk_surface(const cpu::SceneView& scene, cpu::TraceContext& con
             trace_patch<kQuery>(scene, context, patch, packet, left);
         });
     };
-    walk_packet(tree.nodes, packet, mask, visit_leaf, go_alone);
+    context.counters.upper_nodes += walk_packet(tree.nodes, packet, mask, visit_leaf, go_alone);
 }
 
 /// The instance for the lanes of `mask`; results go back to the packet of world rays.
@@ -290,7 +298,7 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
     packet.load_lanes();
     packet.active = 0xffff;
     const WideBvh& tree = *scene.instance_tree;
-    walk_packet(
+    context.counters.upper_nodes += walk_packet(
         tree.nodes, packet, 0xffff,
         [&](uint32_t leaf, LaneMask mask) {
             visit_primitives(tree, leaf, packet, mask, [&](uint32_t instance, LaneMask left) {

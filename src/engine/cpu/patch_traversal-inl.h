@@ -146,6 +146,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
 template <Query kQuery>
 HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                 RayState& ray) {
+    ++visit.context->counters.blocks;
     return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, ray)
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
@@ -170,9 +171,12 @@ template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::Bott
     EntryList blocks;
     Lanes8 entry8;
     Lanes16 entry;
+    uint64_t& nodes = visit.context->counters.patch_nodes;
+    nodes += tree.level >= 3;
     if (tree.level == 5) {
         for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
             const uint32_t g = uint32_t(__builtin_ctz(groups));
+            ++nodes;
             const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
             blocks.append(mask, entry8, g * 8);
         }
@@ -210,6 +214,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
             .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
     Lanes16 entry;
     bool has_hit = false;
+    ++visit.context->counters.patch_nodes;
     visit_in_order(test_node(node.bounds, ray, entry), entry, ray, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         has_hit |= step + 1 == TileDirectory::step_count(depth)

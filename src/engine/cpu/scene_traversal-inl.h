@@ -23,6 +23,7 @@ HWY_INLINE LaneMask test_node(const cpu::PolygonNode& node, const RayState& ray,
 struct TreeCursor {
     uint32_t size;                           ///< of the stack
     uint32_t leaf_first = 0, leaf_count = 0; ///< what is left of the leaf
+    uint32_t visited = 0;                    ///< nodes so far
     StackEntry stack[kStackSize];
 
     /// `root` is a child word; 0 is the whole tree.
@@ -46,6 +47,7 @@ struct TreeCursor {
         while (!WideNode::is_leaf(child)) {
             const Node& node = nodes[child];
             Lanes8 entry;
+            ++visited;
             const LaneMask mask = test_node(node, ray, entry);
             if (mask == 0) return;
             const uint32_t first = uint32_t(__builtin_ctz(mask));
@@ -72,15 +74,18 @@ struct TreeCursor {
 
 /// Walks the subtree of `root` and calls visit(primitive) until it is true. `nodes` are those of the tree.
 template <class Node, class Visit>
-HWY_INLINE bool walk_tree(const Node* nodes, const WideBvh& tree, uint32_t root, const RayState& ray,
-                          Visit visit) {
+HWY_INLINE bool walk_tree(const Node* nodes, const WideBvh& tree, cpu::TraceContext& context, uint32_t root,
+                          const RayState& ray, Visit visit) {
     if (tree.nodes.empty()) return false;
     TreeCursor cursor(root, ray);
-    while (true) {
+    bool has_ended = false;
+    while (!has_ended) {
         const uint32_t primitive = cursor.next(nodes, tree, ray);
-        if (primitive == kNoIndex) return false;
-        if (visit(primitive)) return true;
+        if (primitive == kNoIndex) break;
+        has_ended = visit(primitive);
     }
+    context.counters.upper_nodes += cursor.visited;
+    return has_ended;
 }
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
@@ -146,8 +151,8 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
         return kQuery == Query::any && has_hit;
     };
     const cpu::OpenNodes& nodes = scene.open_nodes[surface];
-    return nodes.empty() ? walk_tree(tree.nodes.data(), tree, root, ray, visit)
-                         : walk_tree(nodes.data(), tree, root, ray, visit);
+    return nodes.empty() ? walk_tree(tree.nodes.data(), tree, context, root, ray, visit)
+                         : walk_tree(nodes.data(), tree, context, root, ray, visit);
 }
 
 /// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
@@ -155,7 +160,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, root, best,
+    return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, context, root, best,
                      [&](uint32_t instance) {
                          RayState ray = best;
                          ray.instance = instance;

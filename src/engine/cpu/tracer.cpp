@@ -180,6 +180,8 @@ void Tracer::add_statistics(Statistics& statistics) const {
     statistics.isa = self.kernels->name;
     const TraceCounters counters = self.cache->sum_counters();
     statistics.pairs_emitted += counters.pairs_emitted, statistics.pairs_with_hit += counters.pairs_with_hit;
+    statistics.upper_nodes += counters.upper_nodes, statistics.patch_nodes += counters.patch_nodes;
+    statistics.blocks += counters.blocks;
     statistics.bottom_built += counters.built, statistics.bottom_reused += counters.reused;
     statistics.bottom_levels.resize(kTileLevel + 1);
     for (int level = 0; level <= kTileLevel; ++level)

@@ -1,0 +1,127 @@
+// bench cycles without Blender, and with something that answers in its place.
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/cycles.h"
+#include "command.h"
+#include "relief/error.h"
+#include "support/xml.h"
+
+namespace relief::cli {
+namespace {
+
+using nlohmann::json;
+
+/// Renders with Relief what Cycles is asked for, and says what Blender says.
+constexpr const char* kBlender =
+    R"(#!/bin/sh
+while [ $# -gt 1 ]; do
+    case "$1" in
+    --scene) scene=$2 ;;
+    --size) size=$2 ;;
+    --samples) samples=$2 ;;
+    --bounces) bounces=$2 ;;
+    --output) output=$2 ;;
+    esac
+    shift
+done
+test -n "$output" && )" RELIEF_BINARY
+    R"( render "$scene" -o "$output" --size $size --spp $samples --bounces $bounces -q
+echo "relief: blender 3.4.1"
+echo "relief: render starts"
+echo "Fra:1 Mem:9M (Peak 9M) | Time:00:00.00 | Mem:0.00M, Peak:7.50M | Scene, ViewLayer | Sample 0/$samples"
+echo "Fra:1 Mem:9M (Peak 9M) | Time:00:00.01 | Mem:0.00M, Peak:8.25M | Scene, ViewLayer | Sample 1/$samples"
+echo "relief: render ends"
+echo "relief: peak resident 123456789"
+)";
+
+class BenchCycles : public CommandTest {
+  protected:
+    /// With `text` as the program `blender`, before all others in PATH.
+    CommandResult run_with(const std::string& text, const std::vector<std::string>& arguments) {
+        std::filesystem::create_directories(folder_ / "bin");
+        write("bin/blender", text);
+        std::filesystem::permissions(folder_ / "bin/blender", std::filesystem::perms::owner_all);
+        const std::string path = (folder_ / "bin").string() + ":/usr/bin:/bin";
+        return finish(start(arguments, [&] { setenv("PATH", path.c_str(), 1); }));
+    }
+};
+
+TEST_F(BenchCycles, without_blender_it_says_how_to_get_it) {
+    const CommandResult result = finish(start({"bench", "cycles", "--quick"}, [] { setenv("PATH", "", 1); }));
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.errors.find("apt-get install"), std::string::npos) << result.errors;
+    EXPECT_FALSE(exists("cycles/cycles.json"));
+}
+
+TEST_F(BenchCycles, measures_both_and_writes_every_file) {
+    const CommandResult result = run_with(
+        kBlender, {"bench", "cycles", "--quick", "--scenes", "rock", "--threads", "1", "-q", "-o", "a"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("a/cycles.json"));
+    for (const char* key :
+         {"/build/commit", "/machine/processor", "/device/isa", "/settings/runs", "/comparable/0",
+          "/scenes/0/cases/3/relief/render_s/median", "/scenes/0/cases/0/cycles/images_s/lowest",
+          "/scenes/0/cases/4/importance_map", "/goals/2/unit"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    EXPECT_EQ(s["blender"], "3.4.1");
+    EXPECT_EQ(s["settings"]["threads"], 1);
+    EXPECT_EQ(s["scenes"][0]["agreement"]["masks_differ"], 0);
+    EXPECT_EQ(s["scenes"][0]["agreement"]["brightness_ratio"], 1.0);
+    EXPECT_EQ(s["scenes"][0]["cases"][0]["cycles"]["resident_peak_bytes"]["median"], 123456789.0);
+    EXPECT_EQ(s["scenes"][0]["cases"][0]["cycles"]["cycles_own_peak_bytes"]["median"], 8.25 * (1 << 20));
+    EXPECT_EQ(s["goals"].size(), 3u);
+    EXPECT_EQ(read("a/cycles.csv").rfind("scene,samples,bounces,", 0), 0u);
+    for (const char* chart : {"a/cycles_rock.svg", "a/cycles_memory.svg"})
+        EXPECT_EQ(test::find_xml_fault(read(chart)), "") << chart;
+}
+
+TEST_F(BenchCycles, reports_nothing_when_blender_fails_or_shows_something_else) {
+    const std::vector<std::string> arguments = {"bench", "cycles", "--quick", "--scenes", "rock", "-q"};
+    const CommandResult failed = run_with("#!/bin/sh\necho 'Error: no engine'\nexit 3\n", arguments);
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_NE(failed.errors.find("no engine"), std::string::npos) << failed.errors;
+    std::string other = kBlender;
+    other.replace(other.find("scene=$2"), 8, "scene=" + (folder_ / "plane.obj").string());
+    const CommandResult different = run_with(other, arguments);
+    EXPECT_EQ(different.exit_code, 1);
+    EXPECT_NE(different.errors.find("masks_differ"), std::string::npos) << different.errors;
+    EXPECT_FALSE(exists("cycles/cycles.json"));
+}
+
+TEST_F(BenchCycles, options_that_it_has_not_are_refused) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"--mesh", "plane.obj"},
+                                                  {"--isa", "avx2"},
+                                                  {"--level", "3"},
+                                                  {"--scenes", "bark"}}) {
+        std::vector<std::string> all = {"bench", "cycles"};
+        all.insert(all.end(), words.begin(), words.end());
+        EXPECT_EQ(run_with(kBlender, all).exit_code, 2) << words[0];
+    }
+}
+
+TEST_F(BenchCycles, scenes_are_white_and_lit_by_the_sky_alone) {
+    for (const std::string name : {"rock", "pumpkin"}) {
+        const Scene scene = bench::make_cycles_scene(name);
+        EXPECT_TRUE(scene.lights.empty()) << name;
+        ASSERT_TRUE(scene.environment && scene.environment->texture) << name;
+        ASSERT_EQ(scene.materials.size(), 1u) << name;
+        EXPECT_EQ(scene.materials[0].ior, 1) << name;
+        EXPECT_EQ(scene.materials[0].roughness, 1) << name;
+        EXPECT_FALSE(scene.materials[0].base_color_texture) << name;
+        EXPECT_NE(scene.objects.at(0).displacement, kNoIndex) << name;
+        EXPECT_NO_THROW(validate_scene(scene)) << name;
+    }
+    EXPECT_THROW(bench::make_cycles_scene("teapot"), Error);
+}
+
+TEST_F(BenchCycles, the_script_is_whole) {
+    const std::string script = bench::cycles_script();
+    for (const char* words : {"\"\"\"Builds a scene folder", "displacement_method = \"DISPLACEMENT\"",
+                              "use_adaptive_subdivision = True", "render_levels = 0", "\nmain()\n"})
+        EXPECT_NE(script.find(words), std::string::npos) << words;
+}
+
+} // namespace
+} // namespace relief::cli
