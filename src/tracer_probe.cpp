@@ -67,6 +67,12 @@ ProbeHit make_probe_hit(const cpu::TraceHit& found) {
     return {found.t, found.instance, found.patch, {found.u, found.v}, found.i, found.j, found.is_upper != 0};
 }
 
+void count_hits(ProbeRun& run) {
+    run.hit_count = 0;
+    for (const ProbeHit& hit : run.hits) run.hit_count += hit.is_hit() ? 1 : 0;
+    for (const uint8_t occluded : run.occluded) run.hit_count += occluded;
+}
+
 /// What a worker needs for a batch, kept from one to the next.
 struct BatchBuffers {
     std::vector<cpu::TraceRay> rays;
@@ -207,9 +213,10 @@ std::vector<Ray> TracerProbe::make_camera_rays(const Camera& camera) const {
     return rays;
 }
 
-ProbeRun TracerProbe::trace_camera() const {
+ProbeRun TracerProbe::trace_camera(ProbeRun room) const {
     Implementation& self = *implementation_;
-    ProbeRun result;
+    ProbeRun result = std::move(room);
+    result.occluded.clear();
     result.hits.resize(size_t(self.settings.width) * size_t(self.settings.height));
     const scalar::CameraFrame frame = make_camera_frame(*self.scene);
     self.run([&] {
@@ -219,16 +226,17 @@ ProbeRun TracerProbe::trace_camera() const {
         });
         result.seconds = timer.seconds();
     });
-    for (const ProbeHit& hit : result.hits) result.hit_count += hit.is_hit() ? 1 : 0;
+    count_hits(result);
     return result;
 }
 
-ProbeRun TracerProbe::trace(std::span<const Ray> rays, HitKind kind, RayGrouping grouping) const {
+ProbeRun TracerProbe::trace(std::span<const Ray> rays, HitKind kind, RayGrouping grouping,
+                            ProbeRun room) const {
     Implementation& self = *implementation_;
     if (grouping == RayGrouping::single && self.first_patches.back() > 0)
         throw Error(ErrorKind::usage, {"rays go alone in scenes without displacement only", "",
                                        "RayGrouping::packets leaves the choice to the engine"});
-    ProbeRun result;
+    ProbeRun result = std::move(room);
     result.hits.resize(kind == HitKind::closest ? rays.size() : 0);
     result.occluded.resize(kind == HitKind::any ? rays.size() : 0);
     self.run([&] {
@@ -238,8 +246,7 @@ ProbeRun TracerProbe::trace(std::span<const Ray> rays, HitKind kind, RayGrouping
         });
         result.seconds = timer.seconds();
     });
-    for (const ProbeHit& hit : result.hits) result.hit_count += hit.is_hit() ? 1 : 0;
-    for (const uint8_t occluded : result.occluded) result.hit_count += occluded;
+    count_hits(result);
     return result;
 }
 

@@ -213,10 +213,11 @@ double EmbreeScene::tessellate_s() const { return implementation_->tessellate_s;
 double EmbreeScene::build_s() const { return implementation_->build_s; }
 uint64_t EmbreeScene::byte_count() const { return uint64_t(implementation_->bytes.load()); }
 
-EmbreeRun EmbreeScene::trace(std::span<const Ray> rays, const EmbreeQuery& query) const {
+EmbreeRun EmbreeScene::trace(std::span<const Ray> rays, const EmbreeQuery& query, EmbreeRun room) const {
     const Implementation& self = *implementation_;
     const bool is_any = query.kind == HitKind::any;
-    EmbreeRun run;
+    EmbreeRun run = std::move(room);
+    run.hit_count = 0;
     run.hits.resize(is_any ? 0 : rays.size());
     run.occluded.resize(is_any ? rays.size() : 0);
     RTCIntersectContext context;

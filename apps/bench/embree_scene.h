@@ -57,7 +57,8 @@ class EmbreeScene {
     /// What Embree and the buffers in its hands hold, by its own count.
     uint64_t byte_count() const;
 
-    EmbreeRun trace(std::span<const Ray> rays, const EmbreeQuery& query) const;
+    /// `room`: of an earlier run, its memory is used again.
+    EmbreeRun trace(std::span<const Ray> rays, const EmbreeQuery& query, EmbreeRun room = {}) const;
 
     /// Corners of a micro-triangle; of scenes of triangles alone.
     std::array<Vec3f, 3> find_corners(uint32_t primitive) const;

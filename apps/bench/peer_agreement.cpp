@@ -17,6 +17,7 @@ namespace {
 
 /// `kShortest` is a share of the largest coordinate of a ray's origin: below it distances count as that.
 constexpr double kSameDepth = 1e-5, kShortest = 0.1, kEdge = 1e-6, kTolerableShare = 1e-3;
+constexpr uint64_t kTolerableCount = 8;
 
 struct Point {
     double x, y, z;
@@ -149,7 +150,8 @@ Agreement compare_with_tessellated(const TracerProbe& probe, const TracerProbe& 
 
 void require_agreement(const std::string& scene, const Agreement& agreement) {
     const uint64_t unexplained = agreement.differences() - agreement.at_edges;
-    if (double(unexplained) <= kTolerableShare * double(std::max<uint64_t>(agreement.hits, 1))) return;
+    if (unexplained <= kTolerableCount || double(unexplained) <= kTolerableShare * double(agreement.hits))
+        return;
     throw Error(
         ErrorKind::failed,
         {fmt::format("{} rays, Relief against {}: {} of {} hits differ (missed {}, extra {}, depth {}, at "

@@ -35,7 +35,7 @@ Agreement compare_with_tessellated(const TracerProbe& probe, const TracerProbe& 
                                    const PeerRays& set);
 
 /// Throws Error{failed} where so many rays differ other than at edges that the surfaces cannot be the same:
-/// more than one in a thousand of those that hit.
+/// more than eight, and more than one in a thousand of those that hit.
 void require_agreement(const std::string& scene, const Agreement& agreement);
 
 nlohmann::ordered_json describe_agreement(const Agreement& agreement);

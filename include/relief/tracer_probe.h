@@ -81,8 +81,9 @@ class TracerProbe {
     std::vector<Ray> make_camera_rays(const Camera& camera) const;
     /// The scene's camera: the same rays in the same order, made and traced as the engine does it, the making
     /// by the clock.
-    ProbeRun trace_camera() const;
-    ProbeRun trace(std::span<const Ray> rays, HitKind kind, RayGrouping grouping) const;
+    /// `room`: of an earlier run, its memory is used again.
+    ProbeRun trace_camera(ProbeRun room = {}) const;
+    ProbeRun trace(std::span<const Ray> rays, HitKind kind, RayGrouping grouping, ProbeRun room = {}) const;
 
     /// `hit` is one of this probe.
     ProbePoint find_point(const ProbeHit& hit) const;

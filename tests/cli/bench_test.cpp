@@ -81,6 +81,13 @@ TEST_F(Bench, options_of_other_suites_are_refused) {
                                                   {"paper3", "--structure", "lbvh"},
                                                   {"paper2", "--scenes", "bark"},
                                                   {"paper1", "--mesh", "a.obj"},
+#ifdef RELIEF_EMBREE
+                                                  {"triangles", "--threads", "2"},
+                                                  {"peers", "--mesh", "a.obj"},
+                                                  {"peers", "--engine", "vulkan"},
+                                                  {"peers", "--scenes", "barks"},
+#endif
+                                                  {"paper1", "--levels", "3"},
                                                   {"paper3", "--tessellated-limit", "7"}}) {
         std::vector<std::string> all = {"bench", "--quick"};
         all.insert(all.end(), words.begin(), words.end());
@@ -106,6 +113,36 @@ TEST_F(Bench, triangles_compares_hits_and_times_with_embree) {
     }
     EXPECT_EQ(s["goals"].size(), 6u);
     EXPECT_EQ(read("triangles/triangles.csv").rfind("mesh,triangles,part,", 0), 0u);
+}
+
+TEST_F(Bench, peers_writes_first_images_rays_and_goals) {
+    const CommandResult result = run({"bench", "peers", "--quick", "--scenes", "rock", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    const json s = json::parse(read("peers/peers.json"));
+    for (const char* key :
+         {"/build/commit", "/machine/processor", "/settings/threads", "/embree_version", "/scenes/1/level",
+          "/scenes/0/memory/bytes_a_patch", "/scenes/0/memory/embree/grid/bytes_a_micro_quad",
+          "/scenes/0/agreement/0/at_edges", "/scenes/0/casts/0/ways/0/rays_per_s",
+          "/scenes/0/casts/8/ways/3/seconds/lowest", "/scenes/0/cold/relief/first_diffuse_s/median",
+          "/scenes/0/cold/subdivision/build_s/highest", "/scenes/0/bounces/0/seconds_a_ray",
+          "/goals/0/ratio"})
+        EXPECT_TRUE(s.contains(json::json_pointer(key))) << key;
+    EXPECT_EQ(read("peers/peers.csv").rfind("scene,level,part,", 0), 0u);
+    for (const char* chart : {"rock_cold", "rock_3_rays", "rock_auto_rays"})
+        EXPECT_EQ(test::find_xml_fault(read(std::string("peers/peers_") + chart + ".svg")), "") << chart;
+}
+
+TEST_F(Bench, peers_measures_a_scene_of_the_user) {
+    ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
+    const CommandResult result =
+        run({"bench", "peers", "--quick", "--scene", "rock/scene.json", "--levels", "2", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("peers/peers.json"));
+    ASSERT_EQ(s["scenes"].size(), 1u);
+    EXPECT_EQ(s["scenes"][0]["scene"], "rock/scene.json");
+    EXPECT_EQ(s["scenes"][0]["level"], "2");
+    EXPECT_EQ(test::find_xml_fault(read("peers/peers_scene0_2_rays.svg")), "");
 }
 #endif
 
