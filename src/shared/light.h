@@ -50,9 +50,9 @@ FN Vec3 bend_normal(Vec3 shading, Vec3 geometric, Vec3 wo) {
     Vec3 mirrored = shading * (2.0f * dot(wo, shading)) - wo;
     float lowest = min(0.9f * dot(wo, geometric), 0.01f);
     float height = dot(mirrored, geometric);
+    if (height >= lowest) return shading;
     Vec3 lifted = normalize(mirrored + geometric * (lowest - height));
-    Vec3 bent = normalize(lifted + wo);
-    return select(height >= lowest, shading, bent);
+    return normalize(lifted + wo);
 }
 
 #endif

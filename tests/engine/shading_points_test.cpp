@@ -1,38 +1,127 @@
-// Points of the surface as shading sees them, with and without the cache of unpacked patches.
+// Points of the surface and random numbers as shading takes them: many at once by SIMD, and one by one.
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/tracer.h"
 #include "support/bodies.h"
+#include "support/isas.h"
 
 namespace relief {
 namespace {
 
-TEST(SurfacePoints, are_the_same_by_way_of_a_cache_of_any_size) {
+/// A displaced torus with a seam along either circle, the same one mirrored, a sphere whose patches nearly
+/// all touch one, and plain quads.
+Scene make_scene(const Displacement& displacement) {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
+    scene.meshes.push_back(test::make_cube_sphere(2));
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects.back().world_from_object.rows = {Vec3f{-1, 0, 0}, Vec3f{0, 0.5f, 1}, Vec3f{0, -1, 0.5f}};
+    scene.objects.back().world_from_object.translation = {3, 1, -2};
+    scene.objects.push_back({"sphere", 1, 0, kNoIndex, {}});
+    scene.objects.push_back({"plain", 1, kNoIndex, kNoIndex, {}});
+    return scene;
+}
+
+/// Hits all over the scene, near and at the borders of patches above all; edges coarser than their patch.
+std::vector<cpu::TraceHit> make_hits(const PreparedScene& scene, uint32_t count) {
+    const PatchLevels levels[] = {
+        {0, {0, 0, 0, 0}}, {2, {2, 1, 0, 2}}, {3, {3, 1, 2, 0}}, {4, {2, 4, 3, 4}}, {5, {5, 5, 5, 5}}};
+    std::vector<cpu::TraceHit> hits(count);
+    for (uint32_t k = 0; k < count; ++k) {
+        auto draw = [&, n = 0u](uint32_t end) mutable { return scalar::hash_combine(k, ++n) % end; };
+        cpu::TraceHit& hit = hits[k];
+        hit.instance = draw(uint32_t(scene.instances.size()));
+        const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
+        hit.patch = draw(surface.patch_count());
+        const PatchLevels& at = surface.has_displacement ? levels[draw(5)] : levels[0];
+        const uint32_t side = 1u << at.patch;
+        hit.levels = pack_levels(at);
+        hit.i = uint16_t(draw(2) ? draw(side) : draw(2) * (side - 1));
+        hit.j = uint16_t(draw(2) ? draw(side) : draw(2) * (side - 1));
+        const float x = float(draw(101)) / 100, y = float(draw(101)) / 100;
+        hit.is_upper = y > x;
+        hit.u = (float(hit.i) + x) / float(side), hit.v = (float(hit.j) + y) / float(side);
+        hit.t = 1;
+    }
+    return hits;
+}
+
+void expect_same(const cpu::SurfacePoint& a, const cpu::SurfacePoint& b) {
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.geometric_normal, b.geometric_normal);
+    EXPECT_EQ(a.shading_normal, b.shading_normal);
+    EXPECT_EQ(a.uv, b.uv);
+    EXPECT_EQ(a.area_per_uv, b.area_per_uv);
+    EXPECT_EQ(a.position_error, b.position_error);
+    EXPECT_EQ(a.instance, b.instance);
+    EXPECT_EQ(a.patch, b.patch);
+}
+
+void expect_same_points(const Displacement& displacement) {
     RenderSettings settings;
-    settings.level = 4;
-    const Scene scene = test::make_body_scene(
-        test::make_cube_sphere(3),
-        test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), DisplacementSpace::tangent));
-    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
-    const cpu::Tracer tracer(prepared, settings);
-    PatchSamplesCache one(1), few(8);
-    const uint32_t patch_count = prepared->surfaces[0].patch_count();
-    for (uint32_t k = 0; k < 400; ++k) {
-        cpu::TraceHit hit;
-        hit.instance = 0, hit.patch = k * 7 % patch_count;
-        hit.i = uint16_t(k % 16), hit.j = uint16_t(k / 16 % 16);
-        hit.levels = pack_levels(prepared->instances[0].levels->at(hit.patch));
-        hit.u = (float(hit.i) + 0.6f) / 16, hit.v = (float(hit.j) + 0.3f) / 16;
-        const cpu::SurfacePoint expected = tracer.make_surface_point(hit);
-        for (PatchSamplesCache* cache : {&one, &few}) {
-            const cpu::SurfacePoint point = tracer.make_surface_point(hit, *cache);
-            ASSERT_EQ(point.position, expected.position) << k;
-            ASSERT_EQ(point.shading_normal, expected.shading_normal) << k;
-            const cpu::SurfacePoint found = tracer.evaluate_point(0, hit.patch, {hit.u, hit.v}, 0, *cache);
-            ASSERT_EQ(found.position, expected.position) << k;
-            ASSERT_EQ(found.geometric_normal, expected.geometric_normal) << k;
+    settings.level = 5;
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(displacement), settings);
+    const std::vector<cpu::TraceHit> hits = make_hits(*prepared, 437);
+    for (const Isa isa : test::machine_isas()) {
+        settings.isa = isa;
+        const cpu::Tracer tracer(prepared, settings);
+        cpu::PointScratch scratch;
+        std::vector<cpu::SurfacePoint> points(hits.size()), cells(hits.size());
+        tracer.make_surface_points(hits, points, scratch);
+        std::vector<cpu::TraceHit> places;
+        for (const cpu::TraceHit& hit : hits) places.push_back(tracer.locate_on(hit, 1));
+        tracer.evaluate_points(places, cells, scratch);
+        for (size_t k = 0; k < hits.size(); ++k) {
+            const cpu::TraceHit& hit = hits[k];
+            expect_same(points[k], tracer.make_surface_point(hit));
+            expect_same(cells[k], tracer.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, 1));
+            ASSERT_FALSE(testing::Test::HasFailure())
+                << tracer.shading_kernels().name << " hit " << k << " instance " << hit.instance;
         }
     }
+}
+
+TEST(SurfacePoints, are_the_same_many_at_once_and_one_by_one) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat, WrapMode::mirror, WrapMode::black}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), space);
+            displacement.wrap = wrap;
+            displacement.midlevel = {0.01f, -0.02f, 0.03f};
+            displacement.flip_v = wrap == WrapMode::repeat;
+            expect_same_points(displacement);
+            if (testing::Test::HasFailure()) return;
+        }
+}
+
+TEST(SurfacePoints, are_the_same_where_a_tile_has_no_map) {
+    Displacement displacement =
+        test::make_displacement(test::make_random_map(40, 30, 0.1f, 9), DisplacementSpace::tangent);
+    displacement.is_udim = true;
+    displacement.tiles[0].udim = 1002;
+    expect_same_points(displacement);
+}
+
+TEST(RandomPairs, are_the_same_many_at_once_and_one_by_one) {
+    std::vector<uint32_t> seeds;
+    for (uint32_t k = 0; k < 53; ++k) seeds.push_back(scalar::hash_uint(k));
+    std::vector<Vec2f> drawn(seeds.size());
+    for (const Isa isa : test::machine_isas())
+        for (const uint32_t sample_index : {0u, 1u, 77u, 0xffffffffu}) {
+            RenderSettings settings;
+            settings.isa = isa;
+            settings.level = 0;
+            const auto map = test::make_random_map(4, 4, 0.1f, 1);
+            const cpu::Tracer tracer(
+                prepare_scene(make_scene(test::make_displacement(map, DisplacementSpace::object)), settings),
+                settings);
+            tracer.shading_kernels().draw_pairs(seeds.data(), seeds.size(), sample_index, 5, drawn.data());
+            for (size_t k = 0; k < seeds.size(); ++k)
+                ASSERT_EQ(drawn[k], scalar::sobol_pair(seeds[k], sample_index, 5))
+                    << tracer.shading_kernels().name << " " << k;
+        }
 }
 
 } // namespace

@@ -55,10 +55,17 @@ HWY_INLINE void load_quads(const void* source, size_t lane, LaneQuads* quads, si
         std::memcpy(quads[q].lane[lane], static_cast<const char*>(source) + 16 * q, 16);
 }
 
+/// One of the three vertices of a micro-triangle.
+struct CellVertex {
+    uint32_t number;
+    scalar::GridSample at;
+};
+
 /// Place of one vertex of a cell; its position at once where it lies on a line or at a corner that belongs
 /// to another patch.
-inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& levels, uint32_t vertex,
-                             scalar::GridSample at, size_t lane, HitLanes& lanes) {
+inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& levels, const CellVertex& vertex,
+                             size_t lane, HitLanes& lanes) {
+    const auto& [number, at] = vertex;
     const uint32_t n = 1u << levels.patch, edge = scalar::find_sample_edge(at.i, at.j, levels.patch);
     bool is_foreign = false;
     scalar::GridSample moved = at;
@@ -72,13 +79,13 @@ inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& lev
     if ((is_left || moved.i == n) && (is_low || moved.j == n))
         is_foreign = samples.is_corner_foreign(is_low ? (is_left ? 0 : 1) : (is_left ? 3 : 2));
     const float step = 1.0f / float(n);
-    lanes.vertex_u[vertex][lane] = float(moved.i) * step,
-    lanes.vertex_v[vertex][lane] = float(moved.j) * step;
+    lanes.vertex_u[number][lane] = float(moved.i) * step,
+    lanes.vertex_v[number][lane] = float(moved.j) * step;
     if (!is_foreign) return;
     const Vec3f p = evaluate_vertex(samples, levels, at.i, at.j);
-    lanes.is_foreign[vertex] |= LaneMask(1) << lane;
-    lanes.foreign[vertex][0][lane] = p.x, lanes.foreign[vertex][1][lane] = p.y;
-    lanes.foreign[vertex][2][lane] = p.z;
+    lanes.is_foreign[number] |= LaneMask(1) << lane;
+    lanes.foreign[number][0][lane] = p.x, lanes.foreign[number][1][lane] = p.y;
+    lanes.foreign[number][2][lane] = p.z;
 }
 
 inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, size_t lane, HitLanes& lanes) {
@@ -100,9 +107,9 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
     for (int edge = 0; edge < 4; ++edge)
         lanes.is_seam[edge][lane] = surface.is_seam(hit.patch, edge) ? 1.0f : 0.0f;
     const uint32_t i = hit.i, j = hit.j;
-    load_cell_vertex(samples, levels, 0, {i, j}, lane, lanes);
-    load_cell_vertex(samples, levels, 1, {i + 1, j + (hit.is_upper ? 1u : 0u)}, lane, lanes);
-    load_cell_vertex(samples, levels, 2, {i + (hit.is_upper ? 0u : 1u), j + 1}, lane, lanes);
+    load_cell_vertex(samples, levels, {0, {i, j}}, lane, lanes);
+    load_cell_vertex(samples, levels, {1, {i + 1, j + (hit.is_upper ? 1u : 0u)}}, lane, lanes);
+    load_cell_vertex(samples, levels, {2, {i + (hit.is_upper ? 0u : 1u), j + 1}}, lane, lanes);
 }
 
 /// Corners of sixteen patches, and what is interpolated between them.

@@ -123,9 +123,8 @@ SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit,
     return point;
 }
 
-void make_points(const PreparedScene& scene, void (*batched)(const PointBatch&),
-                 SurfacePoint (*alone)(const PreparedScene&, const TraceHit&, const PatchSamples*),
-                 std::span<const TraceHit> hits, std::span<SurfacePoint> points, PointScratch& scratch) {
+void make_points(const PreparedScene& scene, const PointMaker& maker, std::span<const TraceHit> hits,
+                 std::span<SurfacePoint> points, PointScratch& scratch) {
     std::vector<uint64_t>& keys = scratch.keys;
     keys.clear();
     for (size_t k = 0; k < hits.size(); ++k) keys.push_back(uint64_t(make_key(scene, hits[k])) << 32 | k);
@@ -136,13 +135,13 @@ void make_points(const PreparedScene& scene, void (*batched)(const PointBatch&),
         const uint32_t key = uint32_t(keys[first] >> 32);
         for (last = first + 1; last < keys.size() && uint32_t(keys[last] >> 32) == key;) ++last;
         if (key != kAlone) {
-            batched({scene, scratch.patches, hits.data(), scratch.order.data() + first, last - first,
-                     points.data()});
+            maker.many({scene, scratch.patches, hits.data(), scratch.order.data() + first, last - first,
+                        points.data()});
             continue;
         }
         for (size_t n = first; n < last; ++n) {
             const TraceHit& hit = hits[scratch.order[n]];
-            points[scratch.order[n]] = alone(scene, hit, find_samples(scene, hit, scratch.patches));
+            points[scratch.order[n]] = maker.one(scene, hit, find_samples(scene, hit, scratch.patches));
         }
     }
 }

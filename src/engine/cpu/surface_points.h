@@ -29,9 +29,14 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
 /// The same with shading normal and uv.
 SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples);
 
-/// Points of all hits: by `batched` where that can be, else by `alone`.
-void make_points(const PreparedScene& scene, void (*batched)(const PointBatch&),
-                 SurfacePoint (*alone)(const PreparedScene&, const TraceHit&, const PatchSamples*),
-                 std::span<const TraceHit> hits, std::span<SurfacePoint> points, PointScratch& scratch);
+/// Two ways to the same points.
+struct PointMaker {
+    void (*many)(const PointBatch&);
+    SurfacePoint (*one)(const PreparedScene&, const TraceHit&, const PatchSamples*);
+};
+
+/// Points of all hits, many at once where that can be; points[k] belongs to hits[k].
+void make_points(const PreparedScene& scene, const PointMaker& maker, std::span<const TraceHit> hits,
+                 std::span<SurfacePoint> points, PointScratch& scratch);
 
 } // namespace relief::cpu
