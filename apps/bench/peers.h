@@ -41,7 +41,7 @@ std::string format_level(int level);
 /// and what preparing a scene throws.
 nlohmann::ordered_json run_peers(const PeersOptions& options, const Report& report);
 
-/// peers.json, peers.csv and charts: first images, and each kind of rays.
+/// peers.json, peers.csv, peers_goals.md and charts: first images, and each kind of rays.
 std::vector<ReportFile> make_peers_files(const nlohmann::ordered_json& result);
 
 } // namespace relief::bench

@@ -1,6 +1,8 @@
 // Which of the project's goals a result of the suite peers tells about, and whether they are met.
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 namespace relief::bench {
@@ -9,5 +11,9 @@ namespace relief::bench {
 /// most", `ratio` what was reached over the goal, or its inverse where less is better: 1 and more is met. Of
 /// levels 5 and auto, or of all where neither was measured. What was not measured is left out.
 nlohmann::ordered_json make_peers_goals(const nlohmann::ordered_json& result);
+
+/// The goals as a table in Markdown: a row a goal, a column a scene and level. What was missed is bold, its
+/// ratio behind it.
+std::string make_goal_table(const nlohmann::ordered_json& goals);
 
 } // namespace relief::bench

@@ -1,4 +1,5 @@
-// The result of the suite as files: JSON, CSV, and for each scene a chart of first images and one of rays.
+// The result of the suite as files: JSON, CSV, the table of goals, and for each scene a chart of first images
+// and one of rays.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "bench/bar_chart.h"
 #include "bench/peers.h"
+#include "bench/peers_goals.h"
 
 namespace relief::bench {
 
@@ -127,7 +129,9 @@ std::string make_stem(size_t number, const std::string& name) {
 } // namespace
 
 std::vector<ReportFile> make_peers_files(const Json& result) {
-    std::vector<ReportFile> files = {{"peers.json", result.dump(1) + "\n"}, {"peers.csv", make_csv(result)}};
+    std::vector<ReportFile> files = {{"peers.json", result.dump(1) + "\n"},
+                                     {"peers.csv", make_csv(result)},
+                                     {"peers_goals.md", make_goal_table(result["goals"])}};
     std::vector<std::string> names;
     for (const Json& scene : result["scenes"]) {
         const std::string name = scene["scene"];

@@ -7,7 +7,7 @@
 
 const float kSpecularRoughness = 0.2f; ///< below it a reflection keeps the ray's bias
 const uint kLargestBias = 3u;
-const uint kRouletteDepth = 3u; ///< bounces that are never cut short
+const uint kRouletteDepth = 1u; ///< bounces that are never cut short
 
 // Pairs of dimensions of the sampler.
 const uint kPixelPair = 0u;
@@ -52,7 +52,8 @@ FN Vec3 lift_viewer(Vec3 wo_local) {
     return normalize(lifted);
 }
 
-/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990).
+/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990), from the second vertex on
+/// (Pharr, Jakob, Humphreys 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);

@@ -154,6 +154,10 @@ TEST(Peers, computes_goals_from_measures) {
     EXPECT_DOUBLE_EQ(find_reached(goals, "avx2 of avx512, occlusion"), 0.8);
     EXPECT_DOUBLE_EQ(find_reached(goals, "hits that differ other than at edges"), 0);
     EXPECT_DOUBLE_EQ(find_reached(goals, "bounce 5 against bounce 1, time a ray"), 5);
+    const std::string table = make_goal_table(goals);
+    EXPECT_NE(table.find("| what | goal | rock, 5 |\n"), std::string::npos);
+    EXPECT_NE(table.find("| bytes_a_patch | at most 64 bytes | **128** (0.5) |\n"), std::string::npos);
+    EXPECT_NE(table.find("| bytes_a_micro_quad | at most 14 bytes | 7 |\n"), std::string::npos);
     for (const Json& goal : goals) {
         const double reached = goal["reached"], bound = goal["goal"];
         EXPECT_EQ(goal["met"], goal["bound"] == "at least" ? reached >= bound : reached <= bound)
