@@ -6,6 +6,8 @@
 #define RELIEF_BOTTOM_BUILD_INL_H
 #endif
 
+#include <cstring>
+
 #include "engine/cpu/patch_evaluation-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,22 +30,31 @@ template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
 HWY_INLINE void fill_block(const VertexGrid& grid, uint32_t column, uint32_t row, uint32_t cell_count,
                            cpu::Block& block) {
     for (int axis = 0; axis < 3; ++axis) {
-        const float* source = grid.axis[axis];
-        float* target = block.vertex[axis];
-        for (uint32_t r = 0; r < 3; ++r)
-            for (uint32_t c = 0; c < 5; ++c)
-                target[r * 5 + c] = source[HWY_MIN(row + r, cell_count) * VertexGrid::kPitch +
-                                           HWY_MIN(column + c, cell_count)];
+        float* const target = block.vertex[axis];
+        for (uint32_t r = 0; r < 3; ++r) {
+            const float* const source = grid.axis[axis] + HWY_MIN(row + r, cell_count) * VertexGrid::kPitch;
+            if (column + 4 <= cell_count) {
+                std::memcpy(target + r * 5, source + column, 5 * sizeof(float));
+                continue;
+            }
+            for (uint32_t c = 0; c < 5; ++c) target[r * 5 + c] = source[HWY_MIN(column + c, cell_count)];
+        }
         target[15] = target[14];
     }
 }
 
-template <class Node> HWY_INLINE void store_block_box(const cpu::Block& block, uint32_t child, Node& node) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const Lanes16 v = Lanes16::load(block.vertex[axis]);
-        node.bounds[axis][child] = reduce_min(v);
-        node.bounds[3 + axis][child] = reduce_max(v);
-    }
+/// Boxes of eight blocks.
+HWY_INLINE void store_block_boxes(const cpu::Block* blocks, cpu::Node8& node) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (uint32_t k = 0; k < 8; ++k) {
+            // To four lanes at once, the rest by lanes: two short chains instead of a shuffle for every
+            // halving.
+            const float* const v = blocks[k].vertex[axis];
+            const Lanes4 a = Lanes4::load(v), b = Lanes4::load(v + 4), c = Lanes4::load(v + 8),
+                         d = Lanes4::load(v + 12);
+            node.bounds[axis][k] = reduce_min(min(min(a, b), min(c, d)));
+            node.bounds[3 + axis][k] = reduce_max(max(max(a, b), max(c, d)));
+        }
 }
 
 HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
@@ -51,7 +62,7 @@ HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
     if (tree.level == 5) {
         for (uint32_t g = 0; g < 16; ++g) {
             cpu::Node8& node = tree.group(int(g));
-            for (uint32_t k = 0; k < 8; ++k) store_block_box(blocks[g * 8 + k], k, node);
+            store_block_boxes(blocks + g * 8, node);
             for (int axis = 0; axis < 3; ++axis) {
                 tree.root().bounds[axis][g] = reduce_min(Lanes8::load(node.bounds[axis]));
                 tree.root().bounds[3 + axis][g] = reduce_max(Lanes8::load(node.bounds[3 + axis]));
@@ -66,7 +77,7 @@ HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
                 tree.root().bounds[3 + axis][g] = reduce_max(max(a, b));
             }
     } else if (tree.level == 3) {
-        for (uint32_t k = 0; k < 8; ++k) store_block_box(blocks[k], k, tree.group(0));
+        store_block_boxes(blocks, tree.group(0));
     }
 }
 

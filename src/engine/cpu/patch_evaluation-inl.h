@@ -53,6 +53,13 @@ HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
     return result;
 }
 
+/// All sixteen in [0, end).
+HWY_INLINE bool is_within(const int32_t (&index)[16], int32_t end) {
+    bool is_within = true;
+    for (int lane = 0; lane < 16; ++lane) is_within &= uint32_t(index[lane]) < uint32_t(end);
+    return is_within;
+}
+
 /// Raw channels r, g, b at sixteen uvs, bilinear.
 HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes16& u, const Lanes16& v,
                           Lanes16 (&raw)[3]) {
@@ -66,11 +73,17 @@ HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes1
     alignas(64) float fx[16], fy[16], texels[16][4];
     x0.store_as_integers(column), y0.store_as_integers(row);
     (x - x0).store(fx), (y - y0).store(fy);
+    // Nearly always nothing has to be wrapped.
+    const bool is_inside = is_within(column, width - 1) && is_within(row, height - 1);
     for (int lane = 0; lane < 16; ++lane) {
-        const size_t left = size_t(wrap_index(column[lane], width, map.wrap));
-        const size_t right = size_t(wrap_index(column[lane] + 1, width, map.wrap));
-        const size_t top = size_t(wrap_index(row[lane], height, map.wrap)) * size_t(width);
-        const size_t bottom = size_t(wrap_index(row[lane] + 1, height, map.wrap)) * size_t(width);
+        size_t left = size_t(column[lane]), right = left + 1;
+        size_t top = size_t(row[lane]) * size_t(width), bottom = top + size_t(width);
+        if (!is_inside) {
+            left = size_t(wrap_index(column[lane], width, map.wrap));
+            right = size_t(wrap_index(column[lane] + 1, width, map.wrap));
+            top = size_t(wrap_index(row[lane], height, map.wrap)) * size_t(width);
+            bottom = size_t(wrap_index(row[lane] + 1, height, map.wrap)) * size_t(width);
+        }
         const Lanes4 t =
             texel::filter_texels(load_texel(texture, top + left), load_texel(texture, top + right),
                                  load_texel(texture, bottom + left), load_texel(texture, bottom + right),
@@ -120,26 +133,47 @@ HWY_INLINE Lanes16 make_ramp(float begin) {
     return Lanes16(begin) + Lanes16::load(kRamp);
 }
 
-/// All rows by the formula of interior samples; those of the border are evaluated again by evaluate_border.
+/// Sixteen samples at (u, v) on a patch whose corners are given, by the formula of interior samples.
+HWY_INLINE void evaluate_samples(const Surface& surface, uint8_t tile, const VertexValues (&corner)[4],
+                                 const Lanes16& u, const Lanes16& v, Lanes16 (&position)[3]) {
+    const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    Lanes16 value[kValueCount];
+    for (int k = 0; k < values; ++k)
+        value[k] = wide::blend_quad(Lanes16(corner[0].value[k]), Lanes16(corner[1].value[k]),
+                                    Lanes16(corner[2].value[k]), Lanes16(corner[3].value[k]), u, v);
+    displace(surface, tile, value, position);
+}
+
+/// All rows and columns of the tile but those on a border of the patch, which evaluate_border takes care of
+/// (and may be written here nevertheless).
 HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
     const Quad& quad = surface.quads[range.patch];
     const uint8_t tile = surface.tile(quad.vertex[0]);
     VertexValues corner[4];
     for (size_t k = 0; k < 4; ++k) corner[k] = read_vertex(surface, quad.vertex[k]);
-    const int values = surface.map.is_tangent ? kValueCount : kFrame;
-    const float inverse = 1.0f / float(range.side());
-    for (uint32_t c = 0; c <= range.cell_count; c += 16) {
-        const Lanes16 u = make_ramp(float(range.cell_x + c)) * Lanes16(inverse);
-        for (uint32_t r = 0; r <= range.cell_count; ++r) {
-            const Lanes16 v(float(range.cell_y + r) * inverse);
-            Lanes16 value[kValueCount], position[3];
-            for (int k = 0; k < values; ++k)
-                value[k] = wide::blend_quad(Lanes16(corner[0].value[k]), Lanes16(corner[1].value[k]),
-                                            Lanes16(corner[2].value[k]), Lanes16(corner[3].value[k]), u, v);
-            displace(surface, tile, value, position);
+    const Lanes16 inverse(1.0f / float(range.side()));
+    const uint32_t n = range.cell_count;
+    const uint32_t row_begin = range.cell_y == 0 ? 1 : 0;
+    const uint32_t row_end = range.cell_y + n == range.side() ? n : n + 1;
+    Lanes16 position[3];
+    for (uint32_t c = 0; c < n; c += 16) {
+        const Lanes16 u = make_ramp(float(range.cell_x + c)) * inverse;
+        for (uint32_t r = row_begin; r < row_end; ++r) {
+            evaluate_samples(surface, tile, corner, u, Lanes16(float(range.cell_y + r)) * inverse, position);
             for (int axis = 0; axis < 3; ++axis)
                 position[axis].store_unaligned(&grid.axis[axis][r * VertexGrid::kPitch + c]);
         }
+    }
+    if (n < 16 || range.cell_x + n == range.side()) return;
+    // The last column by itself: a run of sixteen along each row would be for one sample.
+    const Lanes16 u = Lanes16(float(range.cell_x + n)) * inverse;
+    for (uint32_t r = row_begin; r < row_end; r += 16) {
+        evaluate_samples(surface, tile, corner, u, make_ramp(float(range.cell_y + r)) * inverse, position);
+        alignas(64) float point[3][16];
+        for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
+        for (uint32_t lane = 0; lane < 16 && r + lane < row_end; ++lane)
+            for (int axis = 0; axis < 3; ++axis)
+                grid.axis[axis][(r + lane) * VertexGrid::kPitch + n] = point[axis][lane];
     }
 }
 
@@ -155,19 +189,22 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
     for (uint32_t c = 0; c <= range.cell_count; c += 16) {
         alignas(64) float s[16], point[3][16];
-        bool is_corner[16];
+        bool is_corner[16], has_others = false;
         for (uint32_t lane = 0; lane < 16; ++lane) {
             const uint32_t index = begin + HWY_MIN(c + lane, range.cell_count);
             const uint32_t k = is_against ? n - index : index;
             const uint32_t moved = (k + step / 2) / step * step;
             is_corner[lane] = moved == 0 || moved == n;
+            has_others |= !is_corner[lane];
             s[lane] = float(moved) * (1.0f / float(n));
         }
-        Lanes16 value[kValueCount], position[3];
-        for (int k = 0; k < values; ++k)
-            value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), Lanes16::load(s));
-        displace(surface, surface.tile(line.first), value, position);
-        for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
+        if (has_others) {
+            Lanes16 value[kValueCount], position[3];
+            for (int k = 0; k < values; ++k)
+                value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), Lanes16::load(s));
+            displace(surface, surface.tile(line.first), value, position);
+            for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
+        }
         for (uint32_t lane = 0; lane < 16 && c + lane <= range.cell_count; ++lane) {
             const uint32_t along = c + lane, i = is_row ? along : is_far ? range.cell_count : 0;
             const uint32_t j = is_row ? (is_far ? range.cell_count : 0) : along;

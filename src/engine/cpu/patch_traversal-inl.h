@@ -208,15 +208,16 @@ template <Query kQuery>
 bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t x,
                      uint32_t y, RayState& ray) {
     using cpu::TileDirectory;
-    const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
-    const cpu::Node16& node =
-        directory
-            .nodes()[TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x];
+    const uint32_t depth = directory.depth, shift = TileDirectory::fanout(depth, step) / 2; // 2: 1, 4: 2
+    const uint32_t node =
+        TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x;
     Lanes16 entry;
+    const LaneMask mask = test_node(directory.nodes()[node].bounds, ray, entry);
     bool has_hit = false;
     ++visit.context->counters.patch_nodes;
-    visit_in_order(test_node(node.bounds, ray, entry), entry, ray, [&](uint32_t child) {
-        const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
+    visit_in_order(mask, entry, ray, [&](uint32_t child) {
+        const uint32_t cx = (x << shift) + (child & ((1u << shift) - 1)),
+                       cy = (y << shift) + (child >> shift);
         has_hit |= step + 1 == TileDirectory::step_count(depth)
                        ? trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), ray)
                        : trace_directory<kQuery>(visit, directory, step + 1, cx, cy, ray);
