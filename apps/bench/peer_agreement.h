@@ -22,7 +22,8 @@ struct Agreement {
     /// Of these three, those whose nearer hit lies within 1e-6 of an edge of its triangle (a share of the
     /// largest coordinate): rounding decides there. Of Embree's hits only where it has triangles.
     uint64_t at_edges = 0;
-    double largest_depth = 0; ///< relative, of hits of both that are not at edges
+    uint64_t grazing = 0;     ///< of `depth`: both hits within 1e-6 of the nearer one's plane, not at edges
+    double largest_depth = 0; ///< relative, of hits of both that are neither
 
     uint64_t differences() const { return missed + extra + depth; }
 };
