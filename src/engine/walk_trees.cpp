@@ -24,7 +24,7 @@ AxisBvh build_binary(std::span<const Box> boxes, StructureKind structure, uint32
     return add_axes(SahBvhBuilder::build(boxes, config));
 }
 
-WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, TraversalKind traversal,
+WalkTree make_tree(std::vector<Box> boxes, StructureKind structure, TraversalKind traversal,
                    uint32_t max_leaf_size) {
     WalkTree tree;
     for (const Box& box : boxes) tree.bounds.extend(box);
@@ -32,6 +32,7 @@ WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, Traversa
         SahKdTreeBuilder::Config config;
         if (traversal == TraversalKind::backtrack) config.cells = SahKdTreeBuilder::Cells::kept;
         tree.kd = SahKdTreeBuilder::build(boxes, config);
+        tree.boxes = std::move(boxes);
         return tree;
     }
     const AxisBvh binary =
@@ -50,7 +51,7 @@ WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, Traversa
 
 size_t WalkTree::byte_count() const {
     return linked.byte_count() + (linked.parents.size() + linked.skips.size()) * sizeof(uint32_t) +
-           heap.byte_count() + kd.byte_count();
+           heap.byte_count() + kd.byte_count() + boxes.size() * sizeof(Box);
 }
 
 size_t WalkTrees::byte_count() const {

@@ -11,10 +11,11 @@ namespace relief {
 
 /// One tree; what the traversal does not walk is empty.
 struct WalkTree {
-    LinkedBvh linked;  ///< stack, restart trail, parent link, skip link
-    SuccinctHeap heap; ///< trail, pair trail
-    KdTree kd;         ///< restart, push-down, backtrack
-    Box bounds;        ///< empty: nothing in it
+    LinkedBvh linked;       ///< stack, restart trail, parent link, skip link
+    SuccinctHeap heap;      ///< trail, pair trail
+    KdTree kd;              ///< restart, push-down, backtrack
+    std::vector<Box> boxes; ///< of the primitives of a kd-tree, whose leaves have no box of their own
+    Box bounds;             ///< of all primitives; empty: nothing in it
 
     size_t byte_count() const;
 };

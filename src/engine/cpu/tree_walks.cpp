@@ -1,5 +1,6 @@
 #include "engine/cpu/tree_walks.h"
 
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -18,6 +19,24 @@ using cpu::TraceHit;
 using cpu::TraceRay;
 using cpu::WalkView;
 
+/// Primitives of a kd-tree that a ray was tested against last: neighbouring leaves share them. Not cleared
+/// when made, since other trees need none.
+class Mailbox {
+  public:
+    void clear() { ids_.fill(kNoIndex); }
+
+    /// False: it is among them.
+    bool add(uint32_t id) {
+        uint32_t& place = ids_[id % ids_.size()];
+        const bool is_new = place != id;
+        place = id;
+        return is_new;
+    }
+
+  private:
+    std::array<uint32_t, 64> ids_;
+};
+
 /// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
 /// resume_walk() brings the old walk back, or the next instance of that leaf.
 template <TraversalKind kTraversal> class SceneWalk {
@@ -32,11 +51,13 @@ template <TraversalKind kTraversal> class SceneWalk {
           world_(world),
           visit_(visit),
           is_any_(visit == view.primitive.any),
-          limit_(world.t_max) {}
+          limit_(world.t_max),
+          world_ray_(make_object_ray(world.origin, world.direction)) {}
 
     /// True: a primitive ended the walk, which only those of any_hits do.
     bool run(TraceHit& best) {
         best_ = &best;
+        if constexpr (kIsKd) instances_.clear();
         leave_instance();
         stack_walk = make_empty_stack();
         start();
@@ -61,7 +82,7 @@ template <TraversalKind kTraversal> class SceneWalk {
     void leave_instance() {
         instance_ = kNoIndex;
         tree_ = &view_.trees.instances;
-        ray_ = make_object_ray(world_.origin, world_.direction);
+        ray_ = world_ray_;
     }
 
     void enter_instance(uint32_t index) {
@@ -70,6 +91,7 @@ template <TraversalKind kTraversal> class SceneWalk {
         tree_ = &view_.trees.surfaces[instance.surface];
         ray_ = make_object_ray(transform_point(instance.object_from_world, world_.origin),
                                transform_vector(instance.object_from_world, world_.direction));
+        if constexpr (kIsKd) patches_.clear();
         start();
     }
 
@@ -93,7 +115,8 @@ template <TraversalKind kTraversal> class SceneWalk {
     }
 
     void start_kd(uint root) {
-        const KdRay ray = make_kd_ray(ray_, tree_->bounds.lower, tree_->bounds.upper, world_.t_min, limit_);
+        const Box& cell = tree_->kd.bounds;
+        const KdRay ray = make_kd_ray(ray_, cell.lower, cell.upper, world_.t_min, limit_);
         if constexpr (kTraversal == TraversalKind::restart)
             kd_restart_walk = start_kd_restart(root, ray);
         else if constexpr (kTraversal == TraversalKind::push_down)
@@ -122,6 +145,10 @@ template <TraversalKind kTraversal> class SceneWalk {
         else
             return walk_kd_backtrack();
     }
+
+    static constexpr bool kIsKd = kTraversal == TraversalKind::restart ||
+                                  kTraversal == TraversalKind::push_down ||
+                                  kTraversal == TraversalKind::backtrack;
 
     /// In the order of TraversalKind.
     static constexpr size_t kIndex = size_t(kTraversal) - size_t(TraversalKind::stack);
@@ -166,6 +193,17 @@ template <TraversalKind kTraversal> class SceneWalk {
     void count_restart() {}
     void count_bytes(uint) {}
 
+    /// Of a primitive of a leaf. The box of another leaf was met on the way; that of a kd leaf holds more
+    /// than its primitives, and these come again in others.
+    bool is_to_be_entered(uint32_t id, Mailbox& mailbox) {
+        if constexpr (kIsKd) {
+            const Box& box = tree_->boxes[id];
+            return mailbox.add(id) && is_box_met(cross_box(ray_, box.lower, box.upper, world_.t_min, limit_));
+        } else {
+            return true;
+        }
+    }
+
     /// `word` of a kd leaf is its count.
     bool visit_leaf(uint first, uint word, uint) {
         const uint count = count_of_word(word);
@@ -176,28 +214,31 @@ template <TraversalKind kTraversal> class SceneWalk {
             return false;
         }
         for (uint k = 0; k < count; ++k) {
-            const bool is_hit =
-                visit_(view_.scene, context_, world_, instance_, primitive_ids()[first + k], *best_);
+            const uint32_t patch = primitive_ids()[first + k];
+            if (!is_to_be_entered(patch, patches_)) continue;
+            const bool is_hit = visit_(view_.scene, context_, world_, instance_, patch, *best_);
             limit_ = std::fmin(world_.t_max, best_->t);
             if (is_hit && is_any_) return is_ended_ = true;
         }
         return false;
     }
 
-    void enter_next_instance() {
-        tree_ = &view_.trees.instances;
-        const uint32_t index = primitive_ids()[waiting_first_];
-        ++waiting_first_, --waiting_count_;
-        enter_instance(index);
+    /// In world space. False: none is left.
+    bool enter_next_instance() {
+        while (waiting_count_ > 0) {
+            const uint32_t index = primitive_ids()[waiting_first_];
+            ++waiting_first_, --waiting_count_;
+            if (!is_to_be_entered(index, instances_)) continue;
+            enter_instance(index);
+            return true;
+        }
+        return false;
     }
 
     bool resume_walk() {
         if (instance_ == kNoIndex) return false;
-        if (waiting_count_ > 0) {
-            enter_next_instance();
-            return true;
-        }
         leave_instance();
+        if (enter_next_instance()) return true;
         state() = world_state_;
         if constexpr (kTraversal == TraversalKind::restart_trail) state() = drop_short_stack(state());
         return true;
@@ -213,7 +254,9 @@ template <TraversalKind kTraversal> class SceneWalk {
     bool is_ended_ = false;
     uint32_t instance_ = kNoIndex; ///< kNoIndex: in the tree of instances
     const WalkTree* tree_ = nullptr;
+    const ObjectRay world_ray_;
     ObjectRay ray_{};
+    Mailbox instances_, patches_; ///< of the kd-tree of instances, and of that of the current instance
     uint waiting_first_ = 0, waiting_count_ = 0; ///< instances of the leaf still to be entered
     State world_state_{};                        ///< of the tree of instances, past that leaf
 };

@@ -110,7 +110,8 @@ const uint kRoot = 0u; // a node
 
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
 
-/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met.
+/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met. Infinity where
+/// nothing in its box is wanted.
 float enter_primitive(uint id, float leaf_entry) {
 #ifdef WALK_KD
     return enter_wanted_box(load_any_node(tree.boxes + id));
@@ -118,6 +119,9 @@ float enter_primitive(uint id, float leaf_entry) {
     return leaf_entry;
 #endif
 }
+
+/// Before the first hit the limit is infinite, too, and infinity still means a missed box.
+bool is_within_limit(float entry) { return entry < kInfinity && entry <= find_limit(); }
 
 float enter_leaf(uint node) {
 #ifdef WALK_KD
@@ -136,7 +140,7 @@ bool enter_next_instance() {
         ++waiting_first;
         --waiting_count;
         float entry = enter_primitive(index, waiting_entry);
-        is_entered = instances[index].root != kNone && entry <= find_limit();
+        is_entered = instances[index].root != kNone && is_within_limit(entry);
         if (is_entered) {
             enter_instance(index);
             instance_entry = entry;
@@ -163,7 +167,7 @@ bool visit_leaf(uint first, uint word, uint node) {
         uint patch_index = load_word(tree.ids + first + k);
         if (has_displacement) {
             float entry = enter_primitive(patch_index, leaf_entry);
-            if (entry <= find_limit()) enter_patch(patch_index, entry);
+            if (is_within_limit(entry)) enter_patch(patch_index, entry);
         } else {
             intersect_polygon(patch_index);
         }
