@@ -1,5 +1,6 @@
 #include "engine/walk_trees.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/scene_trees.h"
@@ -16,11 +17,12 @@ AxisBvh build_binary(std::span<const Box> boxes, StructureKind structure, uint32
     if (structure == StructureKind::lbvh) {
         LbvhBuilder::Config config;
         config.max_leaf_size = max_leaf_size;
+        static_assert(LbvhBuilder::Config{}.code_bits + 30 <= int(scalar::kTrailLevels64));
         return LbvhBuilder::build(boxes, config);
     }
     SahBvhBuilder::Config config;
     config.max_leaf_size = max_leaf_size;
-    config.max_depth = int(scalar::kTrailLevels32);
+    config.max_depth = int(scalar::kTrailLevels64);
     return add_axes(SahBvhBuilder::build(boxes, config));
 }
 
@@ -35,8 +37,7 @@ WalkTree make_tree(std::vector<Box> boxes, StructureKind structure, TraversalKin
         tree.boxes = std::move(boxes);
         return tree;
     }
-    const AxisBvh binary =
-        limit_depth(build_binary(boxes, structure, max_leaf_size), int(scalar::kTrailLevels32));
+    const AxisBvh binary = build_binary(boxes, structure, max_leaf_size);
     if (traversal == TraversalKind::trail || traversal == TraversalKind::pair_trail) {
         tree.heap = make_succinct_heap(binary.bvh, binary.axes);
         return tree;
@@ -60,6 +61,8 @@ size_t WalkTrees::byte_count() const {
     return bytes;
 }
 
+int WalkTree::depth() const { return std::max({linked.depth, heap.depth, kd.depth}); }
+
 TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine) {
     return settings.traversal == TraversalKind::automatic
                ? available_traversals(engine, settings.structure).front()
@@ -74,8 +77,10 @@ WalkTrees make_walk_trees(const PreparedScene& scene, StructureKind structure, T
         trees.surfaces.push_back(make_tree(compute_patch_boxes(surface), structure, traversal,
                                            surface.has_displacement ? 1 : kPolygonsOfALeaf));
         bounds.push_back(trees.surfaces.back().bounds);
+        trees.depth = std::max(trees.depth, trees.surfaces.back().depth());
     }
     trees.instances = make_tree(compute_instance_boxes(scene, bounds), structure, traversal, 1);
+    trees.depth = std::max(trees.depth, trees.instances.depth());
     return trees;
 }
 

@@ -17,14 +17,16 @@ struct WalkTree {
     std::vector<Box> boxes; ///< of the primitives of a kd-tree, whose leaves have no box of their own
     Box bounds;             ///< of all primitives; empty: nothing in it
 
+    int depth() const; ///< edges on the longest way down
     size_t byte_count() const;
 };
 
-/// At most scalar::kTrailLevels32 levels each, but for kd-trees.
+/// At most scalar::kTrailLevels64 levels each.
 struct WalkTrees {
     TraversalKind traversal = TraversalKind::automatic;
     std::vector<WalkTree> surfaces; ///< over the patches of each
     WalkTree instances;
+    int depth = 0; ///< of the deepest: up to scalar::kTrailLevels32 keys and trails of 32 bits do
 
     size_t byte_count() const;
 };

@@ -1,6 +1,7 @@
 // Every structure and traversal that can be chosen by name finds what the wide trees find, bit for bit.
 #include <gtest/gtest.h>
 
+#include "engine/walk_trees.h"
 #include "support/casts.h"
 #include "support/choices.h"
 
@@ -74,6 +75,25 @@ TEST_P(Traversals, enter_few_more_patches_than_the_stack_does) {
     // Skip links do not go from front to back.
     const double most = GetParam().traversal == TraversalKind::skip_link ? 2 : 1.2;
     EXPECT_LT(double(count_pairs(GetParam())), most * double(least));
+}
+
+TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
+    const Scene scene = test::make_deep_polygons(2000);
+    RenderSettings settings;
+    const auto prepared = prepare_scene(scene, settings);
+    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    if (settings.structure == StructureKind::lbvh) {
+        EXPECT_GT(make_walk_trees(*prepared, settings.structure, settings.traversal).depth, 35);
+    }
+    const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
+    const test::CpuAnswers expected = test::cast_on_cpu(prepared, {}, rays);
+    const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, rays);
+    EXPECT_EQ(found.occluded, expected.occluded);
+    for (size_t k = 0; k < rays.size(); ++k) {
+        ASSERT_TRUE(expected.closest[k].is_hit()) << "ray " << k;
+        ASSERT_EQ(found.closest[k].patch, expected.closest[k].patch) << "ray " << k;
+        ASSERT_EQ(found.closest[k].t, expected.closest[k].t) << "ray " << k;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(test::list_choices(EngineKind::cpu)),

@@ -41,6 +41,16 @@ TEST_P(DeviceTraversals, enter_few_more_patches_than_the_stack_does) {
     EXPECT_LT(double(count_pairs(device(), GetParam())), 1.2 * double(least));
 }
 
+TEST_P(DeviceTraversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
+    const Scene scene = test::make_deep_polygons(2000);
+    RenderSettings settings;
+    const auto prepared = prepare_scene(scene, settings);
+    const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
+    const CpuAnswers expected = cast_on_cpu(prepared, settings, rays);
+    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    expect_same(cast_on_device(device(), *prepared, settings, rays, {}), expected, rays);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, DeviceTraversals, testing::ValuesIn(test::list_choices(EngineKind::vulkan)),
                          [](const auto& info) { return test::name_choice(info.param); });
 

@@ -38,10 +38,11 @@ class Mailbox {
 };
 
 /// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
-/// resume_walk() brings the old walk back, or the next instance of that leaf.
-template <TraversalKind kTraversal> class SceneWalk {
+/// resume_walk() brings the old walk back, or the next instance of that leaf. `Width`: uint or HeapKey, for
+/// trees of 30 or 62 levels.
+template <TraversalKind kTraversal, class Width> class SceneWalk {
   public:
-    using Key = uint;
+    using Key = Width;
 
     /// `visit`: one of view.primitive.
     SceneWalk(const WalkView& view, TraceContext& context, const TraceRay& world,
@@ -101,17 +102,33 @@ template <TraversalKind kTraversal> class SceneWalk {
         if constexpr (kTraversal == TraversalKind::stack)
             start_stack(root);
         else if constexpr (kTraversal == TraversalKind::restart_trail)
-            restart_walk = start_restart_trail(root, make_root_level32());
+            restart_walk = start_restart_trail(root, make_root_level());
         else if constexpr (kTraversal == TraversalKind::parent_link)
             parent_walk = start_parent_link(root);
         else if constexpr (kTraversal == TraversalKind::skip_link)
             skip_walk = start_skip_link(root);
         else if constexpr (kTraversal == TraversalKind::trail)
-            trail_walk = start_trail(root == kNoNode ? 0u : 1u);
+            trail_walk = start_trail(make_key(root == kNoNode ? 0u : 1u));
         else if constexpr (kTraversal == TraversalKind::pair_trail)
-            pair_walk = start_pair_trail(root == kNoNode ? 0u : 1u);
+            pair_walk = start_pair_trail(make_key(root == kNoNode ? 0u : 1u));
         else
             start_kd(root);
+    }
+
+    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
+
+    static Key make_key(uint low) {
+        if constexpr (kIsWide)
+            return {low, 0u};
+        else
+            return low;
+    }
+
+    static Key make_root_level() {
+        if constexpr (kIsWide)
+            return make_root_level64();
+        else
+            return make_root_level32();
     }
 
     void start_kd(uint root) {
@@ -270,28 +287,33 @@ void trace_each(const WalkView& view, TraceContext& context, size_t count, Trace
     }
 }
 
-template <TraversalKind kTraversal>
+template <TraversalKind kTraversal, class Width>
 void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, TraceHit* hits,
                   size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        SceneWalk<kTraversal>(view, context, rays[k], view.primitive.closest).run(best);
+        SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
         hits[k] = best;
         hits[k].bias = uint8_t(rays[k].bias);
     });
 }
 
-template <TraversalKind kTraversal>
+template <TraversalKind kTraversal, class Width>
 void any_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, uint8_t* occluded,
               size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        occluded[k] = SceneWalk<kTraversal>(view, context, rays[k], view.primitive.any).run(best);
+        occluded[k] = SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.any).run(best);
     });
 }
 
-template <TraversalKind kTraversal>
-constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal>, any_hits<kTraversal>};
+template <TraversalKind kTraversal, class Width = uint>
+constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal, Width>, any_hits<kTraversal, Width>};
+
+/// Of a walk with a key or a trail, which has room for `depth` levels.
+template <TraversalKind kTraversal> cpu::WalkFunctions choose_width(int depth) {
+    return depth <= int(kTrailLevels32) ? kWalk<kTraversal> : kWalk<kTraversal, HeapKey>;
+}
 
 } // namespace
 
@@ -299,21 +321,21 @@ constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal>, any_hits<kTraver
 
 namespace cpu {
 
-WalkFunctions find_walk(TraversalKind traversal) {
+WalkFunctions find_walk(TraversalKind traversal, int depth) {
     using T = TraversalKind;
     switch (traversal) {
     case T::stack:
         return scalar::kWalk<T::stack>;
     case T::restart_trail:
-        return scalar::kWalk<T::restart_trail>;
+        return scalar::choose_width<T::restart_trail>(depth);
     case T::parent_link:
         return scalar::kWalk<T::parent_link>;
     case T::skip_link:
         return scalar::kWalk<T::skip_link>;
     case T::trail:
-        return scalar::kWalk<T::trail>;
+        return scalar::choose_width<T::trail>(depth);
     case T::pair_trail:
-        return scalar::kWalk<T::pair_trail>;
+        return scalar::choose_width<T::pair_trail>(depth);
     case T::restart:
         return scalar::kWalk<T::restart>;
     case T::push_down:

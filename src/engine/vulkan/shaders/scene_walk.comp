@@ -97,15 +97,18 @@ HeapBrick load_heap_brick(uint brick) {
 uint find_slot(Key key) { return find_succinct_slot(key); }
 #endif
 #endif
-#ifdef WALK_RESTART_TRAIL
-uint make_root_level() { return make_root_level32(); }
-#endif
 #include "engine/vulkan/shaders/walk_kind.glsl"
 
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
-const uint kRoot = 1u; // a key
+// The key of the root in each width; the macro Key picks one by the type of the argument.
+uint make_root_key(uint width) { return 1u; }
+HeapKey make_root_key(HeapKey width) { return HeapKey(1u, 0u); }
+Key find_root() {
+    Key width;
+    return make_root_key(width);
+}
 #else
-const uint kRoot = 0u; // a node
+uint find_root() { return 0u; }
 #endif
 
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
@@ -145,7 +148,7 @@ bool enter_next_instance() {
             enter_instance(index);
             instance_entry = entry;
             tree = load_walk_tree(1u + instance.surface);
-            start_walk(kRoot);
+            start_walk(find_root());
         }
     }
     return is_entered;
@@ -211,7 +214,7 @@ bool walk() {
 #ifdef WALK_STACK
     stack_walk = make_empty_stack();
 #endif
-    start_walk(kRoot);
+    start_walk(find_root());
     return walk_on();
 }
 
