@@ -40,11 +40,11 @@ DoubtfulHits::DoubtfulHits(const Mesh& mesh) : mesh_(mesh) {
 
 bool DoubtfulHits::is_doubtful(const Ray& ray, const TreeHit& hit) const {
     if (hit.primitive == kNoIndex) return false;
-    const auto& [a, b, c] = triangles_.at(hit.primitive);
+    const std::array<uint32_t, 3>& corners = triangles_.at(hit.primitive);
     Interval part{ray.t_min, ray.t_max};
     const auto cut_axis = [&](float Vec3f::*axis) {
-        const auto [lower, upper] =
-            std::minmax({mesh_.positions[a].*axis, mesh_.positions[b].*axis, mesh_.positions[c].*axis});
+        const auto at = [&](size_t corner) { return mesh_.positions[corners[corner]].*axis; };
+        const auto [lower, upper] = std::minmax({at(0), at(1), at(2)});
         cut(part, lower, upper, ray.origin.*axis, ray.direction.*axis);
     };
     cut_axis(&Vec3f::x), cut_axis(&Vec3f::y), cut_axis(&Vec3f::z);
