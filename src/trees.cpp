@@ -1,6 +1,7 @@
 #include "relief/trees.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +41,24 @@ void check_cast(std::optional<TreeKind> kind, const TreeQuery& query, const Tree
     const bool is_trail =
         query.traversal == TraversalKind::trail || query.traversal == TraversalKind::pair_trail;
     if (!data.keys.empty() && !is_trail) refuse("only trails start at a key", "leave the keys out");
+}
+
+/// A walk from a key that is not in its tree would read anything.
+void check_keys(const TreeWorkshop& workshop, std::span<const uint64_t> keys) {
+    std::atomic<size_t> first_foreign{keys.size()};
+    parallel_for("check_keys", keys.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            if (workshop.contains_key(keys[k])) continue;
+            size_t first = first_foreign;
+            while (k < first && !first_foreign.compare_exchange_weak(first, k)) {
+            }
+            return;
+        }
+    });
+    if (first_foreign < keys.size())
+        refuse(fmt::format("key {} of ray {} names no node of the tree built last", keys[first_foreign],
+                           first_foreign.load()),
+               "start with kRootKey after every build");
 }
 
 } // namespace
@@ -86,9 +105,8 @@ std::vector<TraversalKind> tree_traversals(TreeKind kind) {
 }
 
 MeshTrees::MeshTrees(const Mesh& mesh, const RenderSettings& settings) : threads_(settings.threads) {
-    TriangleSoup soup = make_soup(mesh);
-    if (soup.indices.empty()) throw Error(ErrorKind::bad_input, {"no triangles", mesh.name, ""});
-    workshop_ = make_workshop(std::move(soup), settings);
+    validate_mesh(mesh);
+    workshop_ = make_workshop(make_soup(mesh), settings);
 }
 
 MeshTrees::~MeshTrees() = default;
@@ -112,7 +130,10 @@ TreeBuild MeshTrees::build(TreeKind kind, int heap_levels) {
 TreeCast MeshTrees::cast(const TreeQuery& query, const TreeCastData& data) {
     check_cast(kind_, query, data);
     TreeCast result;
-    with_threads(threads_, [&] { result = workshop_->cast(query, data); });
+    with_threads(threads_, [&] {
+        check_keys(*workshop_, data.keys);
+        result = workshop_->cast(query, data);
+    });
     return result;
 }
 

@@ -13,10 +13,11 @@ using Json = nlohmann::ordered_json;
 std::string get_where(const Json& result) {
     const Json& settings = result["settings"];
     std::string device = result["meshes"].empty() ? "" : result["meshes"][0]["device"].get<std::string>();
+    const int asked = settings["threads"].get<int>(); // 0: all
+    const int threads = asked > 0 ? asked : result["machine"]["threads"].get<int>();
     return fmt::format("{}, {}, {} threads; {} x {} primary rays; commit {}",
-                       settings["engine"].get<std::string>(), device, result["machine"]["threads"].get<int>(),
-                       settings["width"].get<int>(), settings["height"].get<int>(),
-                       result["build"]["commit"].get<std::string>());
+                       settings["engine"].get<std::string>(), device, threads, settings["width"].get<int>(),
+                       settings["height"].get<int>(), result["build"]["commit"].get<std::string>());
 }
 
 Panel make_panel(const Json& mesh) {

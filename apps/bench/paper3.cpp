@@ -57,12 +57,14 @@ const char* method_name(RenderMethod method) {
     return "";
 }
 
-/// One way to render a scene, its frames and its picture.
+/// One way to render a scene, its frames and the pictures of the first and the last of them.
 struct Way {
     RenderSettings settings;
     std::vector<Statistics> runs;
-    std::optional<Image> picture;
+    std::optional<Image> first, last;
     std::string refusal;
+
+    bool is_measured() const { return refusal.empty() && first; }
 };
 
 std::vector<Way> list_ways(const RenderSettings& base) {
@@ -72,7 +74,7 @@ std::vector<Way> list_ways(const RenderSettings& base) {
     std::vector<Way> ways;
     for (const Pair& pair : kPairs)
         for (const RenderMethod method : methods) {
-            Way way{base, {}, {}, {}};
+            Way way{base, {}, {}, {}, {}};
             way.settings.structure = pair.structure, way.settings.traversal = pair.traversal;
             way.settings.method = method;
             ways.push_back(std::move(way));
@@ -91,15 +93,31 @@ void render_way(const Scene& scene, Way& way, int run) {
     try {
         RenderResult result = render(scene, way.settings);
         if (run >= 0) way.runs.push_back(std::move(result.statistics));
-        if (!way.picture) way.picture = std::move(result.image);
+        if (!way.first) way.first = result.image;
+        way.last = std::move(result.image);
     } catch (const Error& error) {
-        if (error.kind() != ErrorKind::out_of_memory && error.kind() != ErrorKind::device_missing) throw;
+        if (error.kind() != ErrorKind::out_of_memory) throw;
         way.refusal = error.what();
         way.runs.clear();
     }
 }
 
-Json describe_way(const Way& way, const Way& reference) {
+/// That all others are compared with: the first that was measured, or null.
+const Way* find_reference(const std::vector<Way>& ways) {
+    const auto found =
+        std::find_if(ways.begin(), ways.end(), [](const Way& way) { return way.is_measured(); });
+    return found == ways.end() ? nullptr : &*found;
+}
+
+/// Of either picture.
+uint64_t count_different_pixels(const Way& way, const Way& reference) {
+    const auto count = [&](const Image& picture) {
+        return uint64_t(compare_images(picture, *reference.first, "", 0).over_threshold);
+    };
+    return std::max(count(*way.first), count(*way.last));
+}
+
+Json describe_way(const Way& way, const Way* reference) {
     Json entry = {{"structure", structure_name(way.settings.structure)},
                   {"traversal", traversal_name(way.settings.traversal)},
                   {"method", method_name(way.settings.method)},
@@ -111,25 +129,27 @@ Json describe_way(const Way& way, const Way& reference) {
     entry.update(describe_frames(way.runs));
     entry["camera_rays"] = way.runs.back().camera_rays;
     entry["shadow_rays"] = way.runs.back().shadow_rays;
-    if (reference.picture)
-        entry["pixels_that_differ"] = compare_images(*way.picture, *reference.picture, "", 0).over_threshold;
+    entry["pixels_that_differ"] = count_different_pixels(way, *reference);
     return entry;
 }
 
-/// Goals of the pictures and, of the Vulkan engine, of the methods.
+/// That the pictures of all ways are one; missed where fewer than two ways could be compared.
 Json make_goals(const Json& result) {
     Json goals = Json::array();
     for (const Json& scene : result["scenes"]) {
         double different = 0;
-        for (const Json& way : scene["ways"])
-            if (way.contains("pixels_that_differ"))
-                different = std::max(different, way["pixels_that_differ"].get<double>());
-        goals.push_back(
-            {{"name", scene["scene"].get<std::string>() + ", pixels that differ between any two ways"},
-             {"goal", 0},
-             {"reached", different},
-             {"unit", "pixels"},
-             {"met", different <= 0}});
+        int compared = 0;
+        for (const Json& way : scene["ways"]) {
+            if (!way.contains("pixels_that_differ")) continue;
+            different = std::max(different, way["pixels_that_differ"].get<double>());
+            ++compared;
+        }
+        goals.push_back({{"name", fmt::format("{}, pixels that differ between any two of {} ways",
+                                              scene["scene"].get<std::string>(), compared)},
+                         {"goal", 0},
+                         {"reached", different},
+                         {"unit", "pixels"},
+                         {"met", different <= 0 && compared >= 2}});
     }
     return goals;
 }
@@ -194,7 +214,7 @@ class Paper3 {
             }
         Json entry = {{"scene", name}, {"ways", Json::array()}};
         for (const Way& way : ways) {
-            entry["ways"].push_back(describe_way(way, ways.front()));
+            entry["ways"].push_back(describe_way(way, find_reference(ways)));
             if (way.runs.empty()) continue;
             entry["patches"] = way.runs.back().patches, entry["triangles"] = way.runs.back().triangles;
             if (!result_.contains("device")) result_["device"] = describe_device(way.runs.back());

@@ -136,4 +136,7 @@ struct Scene {
 /// Checks every index, range and finiteness. Throws Error{bad_input} that names the object at fault.
 void validate_scene(const Scene& scene);
 
+/// The same of one mesh, which is called by its name or else by its index.
+void validate_mesh(const Mesh& mesh, size_t index = 0);
+
 } // namespace relief

@@ -94,7 +94,7 @@ class TreeWorkshop;
 class MeshTrees {
   public:
     /// Of `settings` engine, device, pipeline_cache and threads. Throws Error: device_missing, out_of_memory,
-    /// bad_input for a mesh without triangles.
+    /// bad_input for what validate_mesh refuses.
     MeshTrees(const Mesh& mesh, const RenderSettings& settings);
     ~MeshTrees();
     MeshTrees(MeshTrees&&) noexcept;
@@ -108,7 +108,7 @@ class MeshTrees {
     TreeBuild build(TreeKind kind, int heap_levels = 0);
 
     /// Throws Error{usage} where nothing is built, for a traversal that is not among tree_traversals of the
-    /// tree, and for spans of other lengths.
+    /// tree, for spans of other lengths, and for a key that names no node of the tree.
     TreeCast cast(const TreeQuery& query, const TreeCastData& data);
 
     /// Bytes a second that copies read and write in the device's memory; 0 for the CPU engine.

@@ -74,7 +74,7 @@ TreeBuild describe(const DenseHeap& tree) {
     report.bytes = tree.byte_count();
     report.slots = tree.slots.size(), report.used = count_used_slots(tree);
     report.entries = tree.primitive_ids.size();
-    report.depth = std::max(tree.levels - 1, 0);
+    report.depth = compute_depth(tree);
     return report;
 }
 

@@ -36,6 +36,8 @@ class TreeWorkshop {
     virtual TreeBuild build(TreeKind kind, int heap_levels) = 0;
     /// The traversal is one of tree_traversals.
     virtual TreeCast cast(const TreeQuery& query, const TreeCastData& data) = 0;
+    /// Whether the tree, a heap, has a node of that key. Several threads may ask at once.
+    virtual bool contains_key(uint64_t key) const = 0;
 
   protected:
     TriangleSoup soup_;

@@ -1,5 +1,6 @@
 #include "engine/walk_trees.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/scene_trees.h"
@@ -16,15 +17,16 @@ AxisBvh build_binary(std::span<const Box> boxes, StructureKind structure, uint32
     if (structure == StructureKind::lbvh) {
         LbvhBuilder::Config config;
         config.max_leaf_size = max_leaf_size;
+        static_assert(LbvhBuilder::Config{}.code_bits + 30 <= int(scalar::kTrailLevels64));
         return LbvhBuilder::build(boxes, config);
     }
     SahBvhBuilder::Config config;
     config.max_leaf_size = max_leaf_size;
-    config.max_depth = int(scalar::kTrailLevels32);
+    config.max_depth = int(scalar::kTrailLevels64);
     return add_axes(SahBvhBuilder::build(boxes, config));
 }
 
-WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, TraversalKind traversal,
+WalkTree make_tree(std::vector<Box> boxes, StructureKind structure, TraversalKind traversal,
                    uint32_t max_leaf_size) {
     WalkTree tree;
     for (const Box& box : boxes) tree.bounds.extend(box);
@@ -32,10 +34,10 @@ WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, Traversa
         SahKdTreeBuilder::Config config;
         if (traversal == TraversalKind::backtrack) config.cells = SahKdTreeBuilder::Cells::kept;
         tree.kd = SahKdTreeBuilder::build(boxes, config);
+        tree.boxes = std::move(boxes);
         return tree;
     }
-    const AxisBvh binary =
-        limit_depth(build_binary(boxes, structure, max_leaf_size), int(scalar::kTrailLevels32));
+    const AxisBvh binary = build_binary(boxes, structure, max_leaf_size);
     if (traversal == TraversalKind::trail || traversal == TraversalKind::pair_trail) {
         tree.heap = make_succinct_heap(binary.bvh, binary.axes);
         return tree;
@@ -50,7 +52,7 @@ WalkTree make_tree(std::span<const Box> boxes, StructureKind structure, Traversa
 
 size_t WalkTree::byte_count() const {
     return linked.byte_count() + (linked.parents.size() + linked.skips.size()) * sizeof(uint32_t) +
-           heap.byte_count() + kd.byte_count();
+           heap.byte_count() + kd.byte_count() + boxes.size() * sizeof(Box);
 }
 
 size_t WalkTrees::byte_count() const {
@@ -58,6 +60,8 @@ size_t WalkTrees::byte_count() const {
     for (const WalkTree& tree : surfaces) bytes += tree.byte_count();
     return bytes;
 }
+
+int WalkTree::depth() const { return std::max({linked.depth, heap.depth, kd.depth}); }
 
 TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine) {
     return settings.traversal == TraversalKind::automatic
@@ -73,8 +77,10 @@ WalkTrees make_walk_trees(const PreparedScene& scene, StructureKind structure, T
         trees.surfaces.push_back(make_tree(compute_patch_boxes(surface), structure, traversal,
                                            surface.has_displacement ? 1 : kPolygonsOfALeaf));
         bounds.push_back(trees.surfaces.back().bounds);
+        trees.depth = std::max(trees.depth, trees.surfaces.back().depth());
     }
     trees.instances = make_tree(compute_instance_boxes(scene, bounds), structure, traversal, 1);
+    trees.depth = std::max(trees.depth, trees.instances.depth());
     return trees;
 }
 

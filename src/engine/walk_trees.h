@@ -11,19 +11,22 @@ namespace relief {
 
 /// One tree; what the traversal does not walk is empty.
 struct WalkTree {
-    LinkedBvh linked;  ///< stack, restart trail, parent link, skip link
-    SuccinctHeap heap; ///< trail, pair trail
-    KdTree kd;         ///< restart, push-down, backtrack
-    Box bounds;        ///< empty: nothing in it
+    LinkedBvh linked;       ///< stack, restart trail, parent link, skip link
+    SuccinctHeap heap;      ///< trail, pair trail
+    KdTree kd;              ///< restart, push-down, backtrack
+    std::vector<Box> boxes; ///< of the primitives of a kd-tree, whose leaves have no box of their own
+    Box bounds;             ///< of all primitives; empty: nothing in it
 
+    int depth() const; ///< edges on the longest way down
     size_t byte_count() const;
 };
 
-/// At most scalar::kTrailLevels32 levels each, but for kd-trees.
+/// At most scalar::kTrailLevels64 levels each.
 struct WalkTrees {
     TraversalKind traversal = TraversalKind::automatic;
     std::vector<WalkTree> surfaces; ///< over the patches of each
     WalkTree instances;
+    int depth = 0; ///< of the deepest: up to scalar::kTrailLevels32 keys and trails of 32 bits do
 
     size_t byte_count() const;
 };

@@ -51,7 +51,9 @@ void check_indices(const std::string& where, const char* what, const std::vector
     }
 }
 
-void check_mesh(const Mesh& mesh, size_t index) {
+} // namespace
+
+void validate_mesh(const Mesh& mesh, size_t index) {
     std::string where = describe("mesh", mesh.name, index);
     if (!mesh.source.empty()) where += " (" + mesh.source + ")";
     size_t corners = 0;
@@ -76,6 +78,8 @@ void check_mesh(const Mesh& mesh, size_t index) {
     for (size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
 }
+
+namespace {
 
 void check_texture(const std::string& where, const Texture& texture) {
     constexpr uint32_t kMaxSide = kMaxPictureSize;
@@ -201,7 +205,7 @@ void check_picture(const PictureDefaults& picture) {
 } // namespace
 
 void validate_scene(const Scene& scene) {
-    for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh(scene.meshes[i], i);
+    for (size_t i = 0; i < scene.meshes.size(); ++i) validate_mesh(scene.meshes[i], i);
     for (size_t i = 0; i < scene.displacements.size(); ++i) check_displacement(scene.displacements[i], i);
     for (size_t i = 0; i < scene.materials.size(); ++i) check_material(scene.materials[i], i);
     std::vector<Box> mesh_boxes(scene.meshes.size());

@@ -72,7 +72,7 @@ struct TileRecord {
 /// ids of primitives, at the beginning of which are these records: first that of the tree of instances, then
 /// one a surface.
 struct WalkTreeData {
-    Vec3 lower, upper; ///< of all of it
+    Vec3 lower, upper; ///< kd: cell of the root
     uint is_empty;
     uint nodes;                   ///< its first node; kd: its first cell
     uint ids;                     ///< first word of what leaves count into: instances, or patches

@@ -27,12 +27,15 @@ KdBacktrackState start_kd_backtrack(uint root, KdRay ray) {
     return state;
 }
 
-/// From a cell that the ray has left at `near`.
+/// From a cell that the ray has left at `near`. The test of its planes is counted as that of a box; a way
+/// down from a cell further up as a restart.
 void climb_kd_cells() {
     KdBox box = load_kd_box(kd_backtrack_walk.node);
     count_bytes(kKdBoxBytes);
+    count_box_test();
     float far = leave_cell(kd_backtrack_walk.ray, box.lower, box.upper, kd_backtrack_walk.ray.end);
     if (far > kd_backtrack_walk.near) {
+        count_restart();
         kd_backtrack_walk.far = far;
         kd_backtrack_walk.is_climbing = 0u;
     } else {

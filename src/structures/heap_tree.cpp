@@ -26,6 +26,10 @@ void set_bit(uint32_t& low, uint32_t& high, uint32_t place) {
     (place < 32 ? low : high) |= 1u << (place & 31u);
 }
 
+bool has_bit(uint32_t low, uint32_t high, uint32_t place) {
+    return ((place < 32 ? low : high) >> (place & 31u) & 1u) != 0;
+}
+
 struct KeyedNode {
     uint64_t key;
     uint32_t node;
@@ -165,6 +169,42 @@ SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
     const int limit = int(scalar::kTrailLevels64);
     if (depth > limit) refuse_depth(depth, limit, "a key of 64 bits");
     return SuccinctBuild(bvh, axes).run();
+}
+
+bool contains_key(const DenseHeap& heap, uint64_t key) {
+    return key < heap.slots.size() && heap.slots[key].word != scalar::kEmptySlot;
+}
+
+/// Its parent has to be an inner node: what find_succinct_slot takes for granted, bit by bit.
+bool contains_key(const SuccinctHeap& heap, uint64_t key) {
+    if (heap.blocks.empty() || key == 0) return false;
+    const uint64_t parent = key / 2;
+    if (parent == 0) return true;
+    const uint32_t level = uint32_t(std::bit_width(parent)) - 1;
+    const uint32_t flat_levels = heap.form.flat_levels;
+    uint32_t depth = level > flat_levels ? level - flat_levels : 0;
+    const uint64_t flat_key = parent >> depth;
+    const HeapBlock& block = heap.blocks[flat_key / 64];
+    const uint32_t place = uint32_t(flat_key % 64);
+    if (!has_bit(block.inner_low, block.inner_high, place)) return false;
+    if (level < flat_levels) return true;
+    const uint32_t rank = block.rank + scalar::rank_bits(block.inner_low, block.inner_high, place);
+    const HeapBrick* brick = &heap.bricks[rank - heap.form.flat_pairs];
+    while (depth >= kBrickLevels) {
+        depth -= kBrickLevels;
+        const uint32_t local = uint32_t(parent >> depth & 63u);
+        if (!has_bit(brick->deeper_low, brick->deeper_high, local)) return false;
+        brick = &heap.bricks[brick->first_brick +
+                             scalar::rank_bits(brick->deeper_low, brick->deeper_high, local)];
+    }
+    const uint32_t local = 1u << depth | uint32_t(parent & ((uint64_t(1) << depth) - 1));
+    return has_bit(brick->inner_low, brick->inner_high, local);
+}
+
+int compute_depth(const DenseHeap& heap) {
+    size_t last = heap.slots.size();
+    while (last > 1 && heap.slots[last - 1].word == scalar::kEmptySlot) --last;
+    return last > 1 ? int(std::bit_width(last - 1)) - 1 : 0;
 }
 
 size_t count_used_slots(const DenseHeap& heap) {

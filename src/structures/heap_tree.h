@@ -46,7 +46,14 @@ DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes);
 /// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth helps.
 SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes);
 
+/// Whether there is a node of that key. Of a succinct heap the directory alone is read.
+bool contains_key(const DenseHeap& heap, uint64_t key);
+bool contains_key(const SuccinctHeap& heap, uint64_t key);
+
 /// Number of slots in use.
 size_t count_used_slots(const DenseHeap& heap);
+
+/// Edges on the longest way down; a heap may have more levels than its tree.
+int compute_depth(const DenseHeap& heap);
 
 } // namespace relief

@@ -1,23 +1,14 @@
 // Every structure and traversal that can be chosen by name finds what the wide trees find, bit for bit.
 #include <gtest/gtest.h>
 
+#include "engine/walk_trees.h"
 #include "support/casts.h"
+#include "support/choices.h"
 
 namespace relief {
 namespace {
 
-struct Choice {
-    StructureKind structure;
-    TraversalKind traversal;
-};
-
-std::vector<Choice> list_choices() {
-    std::vector<Choice> choices;
-    for (const StructureKind structure : {StructureKind::bvh, StructureKind::lbvh, StructureKind::kdtree})
-        for (const TraversalKind traversal : available_traversals(EngineKind::cpu, structure))
-            choices.push_back({structure, traversal});
-    return choices;
-}
+using test::Choice;
 
 class Traversals : public testing::TestWithParam<Choice> {
   protected:
@@ -63,15 +54,53 @@ TEST_P(Traversals, find_them_in_polygons) {
     expect_same_hits(scene, {});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(list_choices()), [](const auto& info) {
-    std::string name =
-        std::string(structure_name(info.param.structure)) + "_" + traversal_name(info.param.traversal);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+/// Pairs of rays and patches: a box around each keeps most rays out, whatever leaf it is found in.
+uint64_t count_pairs(const Choice& choice) {
+    RenderSettings settings;
+    settings.level = 4;
+    settings.structure = choice.structure, settings.traversal = choice.traversal;
+    const auto prepared = prepare_scene(test::make_crowd(), settings);
+    const std::vector<cpu::TraceRay> rays = test::make_rays(1500, 5);
+    std::vector<cpu::TraceHit> hits(rays.size());
+    const cpu::Tracer tracer(prepared, settings);
+    tracer.closest_hits(rays, hits);
+    Statistics statistics;
+    tracer.add_statistics(statistics);
+    return statistics.pairs_emitted;
+}
+
+TEST_P(Traversals, enter_few_more_patches_than_the_stack_does) {
+    const uint64_t least = count_pairs({StructureKind::bvh, TraversalKind::stack});
+    EXPECT_GT(least, 1500u);
+    // Skip links do not go from front to back.
+    const double most = GetParam().traversal == TraversalKind::skip_link ? 2 : 1.2;
+    EXPECT_LT(double(count_pairs(GetParam())), most * double(least));
+}
+
+TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
+    const Scene scene = test::make_deep_polygons(2000);
+    RenderSettings settings;
+    const auto prepared = prepare_scene(scene, settings);
+    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    if (settings.structure == StructureKind::lbvh) {
+        EXPECT_GT(make_walk_trees(*prepared, settings.structure, settings.traversal).depth, 35);
+    }
+    const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
+    const test::CpuAnswers expected = test::cast_on_cpu(prepared, {}, rays);
+    const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, rays);
+    EXPECT_EQ(found.occluded, expected.occluded);
+    for (size_t k = 0; k < rays.size(); ++k) {
+        ASSERT_TRUE(expected.closest[k].is_hit()) << "ray " << k;
+        ASSERT_EQ(found.closest[k].patch, expected.closest[k].patch) << "ray " << k;
+        ASSERT_EQ(found.closest[k].t, expected.closest[k].t) << "ray " << k;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(test::list_choices(EngineKind::cpu)),
+                         [](const auto& info) { return test::name_choice(info.param); });
 
 TEST(TraversalsOfAnEmptyScene, find_nothing) {
-    for (const Choice& choice : list_choices()) {
+    for (const Choice& choice : test::list_choices(EngineKind::cpu)) {
         RenderSettings settings;
         settings.structure = choice.structure, settings.traversal = choice.traversal;
         const auto prepared = prepare_scene(Scene{}, settings);

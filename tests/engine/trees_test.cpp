@@ -117,6 +117,31 @@ TEST_F(MeshTreesTest, misuse_is_refused) {
     std::vector<uint64_t> keys(rays_.size(), kRootKey);
     EXPECT_THROW(trees_.cast({}, {rays_, hits_, keys}), Error);
     EXPECT_THROW(MeshTrees(Mesh{}, {}), Error);
+    trees_.build(TreeKind::succinct_sah);
+    for (const uint64_t key : {uint64_t(0), uint64_t(1) << 40, ~uint64_t(0), uint64_t(3) << 61}) {
+        keys[7] = key;
+        EXPECT_THROW(trees_.cast({TraversalKind::trail}, {rays_, hits_, keys}), Error) << key;
+    }
+}
+
+TEST_F(MeshTreesTest, keys_of_another_tree_are_refused) {
+    std::vector<uint64_t> keys(rays_.size(), kRootKey);
+    trees_.build(TreeKind::succinct_sah);
+    trees_.cast({TraversalKind::trail}, {rays_, hits_, keys});
+    for (const TreeKind kind : {TreeKind::heap, TreeKind::succinct_lbvh}) {
+        trees_.build(kind, kind == TreeKind::heap ? 4 : 0);
+        EXPECT_THROW(trees_.cast({TraversalKind::trail}, {rays_, hits_, keys}), Error) << tree_name(kind);
+    }
+}
+
+TEST(MeshTreesOfADamagedMesh, are_refused) {
+    const Mesh sound = make_structure_scene("hall", MeshDetail::reduced).meshes[0];
+    Mesh far_index = sound, overrun = sound, line = sound, not_finite = sound;
+    far_index.position_indices[5] = uint32_t(sound.positions.size());
+    overrun.face_sizes.back() = 7;
+    line.face_sizes[0] = 2;
+    not_finite.positions[0].x = std::nanf("");
+    for (const Mesh& mesh : {far_index, overrun, line, not_finite}) EXPECT_THROW(MeshTrees(mesh, {}), Error);
 }
 
 } // namespace

@@ -92,7 +92,12 @@ void expect_complete(const Bvh& bvh, const std::vector<uint8_t>& axes) {
         ASSERT_EQ(slot & 1u, place.key & 1u);
         ++used[slot];
         expect_same_node(heap.nodes[slot], bvh, axes, place.node);
+        ASSERT_TRUE(contains_key(heap, place.key));
+        if (!bvh.nodes[place.node].is_leaf()) continue;
+        for (int below = 1; below < std::countl_zero(place.key); ++below)
+            ASSERT_FALSE(contains_key(heap, (place.key << below) + uint64_t(below)));
     }
+    EXPECT_FALSE(contains_key(heap, 0));
     EXPECT_EQ(heap.nodes.size(), bvh.nodes.size() + 1);
     for (size_t k = 1; k < used.size(); ++k) ASSERT_EQ(used[k], 1);
     EXPECT_EQ(heap.primitive_ids, bvh.primitive_ids);
@@ -165,7 +170,8 @@ TEST(Heaps, are_empty_without_primitives) {
     EXPECT_TRUE(make_dense_heap({}, {}).slots.empty());
     EXPECT_TRUE(make_succinct_heap({}, {}).nodes.empty());
     EXPECT_TRUE(make_linked_bvh({}, {}).nodes.empty());
-    EXPECT_EQ(compute_depth({}), 0);
+    EXPECT_EQ(compute_depth(Bvh{}), 0);
+    EXPECT_EQ(compute_depth(DenseHeap{}), 0);
 }
 
 TEST(LinkedBvh, has_parents_and_skips_of_the_depth_first_order) {

@@ -26,7 +26,7 @@ struct WalkCase {
     WalkCounts counts;
 };
 
-class CaseMaker {
+template <test::Intersect kIntersect> class CaseMaker {
   public:
     explicit CaseMaker(const TriangleSet& set) : triangles_(set.triangles), boxes_(set.boxes()) {}
 
@@ -102,12 +102,12 @@ class CaseMaker {
         walk.name = name;
         // The tree lives as long as the functions; the view refers to it.
         walk.find_nearest = [this_triangles = &triangles_, tree, view](BoxRay ray, WalkCounts& counts) {
-            NearestLeaf leaf(*this_triangles);
+            NearestLeaf<kIntersect> leaf(*this_triangles);
             closest_hit<kTraversal>(view, ray, leaf, counts);
             return leaf.best;
         };
         walk.find_any = [this_triangles = &triangles_, tree, view](const BoxRay& ray) {
-            return any_hit<kTraversal>(view, ray, AnyLeaf(*this_triangles));
+            return any_hit<kTraversal>(view, ray, AnyLeaf<kIntersect>(*this_triangles));
         };
         cases_.push_back(std::move(walk));
     }
@@ -121,7 +121,7 @@ class Hits : public testing::TestWithParam<TriangleSet> {};
 
 TEST_P(Hits, of_every_walk_are_those_of_brute_force) {
     const TriangleSet& set = GetParam();
-    std::vector<WalkCase> walks = CaseMaker(set).run();
+    std::vector<WalkCase> walks = CaseMaker<test::intersect>(set).run();
     test::RayMaker maker(90, set.triangles);
     constexpr int kRays = 500;
     int hits = 0;
@@ -144,6 +144,27 @@ TEST_P(Hits, of_every_walk_are_those_of_brute_force) {
             << walk.name;
         EXPECT_GT(walk.counts.bytes, 0u) << walk.name;
     }
+}
+
+TEST_P(Hits, by_the_test_of_the_engines_differ_only_where_a_ray_misses_the_box_of_what_it_hits) {
+    const TriangleSet& set = GetParam();
+    std::vector<WalkCase> walks = CaseMaker<test::intersect_as_engines_do>(set).run();
+    test::RayMaker maker(95, set.triangles);
+    constexpr int kRays = 500;
+    int doubtful = 0;
+    for (int k = 0; k < kRays; ++k) {
+        const BoxRay ray = k % 2 ? maker.make_general() : maker.make_special();
+        if (test::is_doubtful(set.triangles, ray)) {
+            ++doubtful;
+            continue;
+        }
+        const Nearest expected = test::find_by_brute_force<test::intersect_as_engines_do>(set.triangles, ray);
+        for (WalkCase& walk : walks) {
+            ASSERT_EQ(walk.find_nearest(ray, walk.counts), expected) << walk.name << ", ray " << k;
+            ASSERT_EQ(walk.find_any(ray), expected.is_hit()) << walk.name << ", ray " << k;
+        }
+    }
+    EXPECT_LE(doubtful, kRays / 20);
 }
 
 /// A chain of rays, each from the leaf where the one before was hit.

@@ -94,6 +94,8 @@ class OrderCase {
 struct Totals {
     size_t visited = 0;
     uint64_t restarts = 0;
+    int beyond_narrow = 0; ///< trees that words of 32 bits are too short for
+    int at_last_level = 0; ///< trees of as many levels as words of 64 bits have room for
 };
 
 /// Random boxes, axes and directions; half of the rays are shortened on the way.
@@ -110,6 +112,9 @@ void check_shape(const Shape& shape, std::mt19937& random, int repeats, Totals& 
         test.expect_same_order();
         totals.visited += test.visited();
         totals.restarts += test.restarts();
+        const int depth = compute_depth(bvh);
+        totals.beyond_narrow += depth > int(scalar::kTrailLevels32);
+        totals.at_last_level += depth == int(scalar::kTrailLevels64);
     }
 }
 
@@ -142,6 +147,8 @@ TEST(LeafOrder, is_that_of_recursion_for_deep_random_trees) {
         check_shape(test::make_random_shape(random, depth, 0.55 + 0.05 * (k % 5), 400), random, 1, totals);
     }
     EXPECT_GT(totals.restarts, 100u);
+    EXPECT_GT(totals.beyond_narrow, 1000);
+    EXPECT_GT(totals.at_last_level, 30);
 }
 
 TEST(LeafOrder, is_that_of_recursion_for_chains_down_to_the_last_level) {

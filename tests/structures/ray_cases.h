@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "box_sets.h"
+#include "math/scalar.h"
 
 namespace relief::test {
 
@@ -213,13 +214,52 @@ struct Nearest {
     bool operator==(const Nearest&) const = default;
 };
 
+/// The test that engines run. It may find what a walk need not: see is_doubtful.
+inline float intersect_as_engines_do(const BoxRay& ray, const Triangle& triangle) {
+    const scalar::ObjectRay own = scalar::make_object_ray(ray.origin, ray.direction);
+    return scalar::intersect_sheared(own, scalar::shear_vertex(own, triangle.a),
+                                     scalar::shear_vertex(own, triangle.b),
+                                     scalar::shear_vertex(own, triangle.c), ray.t_min, ray.t_max)
+        .t;
+}
+
+/// In double precision.
+inline bool misses_box(const BoxRay& ray, const Box& box) {
+    double entry = ray.t_min, exit = ray.t_max;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = get_component(ray.origin, axis), speed = get_component(ray.direction, axis);
+        const double lower = get_component(box.lower, axis), upper = get_component(box.upper, axis);
+        if (speed == 0 && (origin < lower || origin > upper)) return true;
+        if (speed == 0) continue;
+        const double first = (lower - origin) / speed, last = (upper - origin) / speed;
+        entry = std::max(entry, std::min(first, last));
+        exit = std::min(exit, std::max(first, last));
+    }
+    return entry > exit * (1 + 1e-12);
+}
+
+/// Whether rounding lets the ray hit a triangle whose own box it misses: walks may find it or not.
+inline bool is_doubtful(const std::vector<Triangle>& triangles, const BoxRay& ray) {
+    const scalar::ObjectRay own = scalar::make_object_ray(ray.origin, ray.direction);
+    return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
+        const float t = intersect_as_engines_do(ray, triangle);
+        if (t == std::numeric_limits<float>::infinity()) return false;
+        const Box box = triangle.box();
+        return misses_box(ray, box) ||
+               !scalar::is_box_met(scalar::cross_box(own, box.lower, box.upper, ray.t_min, t));
+    });
+}
+
+/// Distance of a hit or infinity.
+using Intersect = float (*)(const BoxRay&, const Triangle&);
+
 /// Leaf of a closest-hit walk: the nearest triangle, of equally near ones the first.
-class NearestLeaf {
+template <Intersect kIntersect = intersect> class NearestLeaf {
   public:
     explicit NearestLeaf(const std::vector<Triangle>& triangles) : triangles_(triangles) {}
 
     void operator()(uint32_t id, BoxRay& ray) {
-        const float t = intersect(ray, triangles_[id]);
+        const float t = kIntersect(ray, triangles_[id]);
         if (t == std::numeric_limits<float>::infinity()) return;
         if (t < best.t || (t == best.t && id < best.id)) best = {t, id}, ray.t_max = t;
     }
@@ -231,19 +271,20 @@ class NearestLeaf {
 };
 
 /// Leaf of an any-hit walk.
-class AnyLeaf {
+template <Intersect kIntersect = intersect> class AnyLeaf {
   public:
     explicit AnyLeaf(const std::vector<Triangle>& triangles) : triangles_(triangles) {}
     bool operator()(uint32_t id, const BoxRay& ray) const {
-        return intersect(ray, triangles_[id]) < std::numeric_limits<float>::infinity();
+        return kIntersect(ray, triangles_[id]) < std::numeric_limits<float>::infinity();
     }
 
   private:
     const std::vector<Triangle>& triangles_;
 };
 
-inline Nearest find_by_brute_force(const std::vector<Triangle>& triangles, BoxRay ray) {
-    NearestLeaf leaf(triangles);
+template <Intersect kIntersect = intersect>
+Nearest find_by_brute_force(const std::vector<Triangle>& triangles, BoxRay ray) {
+    NearestLeaf<kIntersect> leaf(triangles);
     for (uint32_t id = 0; id < triangles.size(); ++id) leaf(id, ray);
     return leaf.best;
 }

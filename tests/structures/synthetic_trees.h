@@ -50,8 +50,8 @@ inline std::vector<Shape> make_all_shapes(int depth) {
     return shapes;
 }
 
-/// Splits leaves above `depth` with the given probability, at most `count` nodes; the last levels are reached
-/// by a chain.
+/// Splits leaves above `depth` with the given probability, at most about `count` nodes; from the last of them
+/// a chain reaches down to `depth`.
 inline Shape make_random_shape(std::mt19937& random, int depth, double probability, size_t count) {
     Shape shape;
     std::vector<std::pair<uint32_t, int>> pending{{0, 0}};
@@ -63,6 +63,8 @@ inline Shape make_random_shape(std::mt19937& random, int depth, double probabili
         pending.push_back({first, level + 1});
         pending.push_back({first + 1, level + 1});
     }
+    auto [node, level] = pending.back();
+    for (; level < depth; ++level) node = shape.split(node) + random() % 2;
     return shape;
 }
 

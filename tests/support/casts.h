@@ -46,6 +46,20 @@ inline std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t seed) {
     return rays;
 }
 
+/// Each at a point in a triangle of the mesh, from not far away.
+inline std::vector<cpu::TraceRay> make_rays_at_polygons(const Mesh& mesh, uint32_t count) {
+    std::mt19937 random(11);
+    std::vector<cpu::TraceRay> rays(count);
+    for (uint32_t k = 0; k < count; ++k) {
+        const size_t face = k % 2 ? random() % mesh.face_sizes.size() : k / 2 % 30;
+        const auto corner = [&](size_t c) { return mesh.positions[mesh.position_indices[3 * face + c]]; };
+        const Vec3f target = corner(0) * 0.4f + corner(1) * 0.3f + corner(2) * 0.3f;
+        rays[k].origin = target + (corner(1) - corner(0)) * 0.2f + Vec3f{0.01f, 0.02f, 0.3f};
+        rays[k].direction = target - rays[k].origin;
+    }
+    return rays;
+}
+
 /// A displaced sphere, its mirrored instance, and a plain one.
 inline Scene make_scene(DisplacementSpace space) {
     Scene scene =

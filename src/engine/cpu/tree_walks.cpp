@@ -1,5 +1,6 @@
 #include "engine/cpu/tree_walks.h"
 
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -18,11 +19,30 @@ using cpu::TraceHit;
 using cpu::TraceRay;
 using cpu::WalkView;
 
-/// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
-/// resume_walk() brings the old walk back, or the next instance of that leaf.
-template <TraversalKind kTraversal> class SceneWalk {
+/// Primitives of a kd-tree that a ray was tested against last: neighbouring leaves share them. Not cleared
+/// when made, since other trees need none.
+class Mailbox {
   public:
-    using Key = uint;
+    void clear() { ids_.fill(kNoIndex); }
+
+    /// False: it is among them.
+    bool add(uint32_t id) {
+        uint32_t& place = ids_[id % ids_.size()];
+        const bool is_new = place != id;
+        place = id;
+        return is_new;
+    }
+
+  private:
+    std::array<uint32_t, 64> ids_;
+};
+
+/// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
+/// resume_walk() brings the old walk back, or the next instance of that leaf. `Width`: uint or HeapKey, for
+/// trees of 30 or 62 levels.
+template <TraversalKind kTraversal, class Width> class SceneWalk {
+  public:
+    using Key = Width;
 
     /// `visit`: one of view.primitive.
     SceneWalk(const WalkView& view, TraceContext& context, const TraceRay& world,
@@ -32,11 +52,13 @@ template <TraversalKind kTraversal> class SceneWalk {
           world_(world),
           visit_(visit),
           is_any_(visit == view.primitive.any),
-          limit_(world.t_max) {}
+          limit_(world.t_max),
+          world_ray_(make_object_ray(world.origin, world.direction)) {}
 
     /// True: a primitive ended the walk, which only those of any_hits do.
     bool run(TraceHit& best) {
         best_ = &best;
+        if constexpr (kIsKd) instances_.clear();
         leave_instance();
         stack_walk = make_empty_stack();
         start();
@@ -61,7 +83,7 @@ template <TraversalKind kTraversal> class SceneWalk {
     void leave_instance() {
         instance_ = kNoIndex;
         tree_ = &view_.trees.instances;
-        ray_ = make_object_ray(world_.origin, world_.direction);
+        ray_ = world_ray_;
     }
 
     void enter_instance(uint32_t index) {
@@ -70,6 +92,7 @@ template <TraversalKind kTraversal> class SceneWalk {
         tree_ = &view_.trees.surfaces[instance.surface];
         ray_ = make_object_ray(transform_point(instance.object_from_world, world_.origin),
                                transform_vector(instance.object_from_world, world_.direction));
+        if constexpr (kIsKd) patches_.clear();
         start();
     }
 
@@ -79,21 +102,38 @@ template <TraversalKind kTraversal> class SceneWalk {
         if constexpr (kTraversal == TraversalKind::stack)
             start_stack(root);
         else if constexpr (kTraversal == TraversalKind::restart_trail)
-            restart_walk = start_restart_trail(root, make_root_level32());
+            restart_walk = start_restart_trail(root, make_root_level());
         else if constexpr (kTraversal == TraversalKind::parent_link)
             parent_walk = start_parent_link(root);
         else if constexpr (kTraversal == TraversalKind::skip_link)
             skip_walk = start_skip_link(root);
         else if constexpr (kTraversal == TraversalKind::trail)
-            trail_walk = start_trail(root == kNoNode ? 0u : 1u);
+            trail_walk = start_trail(make_key(root == kNoNode ? 0u : 1u));
         else if constexpr (kTraversal == TraversalKind::pair_trail)
-            pair_walk = start_pair_trail(root == kNoNode ? 0u : 1u);
+            pair_walk = start_pair_trail(make_key(root == kNoNode ? 0u : 1u));
         else
             start_kd(root);
     }
 
+    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
+
+    static Key make_key(uint low) {
+        if constexpr (kIsWide)
+            return {low, 0u};
+        else
+            return low;
+    }
+
+    static Key make_root_level() {
+        if constexpr (kIsWide)
+            return make_root_level64();
+        else
+            return make_root_level32();
+    }
+
     void start_kd(uint root) {
-        const KdRay ray = make_kd_ray(ray_, tree_->bounds.lower, tree_->bounds.upper, world_.t_min, limit_);
+        const Box& cell = tree_->kd.bounds;
+        const KdRay ray = make_kd_ray(ray_, cell.lower, cell.upper, world_.t_min, limit_);
         if constexpr (kTraversal == TraversalKind::restart)
             kd_restart_walk = start_kd_restart(root, ray);
         else if constexpr (kTraversal == TraversalKind::push_down)
@@ -122,6 +162,10 @@ template <TraversalKind kTraversal> class SceneWalk {
         else
             return walk_kd_backtrack();
     }
+
+    static constexpr bool kIsKd = kTraversal == TraversalKind::restart ||
+                                  kTraversal == TraversalKind::push_down ||
+                                  kTraversal == TraversalKind::backtrack;
 
     /// In the order of TraversalKind.
     static constexpr size_t kIndex = size_t(kTraversal) - size_t(TraversalKind::stack);
@@ -166,6 +210,17 @@ template <TraversalKind kTraversal> class SceneWalk {
     void count_restart() {}
     void count_bytes(uint) {}
 
+    /// Of a primitive of a leaf. The box of another leaf was met on the way; that of a kd leaf holds more
+    /// than its primitives, and these come again in others.
+    bool is_to_be_entered(uint32_t id, Mailbox& mailbox) {
+        if constexpr (kIsKd) {
+            const Box& box = tree_->boxes[id];
+            return mailbox.add(id) && is_box_met(cross_box(ray_, box.lower, box.upper, world_.t_min, limit_));
+        } else {
+            return true;
+        }
+    }
+
     /// `word` of a kd leaf is its count.
     bool visit_leaf(uint first, uint word, uint) {
         const uint count = count_of_word(word);
@@ -176,28 +231,31 @@ template <TraversalKind kTraversal> class SceneWalk {
             return false;
         }
         for (uint k = 0; k < count; ++k) {
-            const bool is_hit =
-                visit_(view_.scene, context_, world_, instance_, primitive_ids()[first + k], *best_);
+            const uint32_t patch = primitive_ids()[first + k];
+            if (!is_to_be_entered(patch, patches_)) continue;
+            const bool is_hit = visit_(view_.scene, context_, world_, instance_, patch, *best_);
             limit_ = std::fmin(world_.t_max, best_->t);
             if (is_hit && is_any_) return is_ended_ = true;
         }
         return false;
     }
 
-    void enter_next_instance() {
-        tree_ = &view_.trees.instances;
-        const uint32_t index = primitive_ids()[waiting_first_];
-        ++waiting_first_, --waiting_count_;
-        enter_instance(index);
+    /// In world space. False: none is left.
+    bool enter_next_instance() {
+        while (waiting_count_ > 0) {
+            const uint32_t index = primitive_ids()[waiting_first_];
+            ++waiting_first_, --waiting_count_;
+            if (!is_to_be_entered(index, instances_)) continue;
+            enter_instance(index);
+            return true;
+        }
+        return false;
     }
 
     bool resume_walk() {
         if (instance_ == kNoIndex) return false;
-        if (waiting_count_ > 0) {
-            enter_next_instance();
-            return true;
-        }
         leave_instance();
+        if (enter_next_instance()) return true;
         state() = world_state_;
         if constexpr (kTraversal == TraversalKind::restart_trail) state() = drop_short_stack(state());
         return true;
@@ -213,7 +271,9 @@ template <TraversalKind kTraversal> class SceneWalk {
     bool is_ended_ = false;
     uint32_t instance_ = kNoIndex; ///< kNoIndex: in the tree of instances
     const WalkTree* tree_ = nullptr;
+    const ObjectRay world_ray_;
     ObjectRay ray_{};
+    Mailbox instances_, patches_; ///< of the kd-tree of instances, and of that of the current instance
     uint waiting_first_ = 0, waiting_count_ = 0; ///< instances of the leaf still to be entered
     State world_state_{};                        ///< of the tree of instances, past that leaf
 };
@@ -227,28 +287,33 @@ void trace_each(const WalkView& view, TraceContext& context, size_t count, Trace
     }
 }
 
-template <TraversalKind kTraversal>
+template <TraversalKind kTraversal, class Width>
 void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, TraceHit* hits,
                   size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        SceneWalk<kTraversal>(view, context, rays[k], view.primitive.closest).run(best);
+        SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
         hits[k] = best;
         hits[k].bias = uint8_t(rays[k].bias);
     });
 }
 
-template <TraversalKind kTraversal>
+template <TraversalKind kTraversal, class Width>
 void any_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, uint8_t* occluded,
               size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        occluded[k] = SceneWalk<kTraversal>(view, context, rays[k], view.primitive.any).run(best);
+        occluded[k] = SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.any).run(best);
     });
 }
 
-template <TraversalKind kTraversal>
-constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal>, any_hits<kTraversal>};
+template <TraversalKind kTraversal, class Width = uint>
+constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal, Width>, any_hits<kTraversal, Width>};
+
+/// Of a walk with a key or a trail, which has room for `depth` levels.
+template <TraversalKind kTraversal> cpu::WalkFunctions choose_width(int depth) {
+    return depth <= int(kTrailLevels32) ? kWalk<kTraversal> : kWalk<kTraversal, HeapKey>;
+}
 
 } // namespace
 
@@ -256,21 +321,21 @@ constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal>, any_hits<kTraver
 
 namespace cpu {
 
-WalkFunctions find_walk(TraversalKind traversal) {
+WalkFunctions find_walk(TraversalKind traversal, int depth) {
     using T = TraversalKind;
     switch (traversal) {
     case T::stack:
         return scalar::kWalk<T::stack>;
     case T::restart_trail:
-        return scalar::kWalk<T::restart_trail>;
+        return scalar::choose_width<T::restart_trail>(depth);
     case T::parent_link:
         return scalar::kWalk<T::parent_link>;
     case T::skip_link:
         return scalar::kWalk<T::skip_link>;
     case T::trail:
-        return scalar::kWalk<T::trail>;
+        return scalar::choose_width<T::trail>(depth);
     case T::pair_trail:
-        return scalar::kWalk<T::pair_trail>;
+        return scalar::choose_width<T::pair_trail>(depth);
     case T::restart:
         return scalar::kWalk<T::restart>;
     case T::push_down:

@@ -22,7 +22,7 @@ struct WalkFunctions {
     void (*any_hits)(const WalkView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
 };
 
-/// Any traversal but automatic and wide.
-WalkFunctions find_walk(TraversalKind traversal);
+/// Any traversal but automatic and wide, over trees of `depth` levels at most.
+WalkFunctions find_walk(TraversalKind traversal, int depth);
 
 } // namespace relief::cpu

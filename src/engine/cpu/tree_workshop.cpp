@@ -204,6 +204,12 @@ class CpuTreeWorkshop final : public TreeWorkshop {
         return std::visit(Walks(soup_, query, data), tree_);
     }
 
+    bool contains_key(uint64_t key) const override {
+        if (const auto* heap = std::get_if<DenseHeap>(&tree_)) return relief::contains_key(*heap, key);
+        const auto* heap = std::get_if<SuccinctHeap>(&tree_);
+        return heap && relief::contains_key(*heap, key);
+    }
+
   private:
     std::vector<Box> boxes_;
     HostTree tree_;

@@ -169,9 +169,9 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
 
 void DeviceScene::add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
                                  Arrays& arrays) {
-    traversal_kernel_ = name_walk("scene_walk", traversal);
     const WalkTrees trees = make_walk_trees(scene, structure, traversal);
-    append_walk_trees(scene, trees, arrays.nodes, arrays.primitive_ids);
+    traversal_kernel_ = name_walk("scene_walk", traversal, trees.depth);
+    append_walk_trees(trees, arrays.nodes, arrays.primitive_ids);
     for (const WalkTree& tree : trees.surfaces)
         arrays.surface_roots.push_back(tree.bounds.is_empty() ? kNone : 0);
     root_ = trees.instances.bounds.is_empty() ? kNone : 0;

@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "engine/scene_trees.h"
-
 namespace relief::vulkan {
 
 namespace {
@@ -36,17 +34,11 @@ uint32_t append_boxes(const std::vector<Box>& boxes, std::vector<NodeTexels>& no
     return first;
 }
 
-bool is_kd(TraversalKind traversal) {
-    return traversal == TraversalKind::restart || traversal == TraversalKind::push_down ||
-           traversal == TraversalKind::backtrack;
-}
-
 WalkTreeData append_tree(const WalkTree& tree, TraversalKind traversal, std::vector<NodeTexels>& nodes,
                          std::vector<uint32_t>& words) {
     WalkTreeData data{};
     data.is_empty = tree.bounds.is_empty();
     if (data.is_empty) return data;
-    data.lower = tree.bounds.lower, data.upper = tree.bounds.upper;
     switch (traversal) {
     case TraversalKind::trail:
     case TraversalKind::pair_trail:
@@ -59,9 +51,11 @@ WalkTreeData append_tree(const WalkTree& tree, TraversalKind traversal, std::vec
     case TraversalKind::restart:
     case TraversalKind::push_down:
     case TraversalKind::backtrack:
+        data.lower = tree.kd.bounds.lower, data.upper = tree.kd.bounds.upper;
         data.nodes = append_nodes(tree.kd.cells, nodes);
         data.ids = append_words(tree.kd.primitive_ids, words);
         data.links = append_words(tree.kd.nodes, words);
+        data.boxes = append_boxes(tree.boxes, nodes);
         break;
     default:
         data.nodes = append_nodes(tree.linked.nodes, nodes);
@@ -74,20 +68,12 @@ WalkTreeData append_tree(const WalkTree& tree, TraversalKind traversal, std::vec
 
 } // namespace
 
-void append_walk_trees(const PreparedScene& scene, const WalkTrees& trees, std::vector<NodeTexels>& nodes,
-                       std::vector<uint32_t>& words) {
+void append_walk_trees(const WalkTrees& trees, std::vector<NodeTexels>& nodes, std::vector<uint32_t>& words) {
     std::vector<WalkTreeData> records(1 + trees.surfaces.size());
     append_words(records, words); // their place; filled in below
-    std::vector<Box> bounds;
-    for (size_t s = 0; s < trees.surfaces.size(); ++s) {
+    for (size_t s = 0; s < trees.surfaces.size(); ++s)
         records[1 + s] = append_tree(trees.surfaces[s], trees.traversal, nodes, words);
-        bounds.push_back(trees.surfaces[s].bounds);
-        // A leaf of a kd-tree has no box of its own to order candidates by.
-        if (is_kd(trees.traversal))
-            records[1 + s].boxes = append_boxes(compute_patch_boxes(scene.surfaces[s]), nodes);
-    }
     records[0] = append_tree(trees.instances, trees.traversal, nodes, words);
-    if (is_kd(trees.traversal)) records[0].boxes = append_boxes(compute_instance_boxes(scene, bounds), nodes);
     std::memcpy(words.data(), records.data(), records.size() * sizeof(WalkTreeData));
 }
 

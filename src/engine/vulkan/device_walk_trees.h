@@ -11,7 +11,6 @@ namespace relief::vulkan {
 
 /// Appends nodes, and writes records (shared/device_scene.h, WalkTreeData) and words into `words`, which must
 /// be empty: record 0 is the tree of instances, 1 + s that of surface s.
-void append_walk_trees(const PreparedScene& scene, const WalkTrees& trees, std::vector<NodeTexels>& nodes,
-                       std::vector<uint32_t>& words);
+void append_walk_trees(const WalkTrees& trees, std::vector<NodeTexels>& nodes, std::vector<uint32_t>& words);
 
 } // namespace relief::vulkan

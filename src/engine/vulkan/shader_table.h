@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "math/scalar.h"
 #include "relief/traversal.h"
 
 namespace relief::vulkan {
@@ -14,11 +15,14 @@ namespace relief::vulkan {
 /// SPIR-V of shaders/NAME.comp, .vert or .frag, or of a variant of one; empty when there is none.
 std::span<const uint32_t> find_shader(std::string_view name);
 
-/// The variant of a shader that walks in that way: "scene_walk_skip_link".
-inline std::string name_walk(std::string_view shader, TraversalKind traversal) {
+/// The variant of a shader that walks trees of `depth` levels in that way: "scene_walk_skip_link". Those with
+/// keys or trails come in two widths: "scene_walk_trail_64".
+inline std::string name_walk(std::string_view shader, TraversalKind traversal, int depth) {
     std::string name = std::string(shader) + "_" + traversal_name(traversal);
     std::replace(name.begin(), name.end(), '-', '_');
-    return name;
+    const bool has_widths = traversal == TraversalKind::restart_trail || traversal == TraversalKind::trail ||
+                            traversal == TraversalKind::pair_trail;
+    return has_widths ? name + (depth <= int(scalar::kTrailLevels32) ? "_32" : "_64") : name;
 }
 
 } // namespace relief::vulkan

@@ -19,16 +19,6 @@ bool is_heap(const DeviceTree& tree) {
     return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
 }
 
-/// Whether keys and trails of 32 bits do.
-bool is_shallow(const DeviceTree& tree) { return tree.depth <= int(scalar::kTrailLevels32); }
-
-/// Those with keys or trails come in two widths.
-std::string choose_shader(const DeviceTree& tree, TraversalKind traversal) {
-    const std::string name = name_walk("tree_walk", traversal);
-    const bool has_widths = is_heap(tree) || traversal == TraversalKind::restart_trail;
-    return has_widths ? name + (is_shallow(tree) ? "_32" : "_64") : name;
-}
-
 void check_query(const DeviceTree& tree, const TreeQuery& query) {
     const auto refuse = [](const char* message, const char* hint) {
         throw Error(ErrorKind::usage, {message, "tree traversal", hint});
@@ -77,7 +67,7 @@ TreeTracer::TreeTracer(const Device& device)
 const Kernel& TreeTracer::find_kernel(const DeviceTree& tree, const TreeQuery& query) {
     const uint32_t is_counting = query.counting == TreeQuery::Counting::each_ray;
     const uint32_t is_succinct = tree.form == TreeForm::succinct_heap;
-    const std::string shader = choose_shader(tree, query.traversal);
+    const std::string shader = name_walk("tree_walk", query.traversal, tree.depth);
     const std::string name = fmt::format("{} {} {}", shader, is_counting, is_succinct);
     const auto found = kernels_.find(name);
     if (found != kernels_.end()) return found->second;

@@ -19,11 +19,11 @@ static_assert(std::endian::native == std::endian::little, "keys cross as their l
 
 constexpr const char* kPartNames[BuildReport::kPartCount] = {"boxes", "codes", "sort", "hierarchy", "refit"};
 
-uint64_t count_used(const DeviceTree& tree) {
-    if (tree.form != TreeForm::dense_heap) return tree.node_count;
+std::vector<bool> find_used_slots(const DeviceTree& tree) {
     const std::vector<TreeNode> slots = tree.nodes.download<TreeNode>(tree.node_count);
-    return uint64_t(std::count_if(slots.begin(), slots.end(),
-                                  [](const TreeNode& slot) { return slot.word != scalar::kEmptySlot; }));
+    std::vector<bool> used(slots.size());
+    for (size_t k = 0; k < slots.size(); ++k) used[k] = slots[k].word != scalar::kEmptySlot;
+    return used;
 }
 
 class VulkanTreeWorkshop final : public TreeWorkshop {
@@ -41,6 +41,7 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
 
     TreeBuild build(TreeKind kind, int heap_levels) override {
         tree_.reset(); // makes room
+        used_slots_ = {}, directory_ = {};
         if (kind == TreeKind::lbvh30 || kind == TreeKind::lbvh63) {
             LbvhBuilder::Config config;
             config.code_bits = kind == TreeKind::lbvh63 ? 63 : 30;
@@ -49,11 +50,21 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         }
         if (kind == TreeKind::heap) {
             tree_ = builder_.build_heap(mesh_, {30, heap_levels});
+            used_slots_ = find_used_slots(*tree_);
             return describe();
         }
-        const BuiltTree built = build_host_tree(boxes_, kind, heap_levels);
+        BuiltTree built = build_host_tree(boxes_, kind, heap_levels);
         tree_ = std::visit([this](const auto& tree) { return upload_tree(device_, tree); }, built.tree);
+        if (SuccinctHeap* heap = std::get_if<SuccinctHeap>(&built.tree)) {
+            directory_ = std::move(*heap);
+            directory_.nodes = {}, directory_.primitive_ids = {};
+        }
         return built.report;
+    }
+
+    bool contains_key(uint64_t key) const override {
+        if (tree_->form == TreeForm::succinct_heap) return relief::contains_key(directory_, key);
+        return key < used_slots_.size() && used_slots_[key];
     }
 
     TreeCast cast(const relief::TreeQuery& query, const TreeCastData& data) override {
@@ -87,7 +98,9 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         report.bytes =
             uint64_t(tree_->node_count) * sizeof(TreeNode) + built.primitive_count * sizeof(uint32_t);
         report.link_bytes = is_heap ? 0 : uint64_t(tree_->node_count) * sizeof(uint32_t);
-        report.slots = tree_->node_count, report.used = count_used(*tree_);
+        report.slots = tree_->node_count,
+        report.used =
+            is_heap ? uint64_t(std::count(used_slots_.begin(), used_slots_.end(), true)) : tree_->node_count;
         report.entries = built.primitive_count;
         report.depth = tree_->depth;
         for (size_t part = 0; part < BuildReport::kPartCount; ++part)
@@ -115,6 +128,8 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
     TreeTracer tracer_;
     std::vector<Box> boxes_;
     std::optional<DeviceTree> tree_;
+    std::vector<bool> used_slots_; ///< of a heap with empty slots
+    SuccinctHeap directory_;       ///< of a succinct heap: what it finds nodes by
     std::optional<TreeRays> rays_;
 };
 

@@ -25,16 +25,6 @@ layout(set = 0, binding = kBindTreeSkips) uniform usamplerBuffer tree_skips;
 uint load_skip(uint node) { return texelFetch(tree_skips, int(node)).x; }
 #endif
 
-#if defined(WALK_RESTART_TRAIL)
-// The level of each width; the macro Key picks one by the type of the argument.
-uint make_root_level(uint width) { return make_root_level32(); }
-HeapKey make_root_level(HeapKey width) { return make_root_level64(); }
-Key make_root_level() {
-    Key width;
-    return make_root_level(width);
-}
-#endif
-
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
 layout(scalar, set = 0, binding = kBindHeapBlocks) readonly buffer HeapBlocks { HeapBlock heap_blocks[]; };
 layout(scalar, set = 0, binding = kBindHeapBricks) readonly buffer HeapBricks { HeapBrick heap_bricks[]; };

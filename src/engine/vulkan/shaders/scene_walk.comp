@@ -97,20 +97,24 @@ HeapBrick load_heap_brick(uint brick) {
 uint find_slot(Key key) { return find_succinct_slot(key); }
 #endif
 #endif
-#ifdef WALK_RESTART_TRAIL
-uint make_root_level() { return make_root_level32(); }
-#endif
 #include "engine/vulkan/shaders/walk_kind.glsl"
 
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
-const uint kRoot = 1u; // a key
+// The key of the root in each width; the macro Key picks one by the type of the argument.
+uint make_root_key(uint width) { return 1u; }
+HeapKey make_root_key(HeapKey width) { return HeapKey(1u, 0u); }
+Key find_root() {
+    Key width;
+    return make_root_key(width);
+}
 #else
-const uint kRoot = 0u; // a node
+uint find_root() { return 0u; }
 #endif
 
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
 
-/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met.
+/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met. Infinity where
+/// nothing in its box is wanted.
 float enter_primitive(uint id, float leaf_entry) {
 #ifdef WALK_KD
     return enter_wanted_box(load_any_node(tree.boxes + id));
@@ -118,6 +122,9 @@ float enter_primitive(uint id, float leaf_entry) {
     return leaf_entry;
 #endif
 }
+
+/// Before the first hit the limit is infinite, too, and infinity still means a missed box.
+bool is_within_limit(float entry) { return entry < kInfinity && entry <= find_limit(); }
 
 float enter_leaf(uint node) {
 #ifdef WALK_KD
@@ -136,12 +143,12 @@ bool enter_next_instance() {
         ++waiting_first;
         --waiting_count;
         float entry = enter_primitive(index, waiting_entry);
-        is_entered = instances[index].root != kNone && entry <= find_limit();
+        is_entered = instances[index].root != kNone && is_within_limit(entry);
         if (is_entered) {
             enter_instance(index);
             instance_entry = entry;
             tree = load_walk_tree(1u + instance.surface);
-            start_walk(kRoot);
+            start_walk(find_root());
         }
     }
     return is_entered;
@@ -163,7 +170,7 @@ bool visit_leaf(uint first, uint word, uint node) {
         uint patch_index = load_word(tree.ids + first + k);
         if (has_displacement) {
             float entry = enter_primitive(patch_index, leaf_entry);
-            if (entry <= find_limit()) enter_patch(patch_index, entry);
+            if (is_within_limit(entry)) enter_patch(patch_index, entry);
         } else {
             intersect_polygon(patch_index);
         }
@@ -207,7 +214,7 @@ bool walk() {
 #ifdef WALK_STACK
     stack_walk = make_empty_stack();
 #endif
-    start_walk(kRoot);
+    start_walk(find_root());
     return walk_on();
 }
 

@@ -14,6 +14,13 @@ bool walk_on() { return walk_stack(); }
 #include "shared/traverse_restart_trail.h"
 #define KindState RestartState
 #define walk_state restart_walk
+// The level of each width; the macro Key picks one by the type of the argument.
+uint make_root_level(uint width) { return make_root_level32(); }
+HeapKey make_root_level(HeapKey width) { return make_root_level64(); }
+Key make_root_level() {
+    Key width;
+    return make_root_level(width);
+}
 void start_walk(uint root) { restart_walk = start_restart_trail(root, make_root_level()); }
 bool walk_on() { return walk_restart_trail(); }
 #elif defined(WALK_PARENT_LINK)

@@ -1,0 +1,54 @@
+#include "bench/doubtful_hits.h"
+
+#include <algorithm>
+
+namespace relief::bench {
+
+namespace {
+
+/// For the rounding of the intervals here, and for that of a hit's distance: less than what the walks' own
+/// box tests allow (kBoxSlack), so that no miss of theirs is overlooked.
+constexpr double kSlack = 1 + 1e-12, kHitSlack = 1 + 1e-6;
+
+/// Part of a ray.
+struct Interval {
+    double begin, end;
+};
+
+/// Cuts off what lies outside of one slab.
+void cut(Interval& part, double lower, double upper, double origin, double speed) {
+    if (speed == 0) {
+        if (origin < lower || origin > upper) part.end = -1;
+        return;
+    }
+    const double first = (lower - origin) / speed, last = (upper - origin) / speed;
+    part.begin = std::max(part.begin, std::min(first, last));
+    part.end = std::min(part.end, std::max(first, last));
+}
+
+} // namespace
+
+DoubtfulHits::DoubtfulHits(const Mesh& mesh) : mesh_(mesh) {
+    size_t first = 0;
+    for (const uint32_t corners : mesh.face_sizes) {
+        for (uint32_t k = 2; k < corners; ++k)
+            triangles_.push_back({mesh.position_indices[first], mesh.position_indices[first + k - 1],
+                                  mesh.position_indices[first + k]});
+        first += corners;
+    }
+}
+
+bool DoubtfulHits::is_doubtful(const Ray& ray, const TreeHit& hit) const {
+    if (hit.primitive == kNoIndex) return false;
+    const std::array<uint32_t, 3>& corners = triangles_.at(hit.primitive);
+    Interval part{ray.t_min, ray.t_max};
+    const auto cut_axis = [&](float Vec3f::*axis) {
+        const auto at = [&](size_t corner) { return mesh_.positions[corners[corner]].*axis; };
+        const auto [lower, upper] = std::minmax({at(0), at(1), at(2)});
+        cut(part, lower, upper, ray.origin.*axis, ray.direction.*axis);
+    };
+    cut_axis(&Vec3f::x), cut_axis(&Vec3f::y), cut_axis(&Vec3f::z);
+    return part.begin > part.end * kSlack || part.begin > double(hit.t) * kHitSlack;
+}
+
+} // namespace relief::bench
