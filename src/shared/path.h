@@ -52,8 +52,8 @@ FN Vec3 lift_viewer(Vec3 wo_local) {
     return normalize(lifted);
 }
 
-/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990), from the second vertex on
-/// (Pharr, Jakob, Humphreys 2023, section 13.4).
+/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990), from the second vertex
+/// on (Pharr, Jakob, Humphreys 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);

@@ -162,6 +162,21 @@ TEST(Bsdf, is_lambert_without_coat_and_metal) {
     EXPECT_NEAR(value.pdf, 0.5 / std::numbers::pi, 1e-6);
 }
 
+TEST(Bsdf, has_a_short_way_without_coat_and_metal_that_gives_the_same_bits) {
+    for (const float roughness : {0.0f, 0.3f, 1.0f})
+        for (const float cos_o : {0.01f, 0.5f, 1.0f}) {
+            const BsdfParameters p{{0.8f, 0.3f, 0.07f}, roughness, 0, 1};
+            const Bsdf a = make_bsdf(p, cos_o), b = make_general_bsdf(p, cos_o);
+            EXPECT_TRUE(is_diffuse(a) && is_diffuse(b));
+            EXPECT_EQ(a.diffuse, b.diffuse);
+            EXPECT_EQ(a.f0, b.f0);
+            EXPECT_EQ(a.multiple, b.multiple);
+            EXPECT_EQ(a.escape_coat, b.escape_coat);
+            EXPECT_EQ(a.coat_multiple, b.coat_multiple);
+            EXPECT_EQ(a.specular_probability, b.specular_probability);
+        }
+}
+
 TEST(Bsdf, mirrors_a_smooth_metal) {
     const Vec3f wo = direction(0.5f, 0);
     const Bsdf bsdf = scalar::make_bsdf({{1, 1, 1}, 0, 1, 1.5f}, 0.5f);
