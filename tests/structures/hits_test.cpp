@@ -164,7 +164,7 @@ TEST_P(Hits, by_the_test_of_the_engines_differ_only_where_a_ray_misses_the_box_o
             ASSERT_EQ(walk.find_any(ray), expected.is_hit()) << walk.name << ", ray " << k;
         }
     }
-    EXPECT_LE(doubtful, kRays / 20);
+    EXPECT_LE(doubtful, kRays / 8); // grids and floors: half of the rays aim at what they share
 }
 
 /// A chain of rays, each from the leaf where the one before was hit.
