@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "math/vec.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 
