@@ -24,8 +24,10 @@ using namespace samples;
 constexpr int kMapSize = 1024, kChartsAcross = 3, kChartsDown = 2;
 constexpr int kCellsPerSide = 10; ///< quads along an edge of the cube
 
-/// Texels of a chart; its first and last lie on the edges of the cube's side.
 constexpr int kChartWidth = kMapSize / kChartsAcross, kChartHeight = kMapSize / kChartsDown;
+/// Texels from edge to edge of a side of the cube: so many a quad that every corner lies on a texel's middle.
+constexpr int kSpanAcross = (kChartWidth - 1) / kCellsPerSide * kCellsPerSide;
+constexpr int kSpanDown = (kChartHeight - 1) / kCellsPerSide * kCellsPerSide;
 
 /// The point of the unit ball at (s, t), each in [0, 1], on a side of the cube; seen from outside s runs to
 /// the right and t up.
@@ -36,10 +38,10 @@ Vec3f place_on_ball(int side, float s, float t) {
     return normalize(points[side]);
 }
 
-/// Where (s, t) of a side lies in the map: at the middle of a texel on the border of its chart.
+/// Where (s, t) of a side lies in the map.
 Vec2f place_in_map(int side, float s, float t) {
-    const float x = float(side % kChartsAcross * kChartWidth) + s * (kChartWidth - 1) + 0.5f;
-    const float y = float(side / kChartsAcross * kChartHeight) + t * (kChartHeight - 1) + 0.5f;
+    const float x = float(side % kChartsAcross * kChartWidth) + s * kSpanAcross + 0.5f;
+    const float y = float(side / kChartsAcross * kChartHeight) + t * kSpanDown + 0.5f;
     return {x / kMapSize, y / kMapSize};
 }
 
@@ -57,8 +59,8 @@ std::shared_ptr<const Texture> make_map() {
     const auto sample = [](Vec2f uv) {
         const float x = uv.x * kMapSize - 0.5f, y = uv.y * kMapSize - 0.5f;
         const int column = std::min(int(x) / kChartWidth, kChartsAcross - 1), row = int(y) / kChartHeight;
-        const float s = (x - float(column * kChartWidth)) / (kChartWidth - 1);
-        const float t = (y - float(row * kChartHeight)) / (kChartHeight - 1);
+        const float s = (x - float(column * kChartWidth)) / kSpanAcross;
+        const float t = (y - float(row * kChartHeight)) / kSpanDown;
         const Vec3f n = place_on_ball(row * kChartsAcross + column, std::min(s, 1.0f), std::min(t, 1.0f));
         return MapSample{compute_displacement(n), {}};
     };
