@@ -99,18 +99,11 @@ HWY_INLINE void visit_in_order(LaneMask mask, const Lanes<W>& nearest, const Ray
         visit(order[k].child);
 }
 
-template <class Visit>
-HWY_INLINE void visit_children(const cpu::Node16& node, const RayBundle& bundle, Visit visit) {
-    Lanes16 bound[6], nearest;
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes16::load(node.bounds[k]);
-    const LaneMask mask = test_boxes(bound, bundle, nearest);
-    visit_in_order(mask, nearest, bundle, visit);
-}
-
-template <class Visit>
-HWY_INLINE void visit_children(const cpu::Node8& node, const RayBundle& bundle, Visit visit) {
-    Lanes8 bound[6], nearest;
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
+/// Calls visit(child) for the boxes of a node that the bundle reaches, nearest first.
+template <size_t W, class Visit>
+HWY_INLINE void visit_boxes(const float (&bounds)[6][W], const RayBundle& bundle, Visit visit) {
+    Lanes<W> bound[6], nearest;
+    for (int k = 0; k < 6; ++k) bound[k] = Lanes<W>::load(bounds[k]);
     const LaneMask mask = test_boxes(bound, bundle, nearest);
     visit_in_order(mask, nearest, bundle, visit);
 }
@@ -120,14 +113,15 @@ HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayB
     const auto test_block = [&](uint32_t block) { trace_block(visit, tree, block, bundle); };
     nodes += tree.level >= 3;
     if (tree.level == 5) {
-        visit_children(tree.root(), bundle, [&](uint32_t g) {
+        visit_boxes(tree.root().bounds, bundle, [&](uint32_t g) {
             ++nodes;
-            visit_children(tree.group(int(g)), bundle, [&](uint32_t k) { test_block(g * 8 + k); });
+            visit_boxes(tree.group(int(g)).bounds, bundle, [&](uint32_t k) { test_block(g * 8 + k); });
         });
     } else if (tree.level == 4) {
-        visit_children(tree.root(), bundle, [&](uint32_t g) { test_block(2 * g), test_block(2 * g + 1); });
+        visit_boxes(tree.root().bounds, bundle,
+                    [&](uint32_t g) { test_block(2 * g), test_block(2 * g + 1); });
     } else if (tree.level == 3) {
-        visit_children(tree.group(0), bundle, test_block);
+        visit_boxes(tree.group(0).bounds, bundle, test_block);
     } else {
         for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
             test_block(block);
@@ -141,7 +135,7 @@ inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& direct
     const uint32_t side = TileDirectory::step_side(depth, step);
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + y * side + x];
     ++visit.patch.context->counters.patch_nodes;
-    visit_children(node, bundle, [&](uint32_t child) {
+    visit_boxes(node.bounds, bundle, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         if (step + 1 == TileDirectory::step_count(depth))
             trace_tree(visit, find_tree(visit.patch, cy << depth | cx), bundle);
