@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bench/tree_rays.h"
+
 namespace relief::bench {
 
 namespace {
@@ -28,15 +30,7 @@ void cut(Interval& part, double lower, double upper, double origin, double speed
 
 } // namespace
 
-DoubtfulHits::DoubtfulHits(const Mesh& mesh) : mesh_(mesh) {
-    size_t first = 0;
-    for (const uint32_t corners : mesh.face_sizes) {
-        for (uint32_t k = 2; k < corners; ++k)
-            triangles_.push_back({mesh.position_indices[first], mesh.position_indices[first + k - 1],
-                                  mesh.position_indices[first + k]});
-        first += corners;
-    }
-}
+DoubtfulHits::DoubtfulHits(const Mesh& mesh) : mesh_(mesh), triangles_(list_triangles(mesh)) {}
 
 bool DoubtfulHits::is_doubtful(const Ray& ray, const TreeHit& hit) const {
     if (hit.primitive == kNoIndex) return false;

@@ -27,19 +27,6 @@ float make_fraction(uint32_t number) {
     return float((number ^ number >> 16) >> 8) * 0x1p-24f;
 }
 
-/// Corners of each triangle, faces cut into fans in their order.
-std::vector<std::array<uint32_t, 3>> list_triangles(const Mesh& mesh) {
-    std::vector<std::array<uint32_t, 3>> triangles;
-    size_t first = 0;
-    for (const uint32_t corners : mesh.face_sizes) {
-        for (uint32_t k = 2; k < corners; ++k)
-            triangles.push_back({mesh.position_indices[first], mesh.position_indices[first + k - 1],
-                                 mesh.position_indices[first + k]});
-        first += corners;
-    }
-    return triangles;
-}
-
 float compute_diagonal(const Mesh& mesh) {
     Vec3f lower = mesh.positions.at(0), upper = lower;
     for (const Vec3f& p : mesh.positions) {
@@ -51,6 +38,18 @@ float compute_diagonal(const Mesh& mesh) {
 }
 
 } // namespace
+
+std::vector<std::array<uint32_t, 3>> list_triangles(const Mesh& mesh) {
+    std::vector<std::array<uint32_t, 3>> triangles;
+    size_t first = 0;
+    for (const uint32_t corners : mesh.face_sizes) {
+        for (uint32_t k = 2; k < corners; ++k)
+            triangles.push_back({mesh.position_indices[first], mesh.position_indices[first + k - 1],
+                                 mesh.position_indices[first + k]});
+        first += corners;
+    }
+    return triangles;
+}
 
 RaySet make_primary_rays(const Camera& camera, int width, int height) {
     const Vec3f ahead = make_unit(subtract(camera.to, camera.from));

@@ -1,6 +1,7 @@
 // Rays of the kinds that papers on structures measure, from a camera and from where its rays end.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct RaySet {
     std::vector<uint32_t>
         parents; ///< of each ray the primary ray whose hit it starts at; empty for primary rays
 };
+
+/// Corners of each triangle, faces cut into fans in their order: the numbers of a TreeHit.
+std::vector<std::array<uint32_t, 3>> list_triangles(const Mesh& mesh);
 
 /// One ray through the middle of each pixel, row by row, through a pinhole.
 RaySet make_primary_rays(const Camera& camera, int width, int height);
