@@ -80,6 +80,27 @@ HWY_INLINE void push_children(const Node& node, LaneMask mask, const float* dist
     }
 }
 
+/// The nearest child of `mask`, at least one; the others go on the stack.
+template <class Node>
+HWY_INLINE uint32_t take_nearest(const Node& node, LaneMask mask, const Lanes8& entry, StackEntry* stack,
+                                 uint32_t& size) {
+    const uint32_t first = uint32_t(__builtin_ctz(mask));
+    const LaneMask others = mask & (mask - 1);
+    if (others == 0) return node.child[first];
+    alignas(32) float distance[8];
+    entry.store(distance);
+    DCHECK(size + 8 <= kStackSize);
+    if ((others & (others - 1)) == 0) {
+        const uint32_t second = uint32_t(__builtin_ctz(others));
+        const bool is_first_nearer = distance[first] <= distance[second];
+        const uint32_t far = is_first_nearer ? second : first;
+        stack[size++] = {node.child[far], distance[far]};
+        return node.child[is_first_nearer ? first : second];
+    }
+    push_children(node, mask, distance, stack, size);
+    return stack[--size].child;
+}
+
 /// What boxes are tested with. Which of two planes a ray meets first is known from its direction; the
 /// widening by kBoxSlack is part of the far factors.
 struct BoxTest {
@@ -129,23 +150,7 @@ template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32
             Lanes8 entry;
             const LaneMask mask = test.run(node, reach, entry);
             if (mask == 0) break;
-            const uint32_t first = uint32_t(__builtin_ctz(mask));
-            child = node.child[first];
-            const LaneMask others = mask & (mask - 1);
-            if (others == 0) continue;
-            alignas(32) float distance[8];
-            entry.store(distance);
-            DCHECK(size + 8 <= kStackSize);
-            if ((others & (others - 1)) == 0) {
-                const uint32_t second = uint32_t(__builtin_ctz(others));
-                const bool is_first_nearer = distance[first] <= distance[second];
-                const uint32_t far = is_first_nearer ? second : first;
-                stack[size++] = {node.child[far], distance[far]};
-                child = node.child[is_first_nearer ? first : second];
-                continue;
-            }
-            push_children(node, mask, distance, stack, size);
-            child = stack[--size].child;
+            child = take_nearest(node, mask, entry, stack, size);
         }
         if (!cpu::PolygonNode::is_leaf(child)) continue;
         const bool has_hit = intersect_triangles<kQuery>(blocks[cpu::PolygonNode::leaf_block(child)], ray);

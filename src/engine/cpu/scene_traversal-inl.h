@@ -50,23 +50,7 @@ struct TreeCursor {
             ++visited;
             const LaneMask mask = test_node(node, ray, entry);
             if (mask == 0) return;
-            const uint32_t first = uint32_t(__builtin_ctz(mask));
-            child = node.child[first];
-            const LaneMask others = mask & (mask - 1);
-            if (others == 0) continue;
-            alignas(32) float distance[8];
-            entry.store(distance);
-            DCHECK(size + 8 <= kStackSize);
-            if ((others & (others - 1)) == 0) {
-                const uint32_t second = uint32_t(__builtin_ctz(others));
-                const bool is_first_nearer = distance[first] <= distance[second];
-                const uint32_t far = is_first_nearer ? second : first;
-                stack[size++] = {node.child[far], distance[far]};
-                child = node.child[is_first_nearer ? first : second];
-                continue;
-            }
-            push_children(node, mask, distance, stack, size);
-            child = stack[--size].child;
+            child = take_nearest(node, mask, entry, stack, size);
         }
         leaf_first = WideNode::leaf_first(child), leaf_count = WideNode::leaf_count(child);
     }
