@@ -38,7 +38,6 @@ struct BsdfSample {
     Vec3 direction;
     Vec3 weight; ///< value / pdf; zero for a direction below the surface
     float pdf;
-    bool is_specular; ///< from the microfacet lobe
 };
 
 const float kMinAlpha = 1e-3f;
@@ -187,14 +186,13 @@ FN Vec3 sample_ggx_reflection(float alpha, Vec3 wo, Vec2 u) {
 
 /// Draws an incoming direction for `wo`: `u_lobe` in [0, 1) picks the lobe, `u` the direction within it.
 FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, float u_lobe, Vec2 u) {
-    bool is_specular = u_lobe < b.specular_probability;
     Vec3 wi;
-    if (is_specular)
+    if (u_lobe < b.specular_probability)
         wi = normalize(sample_ggx_reflection(b.alpha, wo, u));
     else
         wi = normalize(square_to_cosine_hemisphere(u));
     BsdfValue v = evaluate_bsdf(b, wo, wi);
-    BsdfSample result = {wi, v.value * (v.pdf > 0.0f ? 1.0f / v.pdf : 0.0f), v.pdf, is_specular};
+    BsdfSample result = {wi, v.value * (v.pdf > 0.0f ? 1.0f / v.pdf : 0.0f), v.pdf};
     return result;
 }
 

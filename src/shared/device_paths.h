@@ -65,7 +65,6 @@ struct PathPush {
     uint sample_index;
     uint source_count;
     uint emitter_count, emitter_range_count;
-    uint has_auto_levels;
     uint has_environment;
     EnvironmentData environment;
 };

@@ -1,12 +1,10 @@
 // Rules of the path tracer that both engines follow: which random numbers a vertex takes, what it reflects
-// with, when a path ends and what surface its next ray sees.
+// with and when a path ends.
 #ifndef RELIEF_PATH_H
 #ifndef __cplusplus
 #define RELIEF_PATH_H
 #endif
 
-const float kSpecularRoughness = 0.2f; ///< below it a reflection keeps the ray's bias
-const uint kLargestBias = 3u;
 const uint kRouletteDepth = 1u; ///< bounces that are never cut short
 
 // Pairs of dimensions of the sampler.
@@ -57,11 +55,6 @@ FN Vec3 lift_viewer(Vec3 wo_local) {
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);
-}
-
-/// True where the next ray may see a coarser surface.
-FN bool is_wide_bounce(bool is_specular, float roughness) {
-    return !is_specular || roughness >= kSpecularRoughness;
 }
 
 #endif

@@ -68,15 +68,11 @@ void expect_same_points(const Displacement& displacement) {
         settings.isa = isa;
         const cpu::Tracer tracer(prepared, settings);
         cpu::PointScratch scratch;
-        std::vector<cpu::SurfacePoint> points(hits.size()), cells(hits.size());
+        std::vector<cpu::SurfacePoint> points(hits.size());
         tracer.make_surface_points(hits, points, scratch);
-        std::vector<cpu::TraceHit> places;
-        for (const cpu::TraceHit& hit : hits) places.push_back(tracer.locate_on(hit, 1));
-        tracer.evaluate_points(places, cells, scratch);
         for (size_t k = 0; k < hits.size(); ++k) {
             const cpu::TraceHit& hit = hits[k];
             expect_same(points[k], tracer.make_surface_point(hit));
-            expect_same(cells[k], tracer.evaluate_point(hit.instance, hit.patch, {hit.u, hit.v}, 1));
             ASSERT_FALSE(testing::Test::HasFailure())
                 << tracer.shading_kernels().name << " hit " << k << " instance " << hit.instance;
         }

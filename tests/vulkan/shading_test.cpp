@@ -239,16 +239,9 @@ std::optional<ExpectedBounce> expect_bounce(const ShadingBench& bench, const Sha
     const Vec3f throughput = c.path.throughput * drawn.weight;
     const float probability = scalar::survival_probability(push.depth, throughput);
     if (!is_finite(throughput) || draw(scalar::kRoulettePair).x >= probability) return std::nullopt;
-    uint32_t bias = c.hit.bias;
-    Vec3f origin = bench.tracer.offset_origin(v.point, direction);
-    if (scalar::is_wide_bounce(drawn.is_specular, v.material.roughness) && bias < scalar::kLargestBias) {
-        const cpu::SurfacePoint coarse =
-            bench.tracer.evaluate_point(c.hit.instance, c.hit.patch, {c.hit.u, c.hit.v}, bias + 1);
-        if (dot(coarse.geometric_normal, direction) * (v.is_flipped ? -1.0f : 1.0f) > 0)
-            origin = bench.tracer.offset_origin(coarse, direction), ++bias;
-    }
+    const Vec3f origin = bench.tracer.offset_origin(v.point, direction);
     return ExpectedBounce{throughput * (1 / probability),
-                          {origin, 0, direction, scalar::make_infinity(), bias}};
+                          {origin, 0, direction, scalar::make_infinity(), c.hit.bias}};
 }
 
 TEST_F(ShadingKernels, bounce_where_the_cpu_engine_bounces) {

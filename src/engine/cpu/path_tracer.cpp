@@ -39,9 +39,8 @@ struct PointMaterial {
 /// A hit made ready for shading; normals on the viewer's side.
 struct Vertex {
     SurfacePoint point;
-    bool is_flipped; ///< the viewer is on the side opposite to the winding
-    uint32_t bias;   ///< of the surface that was hit
-    float distance;  ///< that the ray came
+    uint32_t bias;  ///< of the surface that was hit
+    float distance; ///< that the ray came
     PointMaterial material;
     scalar::Basis basis; ///< about the bent shading normal
     Vec3f wo_local;
@@ -51,12 +50,6 @@ struct Vertex {
 struct ShadowRay {
     uint32_t path;
     Vec3f contribution;
-};
-
-/// A bounce that may move onto a coarser surface.
-struct WideBounce {
-    uint32_t place;  ///< in the wave
-    bool is_flipped; ///< as of its vertex
 };
 
 /// The wavefront of one tile: all paths of one sample advance together, so that their rays go to the tracer
@@ -84,7 +77,6 @@ class TileTracer {
     void sample_light(uint32_t index, const Vertex& vertex, const LightSample& light);
     bool continue_path(size_t k, const Vertex& vertex, size_t next);
     bool survives_roulette(Path& path, float u_roulette) const;
-    void coarsen_bounces();
     void trace_shadow_rays();
     void finish_paths();
 
@@ -114,8 +106,6 @@ class TileTracer {
     std::array<LightSet::RandomNumbers, kBlock> light_random_;
     std::array<std::optional<LightSample>, kBlock> lights_drawn_;
 
-    std::vector<WideBounce> bounces_;
-    std::vector<TraceHit> coarse_hits_; ///< where they would start
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
@@ -175,7 +165,6 @@ void TileTracer::trace_paths() {
 void TileTracer::shade_paths() {
     const Timer timer;
     shadow_rays_.clear(), shadows_.clear();
-    bounces_.clear(), coarse_hits_.clear();
     add_backgrounds();
     drop_misses();
     points_.resize(hits_.size());
@@ -189,7 +178,6 @@ void TileTracer::shade_paths() {
             if (shade_path(first + k, vertices_[k], lights_drawn_[k], next)) ++next;
     }
     active_.resize(next), rays_.resize(next);
-    coarsen_bounces();
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
@@ -257,8 +245,7 @@ Vertex TileTracer::make_vertex(size_t k) const {
     v.bias = hits_[k].bias, v.distance = hits_[k].t;
     v.material = make_material(hits_[k].instance, v.point.uv);
     const Vec3f wo = -rays_[k].direction;
-    v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
-    if (v.is_flipped) {
+    if (dot(v.point.geometric_normal, wo) < 0) {
         v.point.geometric_normal = -v.point.geometric_normal;
         v.point.shading_normal = -v.point.shading_normal;
     }
@@ -347,11 +334,6 @@ bool TileTracer::continue_path(size_t k, const Vertex& vertex, size_t next) {
     path.previous = vertex.point.position;
     path.bsdf_pdf = drawn.pdf;
     path.result.cost += 1;
-    const bool is_wide = scalar::is_wide_bounce(drawn.is_specular, vertex.material.roughness);
-    if (is_wide && settings_.level == kAutoLevel && vertex.bias < scalar::kLargestBias) {
-        bounces_.push_back({uint32_t(next), vertex.is_flipped});
-        coarse_hits_.push_back(tracer_.locate_on(hits_[k], vertex.bias + 1));
-    }
     active_[next] = active_[k];
     rays_[next] = {tracer_.offset_origin(vertex.point, direction), 0, direction, kInfinity, vertex.bias};
     return true;
@@ -362,18 +344,6 @@ bool TileTracer::survives_roulette(Path& path, float u_roulette) const {
     if (u_roulette >= probability) return false;
     path.throughput *= 1 / probability;
     return true;
-}
-
-/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
-void TileTracer::coarsen_bounces() {
-    points_.resize(coarse_hits_.size());
-    tracer_.evaluate_points(coarse_hits_, points_, scratch_);
-    for (size_t k = 0; k < bounces_.size(); ++k) {
-        TraceRay& ray = rays_[bounces_[k].place];
-        const float side =
-            dot(points_[k].geometric_normal, ray.direction) * (bounces_[k].is_flipped ? -1.0f : 1.0f);
-        if (side > 0) ray.origin = tracer_.offset_origin(points_[k], ray.direction), ++ray.bias;
-    }
 }
 
 void TileTracer::trace_shadow_rays() {

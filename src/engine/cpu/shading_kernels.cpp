@@ -17,8 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
-    static const cpu::ShadingKernels kKernels{name, make_point_batch<PointKind::cell>,
-                                              make_point_batch<PointKind::shading>, draw_pairs};
+    static const cpu::ShadingKernels kKernels{name, make_point_batch, draw_pairs};
     return kKernels;
 }
 

@@ -20,9 +20,8 @@ struct PointBatch {
 };
 
 struct ShadingKernels {
-    const char* name;                          ///< as that of the Kernels for the same instruction set
-    void (*cell_points)(const PointBatch&);    ///< as Tracer::evaluate_point: no shading normal, no uv
-    void (*shading_points)(const PointBatch&); ///< as Tracer::make_surface_point
+    const char* name;                       ///< as that of the Kernels for the same instruction set
+    void (*make_points)(const PointBatch&); ///< as Tracer::make_surface_point
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                        Vec2f* drawn);

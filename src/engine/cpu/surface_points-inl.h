@@ -278,10 +278,7 @@ inline void store_points(const cpu::PointBatch& batch, size_t first, size_t coun
     }
 }
 
-enum class PointKind { cell, shading };
-
-template <PointKind kKind>
-HWY_NOINLINE void make_points(const cpu::PointBatch& batch, size_t first, size_t count) {
+HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first, size_t count) {
     HitLanes lanes;
     if (count < 16) {
         std::memset(&lanes, 0, sizeof lanes);
@@ -296,18 +293,13 @@ HWY_NOINLINE void make_points(const cpu::PointBatch& batch, size_t first, size_t
     const MapLanes from{surface.map, surface.tile(surface.quads[any.patch].vertex[0])};
     const CornerLanes corners(lanes);
     const CellPointLanes cell = make_cell_point(lanes, from, corners);
-    const Lanes16 zero(0.0f);
-    WideVec3 shading_normal{zero, zero, zero};
-    WideVec2 uv{zero, zero};
-    if constexpr (kKind == PointKind::shading) {
-        const AffineLanes inverse(lanes.object_from_world);
-        const WideVec3 smooth = compute_shading_normals(lanes, from, corners);
-        shading_normal = wide::orient_shading_normal(inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y +
-                                                         inverse.rows[2] * smooth.z,
-                                                     cell.triangle.normal);
-        const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
-        uv = {corners.blend(kUv, at), corners.blend(kUv + 1, at)};
-    }
+    const AffineLanes inverse(lanes.object_from_world);
+    const WideVec3 smooth = compute_shading_normals(lanes, from, corners);
+    const WideVec3 shading_normal = wide::orient_shading_normal(
+        inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y + inverse.rows[2] * smooth.z,
+        cell.triangle.normal);
+    const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
+    const WideVec2 uv{corners.blend(kUv, at), corners.blend(kUv + 1, at)};
     const WideVec3 &p = cell.triangle.position, &g = cell.triangle.normal, &s = shading_normal;
     LaneQuads quads[3];
     quads[0].set(p.x, p.y, p.z, g.x), quads[1].set(g.y, g.z, s.x, s.y);
@@ -317,9 +309,9 @@ HWY_NOINLINE void make_points(const cpu::PointBatch& batch, size_t first, size_t
     store_points(batch, first, count, quads, position_errors);
 }
 
-template <PointKind kKind> void make_point_batch(const cpu::PointBatch& batch) {
+inline void make_point_batch(const cpu::PointBatch& batch) {
     for (size_t first = 0; first < batch.count; first += 16)
-        make_points<kKind>(batch, first, HWY_MIN(size_t(16), batch.count - first));
+        make_points(batch, first, HWY_MIN(size_t(16), batch.count - first));
 }
 
 } // namespace relief::HWY_NAMESPACE

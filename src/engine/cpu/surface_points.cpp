@@ -123,7 +123,7 @@ SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit,
     return point;
 }
 
-void make_points(const PreparedScene& scene, const PointMaker& maker, std::span<const TraceHit> hits,
+void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
                  std::span<SurfacePoint> points, PointScratch& scratch) {
     std::vector<uint64_t>& keys = scratch.keys;
     keys.clear();
@@ -135,13 +135,14 @@ void make_points(const PreparedScene& scene, const PointMaker& maker, std::span<
         const uint32_t key = uint32_t(keys[first] >> 32);
         for (last = first + 1; last < keys.size() && uint32_t(keys[last] >> 32) == key;) ++last;
         if (key != kAlone) {
-            maker.many({scene, scratch.patches, hits.data(), scratch.order.data() + first, last - first,
-                        points.data()});
+            kernels.make_points({scene, scratch.patches, hits.data(), scratch.order.data() + first,
+                                 last - first, points.data()});
             continue;
         }
         for (size_t n = first; n < last; ++n) {
             const TraceHit& hit = hits[scratch.order[n]];
-            points[scratch.order[n]] = maker.one(scene, hit, find_samples(scene, hit, scratch.patches));
+            points[scratch.order[n]] =
+                make_shading_point(scene, hit, find_samples(scene, hit, scratch.patches));
         }
     }
 }

@@ -29,14 +29,8 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
 /// The same with shading normal and uv.
 SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples);
 
-/// Two ways to the same points.
-struct PointMaker {
-    void (*many)(const PointBatch&);
-    SurfacePoint (*one)(const PreparedScene&, const TraceHit&, const PatchSamples*);
-};
-
 /// Points of all hits, many at once where that can be; points[k] belongs to hits[k].
-void make_points(const PreparedScene& scene, const PointMaker& maker, std::span<const TraceHit> hits,
+void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
                  std::span<SurfacePoint> points, PointScratch& scratch);
 
 } // namespace relief::cpu

@@ -157,17 +157,7 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
 
 void Tracer::make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
                                  PointScratch& scratch) const {
-    make_points(*scene_, {implementation_->shading->shading_points, make_shading_point}, hits, points,
-                scratch);
-}
-
-void Tracer::evaluate_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
-                             PointScratch& scratch) const {
-    make_points(*scene_, {implementation_->shading->cell_points, make_cell_point}, hits, points, scratch);
-}
-
-TraceHit Tracer::locate_on(const TraceHit& hit, uint32_t bias) const {
-    return locate_hit(*scene_, hit.instance, hit.patch, {hit.u, hit.v}, bias);
+    make_points(*scene_, *implementation_->shading, hits, points, scratch);
 }
 
 const ShadingKernels& Tracer::shading_kernels() const { return *implementation_->shading; }

@@ -77,14 +77,8 @@ class Tracer {
     void make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
                              PointScratch& scratch) const;
 
-    /// Point (u, v) of a patch on surface M_bias: used to sample lights, and to start a bounce ray of a
-    /// coarser bias on the surface that it sees. Shading normal and uv are left out.
+    /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
-    /// The same of many places, each given by locate_on.
-    void evaluate_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
-                         PointScratch& scratch) const;
-    /// The place of a hit on surface M_bias.
-    TraceHit locate_on(const TraceHit& hit, uint32_t bias) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
     /// along the geometric normal, to the side that the direction is on.

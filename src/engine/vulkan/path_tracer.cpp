@@ -121,7 +121,6 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     push.capacity = capacity_;
     push.last_depth = uint32_t(settings_.bounces);
     push.sample_index = sample_index;
-    push.has_auto_levels = settings_.level == kAutoLevel;
     return push;
 }
 

@@ -7,21 +7,6 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// A wide bounce sees a coarser surface and must start on it, unless the direction would lead inside there.
-RayData start_bounce_ray(HitData hit, SurfacePointData point, uint bias, vec3 direction, bool is_wide) {
-    vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
-    if (is_wide && push.has_auto_levels != 0u && bias < kLargestBias) {
-        CellPoint coarse = evaluate_point(instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v), bias + 1u);
-        float side = dot(coarse.triangle.normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
-        if (side > 0.0) {
-            origin = offset_origin(coarse.triangle.position, coarse.triangle.normal, coarse.position_error, direction);
-            bias += 1u;
-        }
-    }
-    RayData ray = {origin, 0.0, direction, make_infinity(), bias};
-    return ray;
-}
-
 /// Sets the next ray; false where the path ends.
 bool continue_path(uint path_index, HitData hit) {
     PathData path = paths[path_index];
@@ -41,8 +26,9 @@ bool continue_path(uint path_index, HitData hit) {
     paths[path_index].previous = point.position;
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
-    rays[path_index] =
-        start_bounce_ray(hit, point, ray.bias, direction, is_wide_bounce(drawn.is_specular, point.roughness));
+    vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
+    RayData next = {origin, 0.0, direction, make_infinity(), ray.bias};
+    rays[path_index] = next;
     return true;
 }
 
