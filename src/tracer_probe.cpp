@@ -9,6 +9,7 @@
 #include "engine/camera_frame.h"
 #include "engine/cpu/kernels.h"
 #include "engine/cpu/path_tracer.h"
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/tracer.h"
 #include "relief/error.h"
 #include "validate_settings.h"
@@ -30,37 +31,55 @@ constexpr uint32_t kBiasesOfSingleRays = 2;
 struct CameraTile {
     int x0, y0, x1, y1;
     size_t first;
+    size_t count() const { return size_t(x1 - x0) * size_t(y1 - y0); }
 };
 
 std::vector<CameraTile> make_tiles(int width, int height) {
     std::vector<CameraTile> tiles;
+    std::vector<Vec2f> centres; ///< of pixels, tile after tile
     size_t first = 0;
     for (int y = 0; y < height; y += kTileEdge)
         for (int x = 0; x < width; x += kTileEdge) {
             const CameraTile tile{x, y, std::min(x + kTileEdge, width), std::min(y + kTileEdge, height),
                                   first};
-            first += size_t(tile.x1 - tile.x0) * size_t(tile.y1 - tile.y0);
+            first += tile.count();
             tiles.push_back(tile);
         }
     return tiles;
 }
 
-scalar::CameraRay make_centre_ray(const scalar::CameraFrame& frame, int x, int y) {
-    const Vec2f centre{float(x) + 0.5f, float(y) + 0.5f};
-    if (frame.aperture_radius == 0) return scalar::make_pinhole_ray(frame, centre);
-    const uint32_t seed = scalar::make_pixel_seed(0, uint32_t(x), uint32_t(y));
-    return scalar::make_camera_ray(frame, centre, scalar::sobol_pair(seed, 0, scalar::kLensPair));
+/// What a worker needs for a batch, kept from one to the next.
+struct BatchBuffers {
+    std::vector<cpu::TraceRay> rays;
+    std::vector<cpu::TraceHit> hits;
+};
+
+/// The middles of all pixels, tile after tile, in the order of packets.
+std::vector<Vec2f> list_centres(const std::vector<CameraTile>& tiles) {
+    std::vector<Vec2f> centres;
+    for (const CameraTile& tile : tiles)
+        for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
+            for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
+                for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
+                    for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x)
+                        centres.push_back({float(x) + 0.5f, float(y) + 0.5f});
+    return centres;
 }
 
-/// The rays of a tile in the order of packets.
-template <class Store>
-void visit_tile(const scalar::CameraFrame& frame, const CameraTile& tile, Store store) {
-    size_t number = tile.first;
-    for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
-        for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
-            for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
-                for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x)
-                    store(number++, make_centre_ray(frame, x, y));
+void aim_rays(const cpu::ShadingKernels& kernels, const scalar::CameraFrame& frame,
+              std::span<const Vec2f> centres, std::vector<cpu::TraceRay>& rays) {
+    rays.resize(centres.size());
+    if (frame.aperture_radius == 0) {
+        kernels.aim_rays(frame, centres.data(), centres.size(), rays.data());
+        return;
+    }
+    for (size_t k = 0; k < rays.size(); ++k) {
+        const uint32_t seed = scalar::make_pixel_seed(0, uint32_t(centres[k].x), uint32_t(centres[k].y));
+        const scalar::CameraRay ray =
+            scalar::make_camera_ray(frame, centres[k], scalar::sobol_pair(seed, 0, scalar::kLensPair));
+        rays[k] = {};
+        rays[k].origin = ray.origin, rays[k].direction = ray.direction;
+    }
 }
 
 ProbeHit make_probe_hit(const cpu::TraceHit& found) {
@@ -73,12 +92,6 @@ void count_hits(ProbeRun& run) {
     for (const uint8_t occluded : run.occluded) run.hit_count += occluded;
 }
 
-/// What a worker needs for a batch, kept from one to the next.
-struct BatchBuffers {
-    std::vector<cpu::TraceRay> rays;
-    std::vector<cpu::TraceHit> hits;
-};
-
 } // namespace
 
 struct TracerProbe::Implementation {
@@ -89,6 +102,7 @@ struct TracerProbe::Implementation {
     ProbePreparation preparation;
     std::vector<uint32_t> first_patches; ///< of each instance, one entry more than instances
     std::vector<CameraTile> tiles;
+    std::vector<Vec2f> centres;        ///< of pixels, tile after tile
     std::vector<BatchBuffers> buffers; ///< one a worker
 
     const Surface& surface_of(uint32_t instance) const {
@@ -128,13 +142,9 @@ struct TracerProbe::Implementation {
 
     void trace_tile(const scalar::CameraFrame& frame, const CameraTile& tile, ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        buffer.rays.clear();
-        visit_tile(frame, tile, [&](size_t, const scalar::CameraRay& ray) {
-            cpu::TraceRay traced;
-            traced.origin = ray.origin, traced.direction = ray.direction;
-            buffer.rays.push_back(traced);
-        });
-        buffer.hits.assign(buffer.rays.size(), {});
+        aim_rays(tracer->shading_kernels(), frame, std::span(centres).subspan(tile.first, tile.count()),
+                 buffer.rays);
+        buffer.hits.resize(buffer.rays.size());
         tracer->closest_hits(buffer.rays, buffer.hits);
         store_hits(tile.first, buffer.hits, result);
     }
@@ -152,7 +162,7 @@ struct TracerProbe::Implementation {
             tracer->any_hits(buffer.rays, std::span(result.occluded).subspan(begin, rays.size()));
             return;
         }
-        buffer.hits.assign(buffer.rays.size(), {});
+        buffer.hits.resize(buffer.rays.size());
         tracer->closest_hits(buffer.rays, buffer.hits);
         store_hits(begin, buffer.hits, result);
     }
@@ -177,6 +187,7 @@ TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
     });
     self.number_patches();
     self.tiles = make_tiles(settings.width, settings.height);
+    self.centres = list_centres(self.tiles);
 }
 
 TracerProbe::~TracerProbe() = default;
@@ -205,11 +216,11 @@ std::vector<Ray> TracerProbe::make_camera_rays(const Camera& camera) const {
     view.camera = camera;
     view.width = self.settings.width, view.height = self.settings.height;
     const scalar::CameraFrame frame = make_camera_frame(view);
-    std::vector<Ray> rays(size_t(view.width) * size_t(view.height));
-    for (const CameraTile& tile : self.tiles)
-        visit_tile(frame, tile, [&](size_t number, const scalar::CameraRay& ray) {
-            rays[number].origin = ray.origin, rays[number].direction = ray.direction;
-        });
+    std::vector<cpu::TraceRay> aimed;
+    aim_rays(self.tracer->shading_kernels(), frame, self.centres, aimed);
+    std::vector<Ray> rays(aimed.size());
+    for (size_t k = 0; k < rays.size(); ++k)
+        rays[k].origin = aimed[k].origin, rays[k].direction = aimed[k].direction;
     return rays;
 }
 

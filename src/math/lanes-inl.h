@@ -113,8 +113,85 @@ template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes
 }
 
 using Lanes16 = Lanes<16>;
+
+/// Sixteen whole numbers, not negative, that say where lanes come from.
+struct LaneIndices {
+    using D = hn::Rebind<int32_t, Lanes16::D>;
+    hn::Vec<D> part[Lanes16::kParts];
+
+    LaneIndices() = default;
+    HWY_INLINE explicit LaneIndices(int32_t value) {
+        for (auto& p : part) p = hn::Set(D(), value);
+    }
+    static HWY_INLINE LaneIndices load(const uint32_t* source) {
+        LaneIndices r;
+        const hn::RebindToUnsigned<D> d;
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            r.part[p] = hn::BitCast(D(), hn::LoadU(d, source + p * Lanes16::kLanes));
+        return r;
+    }
+    HWY_INLINE void store(int32_t* aligned) const {
+        for (size_t p = 0; p < Lanes16::kParts; ++p) hn::Store(part[p], D(), aligned + p * Lanes16::kLanes);
+    }
+    HWY_INLINE LaneIndices operator+(const LaneIndices& other) const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::Add(part[p], other.part[p]);
+        return r;
+    }
+    template <int kBits> HWY_INLINE LaneIndices shifted_down() const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftRight<kBits>(part[p]);
+        return r;
+    }
+    HWY_INLINE LaneIndices masked(int32_t bits) const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::And(part[p], hn::Set(D(), bits));
+        return r;
+    }
+};
+
+/// base[index] in every lane.
+HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
+    Lanes16 r;
+    for (size_t p = 0; p < Lanes16::kParts; ++p)
+        r.part[p] = hn::GatherIndex(Lanes16::D(), base, index.part[p]);
+    return r;
+}
+
+/// Sixteen floats that lanes pick from: out of a register where one holds all, else out of memory.
+struct LaneTable {
+    Lanes16 lanes;
+    alignas(64) float stored[Lanes16::kParts == 1 ? 1 : 16];
+
+    HWY_INLINE explicit LaneTable(const Lanes16& values) : lanes(values) {
+        if constexpr (Lanes16::kParts > 1) values.store(stored);
+    }
+    HWY_INLINE Lanes16 pick(const LaneIndices& index) const {
+        if constexpr (Lanes16::kParts > 1) return gather(stored, index);
+        Lanes16 r;
+        r.part[0] = hn::TableLookupLanes(lanes.part[0], hn::IndicesFromVec(Lanes16::D(), index.part[0]));
+        return r;
+    }
+};
+
 using Lanes8 = Lanes<8>;
 using Lanes4 = Lanes<4>;
+
+/// Four floats of each lane, one lane after another.
+struct LaneQuads {
+    alignas(64) float lane[16][4];
+
+    HWY_INLINE void transpose(Lanes16& a, Lanes16& b, Lanes16& c, Lanes16& d) const {
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            hn::LoadInterleaved4(Lanes16::D(), lane[p * Lanes16::kLanes], a.part[p], b.part[p], c.part[p],
+                                 d.part[p]);
+    }
+    HWY_INLINE void set(const Lanes16& a, const Lanes16& b, const Lanes16& c, const Lanes16& d) {
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            hn::StoreInterleaved4(a.part[p], b.part[p], c.part[p], d.part[p], Lanes16::D(),
+                                  lane[p * Lanes16::kLanes]);
+    }
+};
 
 /// The shared formulas over sixteen lanes.
 namespace wide {

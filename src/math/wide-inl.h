@@ -183,6 +183,7 @@ HWY_INLINE Vec3 make_unit(const Vec3& a) {
 #define FN HWY_INLINE
 #define EXACT
 #include "shared/basis.h"
+#include "shared/picture_plane.h"
 #include "shared/shading_normal.h"
 #include "shared/sobol.h"
 #include "shared/surface_point.h"

@@ -19,6 +19,7 @@
 #include "shared/sobol.h"
 #include "shared/basis.h"
 #include "shared/warp.h"
+#include "shared/picture_plane.h"
 #include "shared/camera.h"
 #include "shared/raster.h"
 #include "shared/tonemap.h"

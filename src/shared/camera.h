@@ -41,14 +41,14 @@ FN CameraFrame make_camera_frame(Vec3 from, Vec3 to, Vec3 up, Float fov, Vec2 si
 /// Ray through the point `pixel` of the picture (pixel centres at .5) of a camera without an aperture.
 FN CameraRay make_pinhole_ray(CameraFrame camera, Vec2 pixel) {
     CameraRay result = {camera.origin,
-                        normalize(camera.corner + camera.step_x * pixel.x + camera.step_y * pixel.y)};
+                        normalize(find_picture_point(camera.corner, camera.step_x, camera.step_y, pixel))};
     return result;
 }
 
 /// Ray through the point `pixel` of the picture (pixel centres at .5); `lens` in [0, 1)^2 chooses the point
 /// of the lens.
 FN CameraRay make_camera_ray(CameraFrame camera, Vec2 pixel, Vec2 lens) {
-    Vec3 toward = camera.corner + camera.step_x * pixel.x + camera.step_y * pixel.y;
+    Vec3 toward = find_picture_point(camera.corner, camera.step_x, camera.step_y, pixel);
     Vec2 disk = square_to_disk(lens);
     Vec3 offset =
         camera.right * (disk.x * camera.aperture_radius) + camera.up * (disk.y * camera.aperture_radius);

@@ -128,7 +128,6 @@ class ShadingBench {
         push.depth = depth;
         push.last_depth = 6;
         push.sample_index = 5;
-        push.has_auto_levels = 1;
         return push;
     }
 

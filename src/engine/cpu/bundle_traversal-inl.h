@@ -9,6 +9,7 @@
 
 #include "engine/cpu/packet_traversal-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
+#include "engine/cpu/ray_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -19,62 +20,54 @@ inline constexpr uint32_t kLeastBundle = 64;
 /// A patch that a bundle is inside of, and the rays that were tested against its triangles.
 struct BundleVisit {
     PatchVisit patch;
-    uint64_t tested[kBundleSize / 64] = {}, hit[kBundleSize / 64] = {};
+    LaneMask tested[kGroupCount] = {}, hit[kGroupCount] = {};
 
-    static uint32_t count(const uint64_t (&bits)[kBundleSize / 64]) {
+    static uint32_t count(const LaneMask (&bits)[kGroupCount]) {
         uint32_t sum = 0;
-        for (const uint64_t word : bits) sum += uint32_t(__builtin_popcountll(word));
+        for (const LaneMask group : bits) sum += uint32_t(__builtin_popcount(group));
         return sum;
     }
 };
 
-/// Triangles relative to the bundle's origin, as one ray sees them.
+/// Coordinates relative to the origin of the rays.
 template <size_t W>
-HWY_INLINE void shear_points(const Lanes<W> (&v)[3], const RayBundle& bundle, uint32_t ray, Lanes<W>& x,
-                             Lanes<W>& y) {
-    x = v[bundle.axis[0]] - Lanes<W>(bundle.shear[0][ray]) * v[bundle.axis[2]];
-    y = v[bundle.axis[1]] - Lanes<W>(bundle.shear[1][ray]) * v[bundle.axis[2]];
-}
-
-template <size_t W>
-HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayBundle& bundle, uint32_t ray,
-                               TriangleTest<W>& test) {
-    test_distances(z, bundle.shear[2][ray], bundle.rays->world[ray].t_min, bundle.rays->t[ray], test);
-}
-
-/// Takes over what is nearest among the hits of one ray.
-template <size_t W, class Locate>
-HWY_INLINE void offer_hits(RayBundle& bundle, uint32_t ray, const TriangleTest<W>& test, Locate locate) {
-    offer_hits(bundle.rays->hits[ray], bundle.rays->t[ray], bundle.instance, test, locate);
+HWY_INLINE void load_relative(const float (&coordinate)[3][W], const RayBundle& bundle, Lanes<W> (&v)[3]) {
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+    for (int k = 0; k < 3; ++k) v[k] = Lanes<W>::load(coordinate[k]) - Lanes<W>(origin[k]);
 }
 
 /// The triangles of a block, for each ray that may meet one.
 HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                      RayBundle& bundle) {
-    const cpu::Block& leaf = tree.blocks()[block];
-    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
-    Lanes16 v[3], cz[3];
-    for (int k = 0; k < 3; ++k) v[k] = Lanes16::load(leaf.vertex[k]) - Lanes16(origin[k]);
-    gather_corners(v[bundle.axis[2]], cz[0], cz[1], cz[2]);
-    visit_rays(
-        find_window(v, bundle), bundle, [&](uint32_t ray) __attribute__((always_inline)) {
-            ++visit.patch.context->counters.blocks;
-            visit.tested[ray / 64] |= uint64_t(1) << ray % 64;
-            Lanes16 x, y, cx[3], cy[3];
-            shear_points(v, bundle, ray, x, y);
-            gather_corners(x, cx[0], cx[1], cx[2]);
-            gather_corners(y, cy[0], cy[1], cy[2]);
+    Lanes16 v[3];
+    load_relative(tree.blocks()[block].vertex, bundle, v);
+    Window all;
+    const PartWindows windows = find_quad_windows(v, bundle, all);
+    const LaneTable table[3] = {LaneTable(v[0]), LaneTable(v[1]), LaneTable(v[2])};
+    LaneMask dirty = 0;
+    // Lower triangles come before upper ones in a block.
+    const auto offer = [&](const PairLanes& pairs, uint32_t first, const TriangleTest<16>& test) {
+        offer_pairs(pairs, test, bundle, visit.hit, dirty,
+                    [&](uint32_t quad, float weight_b, float weight_c, cpu::TraceHit& hit) {
+                        locate_in_block(visit.patch, tree, block, first + quad, weight_b, weight_c, hit);
+                    });
+    };
+    visit_pairs(
+        windows, all, bundle, visit.tested,
+        visit.patch.context->counters.blocks, [&](PairList & list) __attribute__((always_inline)) {
+            const PairLanes pairs(list);
+            // Rows of five vertices, four quads wide; corners 00, 10, 11, 01.
+            const LaneIndices base = pairs.part + pairs.part.shifted_down<2>();
+            const LaneIndices at[4] = {base, base + LaneIndices(1), base + LaneIndices(6),
+                                       base + LaneIndices(5)};
+            Lanes16 corner[3][4];
+            shear_corners(
+                pairs, bundle, [&](int c, int axis) { return table[axis].pick(at[c]); }, corner);
             TriangleTest<16> test;
-            if (!test_edges(cx, cy, test)) return false;
-            test_distances(cz, bundle, ray, test);
-            if (!test.mask) return false;
-            visit.hit[ray / 64] |= uint64_t(1) << ray % 64;
-            offer_hits(bundle, ray, test,
-                       [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
-                           locate_in_block(visit.patch, tree, block, lane, weight_b, weight_c, hit);
-                       });
-            return true;
+            if (test_pairs<1, 2>(pairs, corner, bundle, test)) offer(pairs, 0, test);
+            if (test_pairs<2, 3>(pairs, corner, bundle, test)) offer(pairs, 8, test);
         });
+    update_groups(bundle, dirty);
 }
 
 struct BundleEntry {
@@ -228,26 +221,30 @@ HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const RayBundle& bundle, Vis
 }
 
 /// Eight triangles of a surface without displacement; lanes without one are NaN, and no ray meets them.
-HWY_INLINE void trace_block(const cpu::TriangleBlock& block, const Window& window, RayBundle& bundle) {
-    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
-    Lanes8 v[3][3], cz[3];
-    for (int corner = 0; corner < 3; ++corner) {
-        for (int k = 0; k < 3; ++k) v[corner][k] = Lanes8::load(block.corner[corner][k]) - Lanes8(origin[k]);
-        cz[corner] = v[corner][bundle.axis[2]];
+HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Window& window,
+                                     RayBundle& bundle) {
+    Lanes8 v[3][3];
+    alignas(64) float stored[3][3][8];
+    for (int c = 0; c < 3; ++c) {
+        load_relative(block.corner[c], bundle, v[c]);
+        for (int axis = 0; axis < 3; ++axis) v[c][axis].store(stored[c][axis]);
     }
-    visit_rays(window, bundle, [&](uint32_t ray) {
-        Lanes8 x[3], y[3];
-        for (int corner = 0; corner < 3; ++corner) shear_points(v[corner], bundle, ray, x[corner], y[corner]);
-        TriangleTest<8> test;
-        if (!test_edges(x, y, test)) return false;
-        test_distances(cz, bundle, ray, test);
-        if (!test.mask) return false;
-        offer_hits(bundle, ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
-            hit.patch = block.triangle[lane] / 2;
-            locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
-        });
-        return true;
+    LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {}, dirty = 0;
+    uint64_t count = 0;
+    visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
+        const PairLanes pairs(list);
+        Lanes16 corner[3][3];
+        shear_corners(
+            pairs, bundle, [&](int c, int axis) { return gather(stored[c][axis], pairs.part); }, corner);
+        TriangleTest<16> test;
+        if (!test_pairs<1, 2>(pairs, corner, bundle, test)) return;
+        offer_pairs(pairs, test, bundle, hit_rays, dirty,
+                    [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+                        hit.patch = block.triangle[lane] / 2;
+                        locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
+                    });
     });
+    update_groups(bundle, dirty);
 }
 
 /// An instance in whose space the rays are no bundle: one after another.
@@ -305,10 +302,11 @@ inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context
     for (uint32_t k = 0; k < kBundleSize; ++k) {
         const cpu::TraceRay& ray = world[HWY_MIN(k, count - 1)];
         rays.t[k] = k < count ? ray.t_max : 0.0f;
+        rays.t_min[k] = ray.t_min;
         rays.direction[0][k] = ray.direction.x, rays.direction[1][k] = ray.direction.y;
         rays.direction[2][k] = ray.direction.z;
     }
-    for (uint32_t k = 0; k < count; ++k) hits[k] = {};
+    for (uint32_t k = 0; k < count; ++k) hits[k] = {}, hits[k].bias = uint8_t(world[k].bias);
     if (scene.instance_count == 1) return trace_instance(scene, context, 0, rays);
     RayBundle bundle;
     bundle.rays = &rays;

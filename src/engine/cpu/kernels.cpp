@@ -69,13 +69,14 @@ void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const
         size_t size = trace_front(scene, context, rays + begin, hits + begin, count - begin);
         if (size == 0) {
             size = HWY_MIN(size_t(kBundleSize), count - begin);
-            trace_rays<Query::closest>(
-                scene, context, rays + begin, size,
-                [&](size_t k, const cpu::TraceHit& hit, bool) { hits[begin + k] = hit; });
+            trace_rays<Query::closest>(scene, context, rays + begin, size,
+                                       [&](size_t k, const cpu::TraceHit& hit, bool) {
+                                           hits[begin + k] = hit;
+                                           hits[begin + k].bias = uint8_t(rays[begin + k].bias);
+                                       });
         }
         begin += size;
     }
-    for (size_t k = 0; k < count; ++k) hits[k].bias = uint8_t(rays[k].bias);
 }
 
 void any_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,

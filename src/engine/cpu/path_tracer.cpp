@@ -143,22 +143,30 @@ void TileTracer::trace_sample(int index) {
 
 void TileTracer::start_paths() {
     draw_pairs(seeds_, scalar::kPixelPair, places_);
-    active_.clear(), rays_.clear();
+    active_.resize(paths_.size());
     for (uint32_t i = 0; i < paths_.size(); ++i) {
         Path& path = paths_[i];
-        const Vec2f position = Vec2f{float(path.x), float(path.y)} + places_[i];
-        const scalar::CameraRay ray = scalar::aim_camera_ray(camera_, position, seeds_[i], sample_index_);
+        places_[i] = Vec2f{float(path.x), float(path.y)} + places_[i];
         path.throughput = {1, 1, 1};
         path.result = {};
         path.result.cost = 1;
-        active_.push_back(i);
-        rays_.push_back({ray.origin, 0, ray.direction, kInfinity, 0});
+        active_[i] = i;
+    }
+    rays_.resize(paths_.size());
+    if (camera_.aperture_radius == 0) {
+        tracer_.shading_kernels().aim_rays(camera_, places_.data(), places_.size(), rays_.data());
+    } else {
+        for (size_t i = 0; i < paths_.size(); ++i) {
+            const scalar::CameraRay ray =
+                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
+            rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
+        }
     }
     counters_.camera_rays += paths_.size();
 }
 
 void TileTracer::trace_paths() {
-    hits_.assign(rays_.size(), TraceHit{});
+    hits_.resize(rays_.size());
     tracer_.closest_hits(rays_, hits_, depth_);
 }
 

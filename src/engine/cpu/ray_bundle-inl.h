@@ -31,6 +31,7 @@ struct BundleRays {
     cpu::TraceHit* hits;
     uint32_t count;
     alignas(64) float t[kBundleSize]; ///< of the nearest hit, or the ray's t_max
+    alignas(64) float t_min[kBundleSize];
     alignas(64) float direction[3][kBundleSize];
 
     LaneMask group_mask(uint32_t group) const {
@@ -59,8 +60,8 @@ struct RayBundle {
     alignas(64) float group_farthest[kGroupCount];
 };
 
-HWY_INLINE Lanes16 dot_lanes(const Lanes16 (&v)[3], const Vec3f& n) {
-    return v[0] * Lanes16(n.x) + v[1] * Lanes16(n.y) + v[2] * Lanes16(n.z);
+template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const Vec3f& n) {
+    return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
 }
 
 /// The farthest depth that a group still asks about, after hits.
@@ -191,11 +192,8 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayBundle& bund
 
 /// The window in which points are seen; `v` is relative to the origin of the rays.
 template <size_t W> HWY_INLINE Window find_window(const Lanes<W> (&v)[3], const RayBundle& bundle) {
-    const auto along = [&](const Vec3f& n) {
-        return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
-    };
-    const Lanes<W> depth = along(bundle.forward), inverse = Lanes<W>(1.0f) / depth;
-    const Lanes<W> x = along(bundle.right) * inverse, y = along(bundle.up) * inverse;
+    const Lanes<W> depth = dot_lanes(v, bundle.forward), inverse = Lanes<W>(1.0f) / depth;
+    const Lanes<W> x = dot_lanes(v, bundle.right) * inverse, y = dot_lanes(v, bundle.up) * inverse;
     const float least = reduce_min(depth);
     Window window = {reduce_min(x) - kWindowMargin, reduce_max(x) + kWindowMargin,
                      reduce_min(y) - kWindowMargin, reduce_max(y) + kWindowMargin, least * kDepthSlack};
@@ -215,26 +213,6 @@ HWY_INLINE LaneMask find_groups(const Window& window, const RayBundle& bundle) {
            less_equal(Lanes16(window.lower_y), Lanes16::load(bundle.upper_y)) &
            less_equal(Lanes16::load(bundle.lower_y), Lanes16(window.upper_y)) &
            less_equal(Lanes16(window.depth), Lanes16::load(bundle.group_farthest));
-}
-
-/// Calls test(ray) for the rays that lie in a window and have met nothing in front of it; true means a hit.
-template <class Test> HWY_INLINE void visit_rays(const Window& window, RayBundle& bundle, Test test) {
-    bool has_hits = false;
-    for (LaneMask groups = find_groups(window, bundle); groups; groups &= groups - 1) {
-        const uint32_t group = uint32_t(__builtin_ctz(groups));
-        const size_t at = group * kGroupSize;
-        const Lanes16 x = Lanes16::load(bundle.x + at), y = Lanes16::load(bundle.y + at);
-        const Lanes16 depth = Lanes16::load(bundle.rays->t + at) * Lanes16::load(bundle.speed + at);
-        LaneMask left = less_equal(Lanes16(window.lower_x), x) & less_equal(x, Lanes16(window.upper_x)) &
-                        less_equal(Lanes16(window.lower_y), y) & less_equal(y, Lanes16(window.upper_y)) &
-                        less_equal(Lanes16(window.depth), depth) & bundle.rays->group_mask(group);
-        bool is_hit = false;
-        for (; left; left &= left - 1) is_hit |= test(uint32_t(at) + uint32_t(__builtin_ctz(left)));
-        if (!is_hit) continue;
-        bundle.group_farthest[group] = find_farthest(bundle, group);
-        has_hits = true;
-    }
-    if (has_hits) update_farthest(bundle);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -225,17 +225,16 @@ HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], T
 }
 
 template <size_t W>
-HWY_INLINE void test_distances(const Lanes<W> (&z)[3], float inverse_speed, float t_min, float t_max,
-                               TriangleTest<W>& test) {
+HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const Lanes<W>& inverse_speed, const Lanes<W>& t_min,
+                               const Lanes<W>& t_max, TriangleTest<W>& test) {
     const Lanes<W> sum = test.u + test.v + test.w;
-    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * Lanes<W>(inverse_speed);
-    test.mask &=
-        not_equal(sum, Lanes<W>(0.0f)) & less(Lanes<W>(t_min), test.t) & less_equal(test.t, Lanes<W>(t_max));
+    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * inverse_speed;
+    test.mask &= not_equal(sum, Lanes<W>(0.0f)) & less(t_min, test.t) & less_equal(test.t, t_max);
 }
 
 template <size_t W>
 HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
-    test_distances(z, ray.shear[2], ray.t_min, ray.t_max, test);
+    test_distances(z, Lanes<W>(ray.shear[2]), Lanes<W>(ray.t_min), Lanes<W>(ray.t_max), test);
 }
 
 /// Vertices in memory, an axis a row, relative to the ray: sheared x and y, and z along the major axis.
@@ -276,23 +275,36 @@ HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, const cpu::TraceHit
     reach = hit.t;
 }
 
-/// Offers every hit of a triangle test; locate(lane, hit) fills in cell, is_upper and, from the weights of
-/// the three corners, u and v.
+/// The numbers of a triangle test, lane by lane.
+template <size_t W> struct TriangleHits {
+    alignas(64) float u[W], v[W], w[W], t[W];
+
+    HWY_INLINE explicit TriangleHits(const TriangleTest<W>& test) {
+        test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
+    }
+};
+
+/// Offers the hit of one lane; locate(lane, weight_b, weight_c, hit) fills in cell, is_upper and, from the
+/// weights of the three corners, u and v.
+template <size_t W, class Locate>
+HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, uint32_t instance, const TriangleHits<W>& hits,
+                          uint32_t lane, Locate locate) {
+    if (hits.t[lane] > reach) return;
+    const float sum = hits.u[lane] + hits.v[lane] + hits.w[lane];
+    cpu::TraceHit hit;
+    hit.t = hits.t[lane];
+    hit.instance = instance, hit.bias = best.bias;
+    locate(lane, hits.v[lane] / sum, hits.w[lane] / sum, hit);
+    offer_hit(best, reach, hit);
+}
+
+/// Offers every hit of a triangle test.
 template <size_t W, class Locate>
 HWY_INLINE void offer_hits(cpu::TraceHit& best, float& reach, uint32_t instance, const TriangleTest<W>& test,
                            Locate locate) {
-    alignas(64) float u[W], v[W], w[W], t[W];
-    test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
-    for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
-        const uint32_t lane = uint32_t(__builtin_ctz(mask));
-        if (t[lane] > reach) continue;
-        const float sum = u[lane] + v[lane] + w[lane];
-        cpu::TraceHit hit;
-        hit.t = t[lane];
-        hit.instance = instance;
-        locate(lane, v[lane] / sum, w[lane] / sum, hit);
-        offer_hit(best, reach, hit);
-    }
+    const TriangleHits<W> hits(test);
+    for (LaneMask mask = test.mask; mask; mask &= mask - 1)
+        offer_hit(best, reach, instance, hits, uint32_t(__builtin_ctz(mask)), locate);
 }
 
 template <size_t W, class Locate>

@@ -9,6 +9,7 @@
 #define HWY_TARGET_INCLUDE "engine/cpu/shading_kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include "engine/cpu/camera_rays-inl.h"
 #include "engine/cpu/random_pairs-inl.h"
 #include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/surface_points-inl.h"
@@ -17,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
-    static const cpu::ShadingKernels kKernels{name, make_point_batch, draw_pairs};
+    static const cpu::ShadingKernels kKernels{name, make_point_batch, draw_pairs, aim_rays};
     return kKernels;
 }
 

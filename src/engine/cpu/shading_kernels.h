@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine/cpu/tracer.h"
+#include "math/scalar.h"
 
 namespace relief::cpu {
 
@@ -25,6 +26,8 @@ struct ShadingKernels {
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                        Vec2f* drawn);
+    /// rays[k] as scalar::make_pinhole_ray aims it through positions[k], in pixels.
+    void (*aim_rays)(const scalar::CameraFrame& camera, const Vec2f* positions, size_t count, TraceRay* rays);
 };
 
 /// `name`: of an instruction set that this machine has (Kernels::name).

@@ -23,22 +23,6 @@ static_assert(sizeof(VertexData) == 64 && offsetof(VertexData, uv) == 4 * kUv &&
               offsetof(VertexData, frame) == 4 * kFrame);
 static_assert(sizeof(Affine) == 48);
 
-/// Four floats of each lane, one lane after another.
-struct LaneQuads {
-    alignas(64) float lane[16][4];
-
-    HWY_INLINE void transpose(Lanes16& a, Lanes16& b, Lanes16& c, Lanes16& d) const {
-        for (size_t p = 0; p < Lanes16::kParts; ++p)
-            hn::LoadInterleaved4(Lanes16::D(), lane[p * Lanes16::kLanes], a.part[p], b.part[p], c.part[p],
-                                 d.part[p]);
-    }
-    HWY_INLINE void set(const Lanes16& a, const Lanes16& b, const Lanes16& c, const Lanes16& d) {
-        for (size_t p = 0; p < Lanes16::kParts; ++p)
-            hn::StoreInterleaved4(a.part[p], b.part[p], c.part[p], d.part[p], Lanes16::D(),
-                                  lane[p * Lanes16::kLanes]);
-    }
-};
-
 /// What sixteen hits bring, lane by lane.
 struct HitLanes {
     LaneQuads corner[4][4]; ///< VertexData of the patch's corners, four floats a part

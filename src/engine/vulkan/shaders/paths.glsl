@@ -5,6 +5,7 @@
 #include "engine/vulkan/shaders/scene.glsl"
 #include "shared/sobol.h"
 #include "shared/warp.h"
+#include "shared/picture_plane.h"
 #include "shared/camera.h"
 #include "shared/ggx_albedo.h"
 #include "shared/bsdf.h"

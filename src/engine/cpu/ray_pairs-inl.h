@@ -1,0 +1,256 @@
+// Which rays of a bundle may meet which micro-quads of a block, or triangles of a polygon: pairs of the two,
+// sixteen of them tested at once. Where a micro-quad is about as large as a pixel, few rays see it, and where
+// a polygon is large, all do: a lane a triangle of one block would leave most lanes idle.
+#if defined(RELIEF_RAY_PAIRS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_RAY_PAIRS_INL_H
+#undef RELIEF_RAY_PAIRS_INL_H
+#else
+#define RELIEF_RAY_PAIRS_INL_H
+#endif
+
+#include "engine/cpu/ray_bundle-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Windows of the eight quads of a block, in the order of the lower triangles' lanes, or of eight triangles.
+struct PartWindows {
+    Lanes8 lower_x, upper_x, lower_y, upper_y, depth;
+};
+
+/// Makes room for rounding. All windows are open where a part is not in front of the rays, or far aside: what
+/// is seen of it cannot be said. Parts that are not numbers are not there, and no ray lies in their windows.
+HWY_INLINE void widen_windows(PartWindows& part) {
+    const LaneMask is_there = less_equal(part.depth, part.depth);
+    const LaneMask is_in_front = less(Lanes8(0.0f), part.depth) & less(Lanes8(-kWidestWindow), part.lower_x) &
+                                 less(part.upper_x, Lanes8(kWidestWindow)) &
+                                 less(Lanes8(-kWidestWindow), part.lower_y) &
+                                 less(part.upper_y, Lanes8(kWidestWindow));
+    if (is_there != is_in_front) {
+        constexpr float kEnd = std::numeric_limits<float>::infinity();
+        part = {Lanes8(-kEnd), Lanes8(kEnd), Lanes8(-kEnd), Lanes8(kEnd), Lanes8(-kEnd)};
+        return;
+    }
+    const Lanes8 margin(kWindowMargin);
+    part.lower_x = part.lower_x - margin, part.upper_x = part.upper_x + margin;
+    part.lower_y = part.lower_y - margin, part.upper_y = part.upper_y + margin;
+    part.depth = part.depth * Lanes8(kDepthSlack);
+}
+
+/// Least and greatest value over the corners of each quad.
+HWY_INLINE void find_quad_range(const Lanes16& vertex, Lanes8& least, Lanes8& greatest) {
+    Lanes16 a, b, c;
+    gather_corners(vertex, a, b, c);
+    alignas(64) float low[16], high[16];
+    min(min(a, b), c).store(low), max(max(a, b), c).store(high);
+    least = min(Lanes8::load(low), Lanes8::load(low + 8));
+    greatest = max(Lanes8::load(high), Lanes8::load(high + 8));
+}
+
+/// Windows of the quads of a block, and of all of them; `v` is relative to the origin of the rays.
+HWY_INLINE PartWindows find_quad_windows(const Lanes16 (&v)[3], const RayBundle& bundle, Window& all) {
+    const Lanes16 depth = dot_lanes(v, bundle.forward), inverse = Lanes16(1.0f) / depth;
+    PartWindows quad;
+    Lanes8 farthest;
+    find_quad_range(dot_lanes(v, bundle.right) * inverse, quad.lower_x, quad.upper_x);
+    find_quad_range(dot_lanes(v, bundle.up) * inverse, quad.lower_y, quad.upper_y);
+    find_quad_range(depth, quad.depth, farthest);
+    widen_windows(quad);
+    all = {reduce_min(quad.lower_x), reduce_max(quad.upper_x), reduce_min(quad.lower_y),
+           reduce_max(quad.upper_y), reduce_min(quad.depth)};
+    return quad;
+}
+
+/// Windows of eight triangles; `v` (corner, axis) is relative to the origin of the rays.
+HWY_INLINE PartWindows find_triangle_windows(const Lanes8 (&v)[3][3], const RayBundle& bundle) {
+    Lanes8 x[3], y[3], depth[3];
+    for (int c = 0; c < 3; ++c) {
+        depth[c] = dot_lanes(v[c], bundle.forward);
+        const Lanes8 inverse = Lanes8(1.0f) / depth[c];
+        x[c] = dot_lanes(v[c], bundle.right) * inverse, y[c] = dot_lanes(v[c], bundle.up) * inverse;
+    }
+    PartWindows part = {min(min(x[0], x[1]), x[2]), max(max(x[0], x[1]), x[2]), min(min(y[0], y[1]), y[2]),
+                        max(max(y[0], y[1]), y[2]), min(min(depth[0], depth[1]), depth[2])};
+    widen_windows(part);
+    return part;
+}
+
+/// Up to all pairs of a group of rays and eight parts, and what a step left over.
+struct PairList {
+    static constexpr uint32_t kCapacity = 8 * kGroupSize + 16;
+    alignas(64) uint32_t code[kCapacity + 16] = {}; ///< ray * 8 + part; a little more, for whole registers
+    uint32_t count = 0;
+
+    /// Appends first + step * lane for the lanes of `mask`.
+    template <size_t W, uint32_t kStep> HWY_INLINE void append(LaneMask mask, uint32_t first) {
+        alignas(64) static constexpr uint32_t kSteps[16] = {
+            0 * kStep, 1 * kStep, 2 * kStep,  3 * kStep,  4 * kStep,  5 * kStep,  6 * kStep,  7 * kStep,
+            8 * kStep, 9 * kStep, 10 * kStep, 11 * kStep, 12 * kStep, 13 * kStep, 14 * kStep, 15 * kStep};
+        const hn::RebindToUnsigned<typename Lanes<W>::D> d;
+        constexpr size_t kLanes = Lanes<W>::kLanes;
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p) {
+            const LaneMask part = mask >> (p * kLanes);
+            const uint8_t bits[8] = {uint8_t(part), uint8_t(part >> 8)};
+            hn::CompressStore(hn::Add(hn::Set(d, first), hn::Load(d, kSteps + p * kLanes)),
+                              hn::LoadMaskBits(d, bits), d, code + count);
+            count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
+        }
+    }
+};
+
+/// The parts that any ray of a group may meet.
+HWY_INLINE LaneMask find_parts(const PartWindows& part, const RayBundle& bundle, uint32_t group) {
+    return less_equal(part.lower_x, Lanes8(bundle.upper_x[group])) &
+           less_equal(Lanes8(bundle.lower_x[group]), part.upper_x) &
+           less_equal(part.lower_y, Lanes8(bundle.upper_y[group])) &
+           less_equal(Lanes8(bundle.lower_y[group]), part.upper_y) &
+           less_equal(part.depth, Lanes8(bundle.group_farthest[group]));
+}
+
+/// Sixteen rays as the windows see them.
+struct GroupLanes {
+    Lanes16 x, y, depth; ///< depth of the nearest hit
+
+    GroupLanes(const RayBundle& bundle, uint32_t group) {
+        const size_t at = group * kGroupSize;
+        x = Lanes16::load(bundle.x + at), y = Lanes16::load(bundle.y + at);
+        depth = Lanes16::load(bundle.rays->t + at) * Lanes16::load(bundle.speed + at);
+    }
+    HWY_INLINE LaneMask find_inside(float lower_x, float upper_x, float lower_y, float upper_y,
+                                    float nearest) const {
+        return less_equal(Lanes16(lower_x), x) & less_equal(x, Lanes16(upper_x)) &
+               less_equal(Lanes16(lower_y), y) & less_equal(y, Lanes16(upper_y)) &
+               less_equal(Lanes16(nearest), depth);
+    }
+};
+
+/// Appends the pairs of the rays `left` of a group: ray by ray where they are fewer than the parts that
+/// concern them, else quad by part. Returns the rays that have one.
+HWY_INLINE LaneMask append_pairs(const PartWindows& part, const RayBundle& bundle, uint32_t group,
+                                 const GroupLanes& rays, LaneMask left, PairList& pairs) {
+    LaneMask parts = find_parts(part, bundle, group), paired = 0;
+    const uint32_t at = group * kGroupSize;
+    if (__builtin_popcount(left) <= __builtin_popcount(parts)) {
+        for (; left; left &= left - 1) {
+            const uint32_t lane = uint32_t(__builtin_ctz(left)), ray = at + lane;
+            const Lanes8 x(bundle.x[ray]), y(bundle.y[ray]);
+            const LaneMask inside = less_equal(part.lower_x, x) & less_equal(x, part.upper_x) &
+                                    less_equal(part.lower_y, y) & less_equal(y, part.upper_y) &
+                                    less_equal(part.depth, Lanes8(bundle.rays->t[ray] * bundle.speed[ray]));
+            pairs.append<8, 1>(inside, ray * 8);
+            paired |= LaneMask(inside != 0) << lane;
+        }
+        return paired;
+    }
+    alignas(32) float bound[5][8];
+    part.lower_x.store(bound[0]), part.upper_x.store(bound[1]), part.lower_y.store(bound[2]);
+    part.upper_y.store(bound[3]), part.depth.store(bound[4]);
+    for (; parts; parts &= parts - 1) {
+        const uint32_t q = uint32_t(__builtin_ctz(parts));
+        const LaneMask inside =
+            left & rays.find_inside(bound[0][q], bound[1][q], bound[2][q], bound[3][q], bound[4][q]);
+        pairs.append<16, 8>(inside, at * 8 + q);
+        paired |= inside;
+    }
+    return paired;
+}
+
+/// Calls trace_pairs(list) for the pairs of a bundle's rays with eight parts, until none is left; `all` holds
+/// all windows. Sets the bits of rays that were tested.
+template <class TracePairs>
+HWY_INLINE void visit_pairs(const PartWindows& part, const Window& all, const RayBundle& bundle,
+                            LaneMask (&tested)[kGroupCount], uint64_t& count, TracePairs trace_pairs) {
+    PairList pairs;
+    for (LaneMask groups = find_groups(all, bundle); groups; groups &= groups - 1) {
+        const uint32_t group = uint32_t(__builtin_ctz(groups));
+        const GroupLanes rays(bundle, group);
+        const LaneMask left =
+            rays.find_inside(all.lower_x, all.upper_x, all.lower_y, all.upper_y, all.depth) &
+            bundle.rays->group_mask(group);
+        if (!left) continue;
+        const LaneMask paired = append_pairs(part, bundle, group, rays, left, pairs);
+        tested[group] |= paired;
+        count += uint32_t(__builtin_popcount(paired));
+        while (pairs.count >= 16) trace_pairs(pairs);
+    }
+    if (pairs.count > 0) trace_pairs(pairs);
+}
+
+/// Depths of groups after hits.
+HWY_INLINE void update_groups(RayBundle& bundle, LaneMask dirty) {
+    if (!dirty) return;
+    for (; dirty; dirty &= dirty - 1) {
+        const uint32_t group = uint32_t(__builtin_ctz(dirty));
+        bundle.group_farthest[group] = find_farthest(bundle, group);
+    }
+    update_farthest(bundle);
+}
+
+/// Sixteen rays and the parts that they may meet.
+struct PairLanes {
+    LaneIndices ray, part;
+    LaneMask valid;
+
+    /// Takes up to sixteen pairs from the end of the list.
+    HWY_INLINE explicit PairLanes(PairList& list) {
+        const uint32_t count = HWY_MIN(list.count, 16u);
+        list.count -= count;
+        valid = (1u << count) - 1;
+        const LaneIndices code = LaneIndices::load(list.code + list.count);
+        ray = code.shifted_down<3>(), part = code.masked(7);
+    }
+};
+
+/// Corners of sixteen triangles or quads, relative to the origin of the rays: x and y as the ray of the lane
+/// sees them, z along its major axis. `pick(corner, axis)` gives what is in memory.
+template <int kCount, class Pick>
+HWY_INLINE void shear_corners(const PairLanes& pairs, const RayBundle& bundle, Pick pick,
+                              Lanes16 (&corner)[3][kCount]) {
+    const Lanes16 shear_x = gather(bundle.shear[0], pairs.ray), shear_y = gather(bundle.shear[1], pairs.ray);
+    for (int c = 0; c < kCount; ++c) {
+        const Lanes16 z = pick(c, bundle.axis[2]);
+        corner[0][c] = pick(c, bundle.axis[0]) - shear_x * z;
+        corner[1][c] = pick(c, bundle.axis[1]) - shear_y * z;
+        corner[2][c] = z;
+    }
+}
+
+/// The triangles of corners 0, kSecond and kThird. False where no ray meets one.
+template <int kSecond, int kThird, int kCount>
+HWY_INLINE bool test_pairs(const PairLanes& pairs, const Lanes16 (&corner)[3][kCount],
+                           const RayBundle& bundle, TriangleTest<16>& test) {
+    const auto pick = [&](int k, Lanes16(&of)[3]) __attribute__((always_inline)) {
+        of[0] = corner[k][0], of[1] = corner[k][kSecond], of[2] = corner[k][kThird];
+    };
+    Lanes16 x[3], y[3], z[3];
+    pick(0, x), pick(1, y), pick(2, z);
+    test_edges(x, y, test);
+    if (!(test.mask &= pairs.valid)) return false;
+    test_distances(z, gather(bundle.shear[2], pairs.ray), gather(bundle.rays->t_min, pairs.ray),
+                   gather(bundle.rays->t, pairs.ray), test);
+    return test.mask != 0;
+}
+
+/// Takes over what is nearest among the hits of pairs; locate(part, weight_b, weight_c, hit) as in offer_hit.
+/// Sets the bits of rays with hits, and of their groups in `dirty`.
+template <class Locate>
+HWY_INLINE void offer_pairs(const PairLanes& pairs, const TriangleTest<16>& test, RayBundle& bundle,
+                            LaneMask (&hit_rays)[kGroupCount], LaneMask& dirty, Locate locate) {
+    const TriangleHits<16> hits(test);
+    alignas(64) int32_t ray[16], part[16];
+    pairs.ray.store(ray), pairs.part.store(part);
+    for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(mask)), k = uint32_t(ray[lane]);
+        hit_rays[k / kGroupSize] |= 1u << k % kGroupSize;
+        dirty |= 1u << k / kGroupSize;
+        offer_hit(bundle.rays->hits[k], bundle.rays->t[k], bundle.instance, hits, lane,
+                  [&](uint32_t, float weight_b, float weight_c, cpu::TraceHit& hit) {
+                      locate(uint32_t(part[lane]), weight_b, weight_c, hit);
+                  });
+    }
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
