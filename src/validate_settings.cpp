@@ -12,8 +12,10 @@ namespace relief {
 
 namespace {
 
+constexpr const char* kWhere = "render settings";
+
 void require(bool condition, const char* message, const std::string& hint) {
-    if (!condition) throw Error(ErrorKind::usage, {message, "", hint});
+    if (!condition) throw Error(ErrorKind::usage, {message, kWhere, hint});
 }
 
 void require_traversal(const RenderSettings& s) {
@@ -27,7 +29,7 @@ void require_traversal(const RenderSettings& s) {
                 {fmt::format("the traversal {} does not go with the structure {} on the {} engine",
                              traversal_name(s.traversal), structure_name(s.structure),
                              s.engine == EngineKind::cpu ? "cpu" : "vulkan"),
-                 "", fmt::format("valid there: {}", fmt::join(names, ", "))});
+                 kWhere, fmt::format("valid there: {}", fmt::join(names, ", "))});
 }
 
 } // namespace

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <string>
+
+#include <fmt/format.h>
 
 #include "base/check.h"
 #include "relief/error.h"
@@ -130,9 +131,8 @@ class SuccinctBuild {
 
 [[noreturn]] void refuse_depth(int depth, int limit, const char* form) {
     throw Error(ErrorKind::out_of_memory,
-                {std::string("a tree of ") + std::to_string(depth) + " levels below its root does not fit " +
-                     form + ", which has room for " + std::to_string(limit),
-                 "", "give the builder a smaller greatest depth"});
+                {fmt::format("a tree of {} levels below its root does not fit, room is for {}", depth, limit),
+                 form, "give the builder a smaller greatest depth"});
 }
 
 } // namespace
@@ -143,7 +143,7 @@ DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
     if (bvh.nodes.empty()) return heap;
     const int depth = compute_depth(bvh);
     if (depth >= DenseHeap::kMaxLevels)
-        refuse_depth(depth, DenseHeap::kMaxLevels - 1, "a heap with empty slots");
+        refuse_depth(depth, DenseHeap::kMaxLevels - 1, "heap with empty slots");
     heap.levels = depth + 1;
     heap.primitive_ids = bvh.primitive_ids;
     TreeNode none{};
@@ -167,7 +167,7 @@ SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
     if (bvh.nodes.empty()) return {};
     const int depth = compute_depth(bvh);
     const int limit = int(scalar::kTrailLevels64);
-    if (depth > limit) refuse_depth(depth, limit, "a key of 64 bits");
+    if (depth > limit) refuse_depth(depth, limit, "succinct heap");
     return SuccinctBuild(bvh, axes).run();
 }
 

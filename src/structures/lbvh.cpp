@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -199,7 +201,8 @@ AxisBvh LbvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a bounding volume hierarchy holds at most 2^30 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "linear BVH",
+                     "split the scene into instances of several meshes"});
     return CompactBuild(boxes, config).run();
 }
 
@@ -208,7 +211,8 @@ DenseHeap LbvhBuilder::build_heap(std::span<const Box> boxes, const HeapConfig& 
     if (boxes.empty()) return {};
     if (boxes.size() > scalar::kNodeCountMask)
         throw Error(ErrorKind::out_of_memory,
-                    {"a heap of the linear builder holds less than 2^26 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for less than 2^26", boxes.size()),
+                     "linear BVH as a heap", "build it without a heap, or split the mesh"});
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(boxes.size());
     return HeapBuild(boxes, config.code_bits, levels).run();
 }

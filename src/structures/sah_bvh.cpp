@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -165,7 +167,8 @@ Bvh SahBvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a bounding volume hierarchy holds at most 2^30 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "SAH BVH",
+                     "split the scene into instances of several meshes"});
     return SahBuild(boxes, config).run();
 }
 

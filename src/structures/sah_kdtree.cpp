@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -89,8 +91,10 @@ class KdBuild {
         const uint64_t budget = uint64_t(double(boxes_.size()) * config_.max_duplication);
         build_node(make_root_set(), {bounds_, scalar::kNoNode, 0, budget}, output);
         if (output.nodes.size() > kMaxNodeCount)
-            throw Error(ErrorKind::out_of_memory, {"a kd-tree holds at most 2^30 nodes", "",
-                                                   "split the scene or allow a smaller depth"});
+            throw Error(ErrorKind::out_of_memory,
+                        {fmt::format("{} nodes are too many, room is for 2^30", output.nodes.size()),
+                         "kd-tree",
+                         "choose the structure bvh, or split the scene into instances of several meshes"});
         KdTree tree;
         tree.bounds = bounds_;
         tree.nodes = std::move(output.nodes);
@@ -281,8 +285,11 @@ KdTree SahKdTreeBuilder::build(std::span<const Box> boxes, const Config& config)
     if (boxes.size() > scalar::kNodeCountMask ||
         double(boxes.size()) * config.max_duplication > kMaxEntryCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a kd-tree holds less than 2^26 primitives, and 2^29 with repeated ones", "",
-                     "split the scene or allow fewer duplicates"});
+                    {fmt::format("{} primitives are too many, room is for less than 2^26, and for 2^29 with "
+                                 "{} entries each",
+                                 boxes.size(), config.max_duplication),
+                     "kd-tree",
+                     "choose the structure bvh, or split the scene into instances of several meshes"});
     return KdBuild(boxes, config).run();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "engine/vulkan/radix_sort.h"
 #include "relief/error.h"
@@ -24,11 +26,11 @@ constexpr std::array<Stage, BuildReport::kPartCount> kStages = {
 
 constexpr uint32_t kMostPrimitives = 1u << 30;
 
-void check_count(uint32_t count, uint32_t most) {
+void check_count(uint32_t count, uint32_t most, const char* where) {
     if (count > most)
-        throw Error(
-            ErrorKind::out_of_memory,
-            {"a linear tree holds at most 2^30 primitives, as a heap less than 2^26", "", "split the scene"});
+        throw Error(ErrorKind::out_of_memory,
+                    {fmt::format("{} primitives are too many, room is for {}", count, most), where,
+                     "build it on the host as another tree, or split the mesh"});
 }
 
 /// Kernels that read codes, for one width of them.
@@ -233,7 +235,7 @@ DeviceLbvhBuilder::~DeviceLbvhBuilder() = default;
 DeviceTree DeviceLbvhBuilder::build(const Input& input, const LbvhBuilder::Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= scalar::kNodeCountMask);
     Implementation& own = *implementation_;
-    check_count(input.count, kMostPrimitives);
+    check_count(input.count, kMostPrimitives, "linear BVH on the device");
     const uint64_t count = input.count, nodes = count > 0 ? 2 * count - 1 : 0;
     DeviceTree tree =
         make_device_tree(own.device, TreeForm::linked,
@@ -255,7 +257,7 @@ DeviceTree DeviceLbvhBuilder::build(const Input& input, const LbvhBuilder::Confi
 DeviceTree DeviceLbvhBuilder::build_heap(const Input& input, const LbvhBuilder::HeapConfig& config) {
     DCHECK(config.levels >= 0 && config.levels <= DenseHeap::kMaxLevels);
     Implementation& own = *implementation_;
-    check_count(input.count, scalar::kNodeCountMask);
+    check_count(input.count, scalar::kNodeCountMask, "linear BVH as a heap on the device");
     const uint32_t count = input.count;
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(count);
     const uint64_t slots = count > 0 ? uint64_t(1) << levels : 0;
