@@ -117,7 +117,7 @@ struct KdNode {
 const uint kKdNodeBytes = 8u;
 const uint kKdLeaf = 3u;
 
-/// Cell of a node, for the way back; kNoNode above the root.
+/// Cell of a node, for the way back, open where the root ends; kNoNode above the root.
 struct KdBox {
     Vec3 lower;
     uint parent;

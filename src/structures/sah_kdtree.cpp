@@ -70,6 +70,21 @@ Box cut_cell(Box cell, int axis, float lower, float upper) {
     return cell;
 }
 
+/// A ray leaves the tree at its end, which has slack, and not at the faces of the root: without a plane of
+/// their own there, cells are left where the way down ends them.
+void open_outer_faces(std::span<scalar::KdBox> cells, const Box& bounds) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    parallel_for("outer faces", cells.size(), 4096, [&](size_t begin, size_t end) {
+        for (scalar::KdBox& cell : cells.subspan(begin, end - begin))
+            for (int axis = 0; axis < 3; ++axis) {
+                if (get_component(cell.lower, axis) == get_component(bounds.lower, axis))
+                    set_component(cell.lower, axis, -kInfinity);
+                if (get_component(cell.upper, axis) == get_component(bounds.upper, axis))
+                    set_component(cell.upper, axis, kInfinity);
+            }
+    });
+}
+
 class KdBuild {
   public:
     KdBuild(std::span<const Box> boxes, const SahKdTreeBuilder::Config& config) : config_(config) {
@@ -100,6 +115,7 @@ class KdBuild {
         tree.nodes = std::move(output.nodes);
         tree.primitive_ids = std::move(output.ids);
         tree.cells = std::move(output.cells);
+        open_outer_faces(tree.cells, bounds_);
         tree.depth = output.depth;
         return tree;
     }
