@@ -39,7 +39,7 @@ struct Tracer::Implementation {
     void make_trees(const PreparedScene& scene, const RenderSettings& settings) {
         const TraversalKind traversal = choose_traversal(settings, EngineKind::cpu);
         if (traversal != TraversalKind::wide) {
-            walk_trees = make_walk_trees(scene, settings.structure, traversal);
+            walk_trees = make_walk_trees(scene, settings, EngineKind::cpu);
             walk = find_walk(traversal, walk_trees.depth);
             return;
         }
