@@ -129,45 +129,18 @@ class SuccinctBuild {
     SuccinctHeap heap_;
 };
 
-[[noreturn]] void refuse_depth(int depth, int limit, const char* form) {
-    throw Error(ErrorKind::out_of_memory,
-                {fmt::format("a tree of {} levels below its root does not fit, room is for {}", depth, limit),
-                 form, "give the builder a smaller greatest depth"});
-}
-
 } // namespace
-
-DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
-    DCHECK(axes.size() == bvh.nodes.size());
-    DenseHeap heap;
-    if (bvh.nodes.empty()) return heap;
-    const int depth = compute_depth(bvh);
-    if (depth >= DenseHeap::kMaxLevels)
-        refuse_depth(depth, DenseHeap::kMaxLevels - 1, "heap with empty slots");
-    heap.levels = depth + 1;
-    heap.primitive_ids = bvh.primitive_ids;
-    TreeNode none{};
-    none.word = scalar::kEmptySlot;
-    heap.slots.assign(size_t(1) << heap.levels, none);
-    std::vector<KeyedNode> pending{{1, 0}};
-    while (!pending.empty()) {
-        const KeyedNode node = pending.back();
-        pending.pop_back();
-        heap.slots[node.key] = make_heap_node(bvh, axes, node.node);
-        if (bvh.nodes[node.node].is_leaf()) continue;
-        const uint32_t first = bvh.nodes[node.node].first;
-        pending.push_back({2 * node.key, first});
-        pending.push_back({2 * node.key + 1, first + 1});
-    }
-    return heap;
-}
 
 SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
     DCHECK(axes.size() == bvh.nodes.size());
     if (bvh.nodes.empty()) return {};
     const int depth = compute_depth(bvh);
     const int limit = int(scalar::kTrailLevels64);
-    if (depth > limit) refuse_depth(depth, limit, "succinct heap");
+    if (depth > limit)
+        throw Error(
+            ErrorKind::out_of_memory,
+            {fmt::format("a tree of {} levels below its root does not fit, room is for {}", depth, limit),
+             "succinct heap", "give the builder a smaller greatest depth"});
     return SuccinctBuild(bvh, axes).run();
 }
 

@@ -40,10 +40,8 @@ struct SuccinctHeap {
     }
 };
 
-/// `axes` as for make_linked_bvh. Throws Error for more than DenseHeap::kMaxLevels levels.
-DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes);
-
-/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth helps.
+/// `axes` as for make_linked_bvh. Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth
+/// helps.
 SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes);
 
 /// Whether there is a node of that key. Of a succinct heap the directory alone is read.

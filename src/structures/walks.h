@@ -1,9 +1,8 @@
-// The walks of shared/traverse_*.h over the trees of this folder: the reference for the SIMD kernels and
-// those of a device, and what the CPU runs when a traversal is asked for by name.
+// The walks of shared/traverse_*.h over the trees of this folder: the reference for the
+// kernels of a device, and what the CPU runs when a traversal is asked for by name.
 //   closest_hit<TraversalKind::trail>(walk_view(heap), ray, leaf);
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -28,15 +27,6 @@ struct WalkCounts {
 struct NoCounts {};
 
 namespace scalar {
-
-struct PlainWalkView {
-    using Key = uint;
-    const Bvh& tree;
-
-    bool is_empty() const { return tree.nodes.empty(); }
-    TreeNode load_node(uint node) const { return std::bit_cast<TreeNode>(tree.nodes[node]); }
-    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
-};
 
 /// `Width`: uint or HeapKey, for the restart trail: trees of 30 or 62 levels.
 template <class Width> struct BvhWalkView {
@@ -285,15 +275,6 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCou
 bool any_hit(const View& view, const BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
     auto start = scalar::make_root_key(typename View::Key{});
     return any_hit_from<kTraversal>(view, start, ray, leaf, counts);
-}
-
-/// Of a tree as it is, by a full stack: what other structures are compared with.
-template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
-    closest_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
-}
-
-template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
-    return any_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 } // namespace relief

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "box_sets.h"
+#include "dense_heap.h"
 #include "relief/error.h"
 #include "structures/lbvh.h"
 #include "structures/sah_bvh.h"
@@ -146,7 +147,6 @@ TEST(SuccinctHeap, refuses_trees_that_are_deeper_than_its_keys) {
     const Bvh bvh = test::make_synthetic_bvh(test::make_chain(63, 0), random, ray, 0);
     const std::vector<uint8_t> axes = compute_axes(bvh);
     EXPECT_THROW(make_succinct_heap(bvh, axes), Error);
-    EXPECT_THROW(make_dense_heap(bvh, axes), Error);
     const Bvh limited = limit_depth(bvh, 62);
     EXPECT_NO_THROW(make_succinct_heap(limited, compute_axes(limited)));
 }
@@ -158,7 +158,7 @@ TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
         config.max_depth = 16;
         const Bvh bvh = SahBvhBuilder::build(set.boxes, config);
         const std::vector<uint8_t> axes = compute_axes(bvh);
-        const DenseHeap heap = make_dense_heap(bvh, axes);
+        const DenseHeap heap = test::make_dense_heap(bvh, axes);
         EXPECT_EQ(count_used_slots(heap), bvh.nodes.size());
         EXPECT_EQ(heap.slots[0].word, scalar::kEmptySlot);
         for (const KeyedNode& place : find_keys(bvh))
@@ -167,7 +167,6 @@ TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
 }
 
 TEST(Heaps, are_empty_without_primitives) {
-    EXPECT_TRUE(make_dense_heap({}, {}).slots.empty());
     EXPECT_TRUE(make_succinct_heap({}, {}).nodes.empty());
     EXPECT_TRUE(make_linked_bvh({}, {}).nodes.empty());
     EXPECT_EQ(compute_depth(Bvh{}), 0);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "dense_heap.h"
 #include "ray_cases.h"
 #include "structures/lbvh.h"
 #include "structures/sah_bvh.h"
@@ -77,7 +78,7 @@ template <test::Intersect kIntersect> class CaseMaker {
         }
         add<TraversalKind::trail>(name + ", wide trail", heap, wide_walk_view(*heap));
         add<TraversalKind::pair_trail>(name + ", wide pair trail", heap, wide_walk_view(*heap));
-        if (linked->depth < 18) add_dense(name + ", dense", make_dense_heap(bvh, axes));
+        if (linked->depth < 18) add_dense(name + ", dense", test::make_dense_heap(bvh, axes));
     }
 
     void add_dense(const std::string& name, DenseHeap heap) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "dense_heap.h"
 #include "ray_cases.h"
 #include "structures/sah_bvh.h"
 #include "structures/walks.h"
@@ -104,7 +105,8 @@ class ForestMaker {
         const Bvh bvh = SahBvhBuilder::build(boxes, config);
         const std::vector<uint8_t> axes = compute_axes(bvh);
         const uint node = forest_.add_links(make_linked_bvh(bvh, axes), first_entry, kind);
-        return {node, forest_.add_heap(make_dense_heap(bvh, axes), first_entry, kind), bvh.primitive_ids};
+        return {node, forest_.add_heap(test::make_dense_heap(bvh, axes), first_entry, kind),
+                bvh.primitive_ids};
     }
 
     void add_body(uint32_t body, const std::vector<uint32_t>& bodies) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "dense_heap.h"
 #include "structures/walks.h"
 #include "synthetic_trees.h"
 
@@ -22,7 +23,7 @@ class OrderCase {
           succinct_(make_succinct_heap(bvh, axes)),
           ray_(ray),
           limits_(limits) {
-        if (linked_.depth < 12) dense_ = make_dense_heap(bvh, axes);
+        if (linked_.depth < 12) dense_ = test::make_dense_heap(bvh, axes);
     }
 
     void expect_same_order() {
@@ -240,7 +241,7 @@ TEST(LeafOrder, remembers_the_leaf_that_stopped_a_ray) {
     std::mt19937 random(8);
     const test::SyntheticRay ray = test::make_synthetic_ray(0);
     const Bvh bvh = test::make_synthetic_bvh(test::make_random_shape(random, 9, 0.9, 200), random, ray, 0);
-    const DenseHeap heap = make_dense_heap(bvh, test::make_random_axes(bvh, random));
+    const DenseHeap heap = test::make_dense_heap(bvh, test::make_random_axes(bvh, random));
     for (const KeyedLeaf& wanted : find_leaf_keys(bvh)) {
         const auto leaf = [&](uint32_t id, const BoxRay&) { return id == wanted.id; };
         uint32_t trail_start = 1, pair_start = 1;

@@ -10,6 +10,7 @@
 #include "engine/vulkan/lbvh_builder.h"
 #include "engine/vulkan/tree_tracer.h"
 #include "relief/error.h"
+#include "structures/dense_heap.h"
 #include "structures/ray_cases.h"
 #include "structures/sah_bvh.h"
 #include "vulkan/gpu_fixture.h"
@@ -191,7 +192,7 @@ class Forest {
             add_heap(name + ", succinct", narrow, walk_view(succinct));
         add_heap(name + ", succinct, wide", widen(upload_tree(device_, succinct)), wide_walk_view(succinct));
         if (linked.depth >= 16) return;
-        const DenseHeap& dense = dense_.emplace_back(make_dense_heap(bvh, axes));
+        const DenseHeap& dense = dense_.emplace_back(test::make_dense_heap(bvh, axes));
         add_heap(name + ", dense", keep(upload_tree(device_, dense)), walk_view(dense));
     }
 
