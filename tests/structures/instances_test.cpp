@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <stdexcept>
 
 #include "dense_heap.h"
 #include "ray_cases.h"
@@ -207,7 +208,9 @@ template <TraversalKind kTraversal> class ForestWalker {
         object_ray_ = make_object_ray(origin, ray_.direction);
     }
 
-    TreeNode load_node(uint node) const {
+    TreeNode load_node(uint node) {
+        // A walk that is brought back wrongly may never end.
+        if (++loads_ > 100'000) throw std::runtime_error("the walk does not end");
         constexpr bool kIsHeap =
             kTraversal == TraversalKind::trail || kTraversal == TraversalKind::pair_trail;
         return kIsHeap ? forest_.slots[node] : forest_.nodes[node];
@@ -241,6 +244,7 @@ template <TraversalKind kTraversal> class ForestWalker {
     Nearest best_;
     std::function<void()> restore_; ///< the state outside of the instance
     uint instance_ = 0, heap_base_ = 0;
+    int loads_ = 0;
 };
 
 Nearest find_by_brute_force(const Forest& forest, BoxRay ray) {
