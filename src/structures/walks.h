@@ -90,7 +90,10 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
     bool run(Key start) {
         hit_leaf_ = start;
         if (view_.is_empty()) return false;
-        const bool is_complete = walk(start);
+        if constexpr (kTraversal == TraversalKind::stack) stack_walk = make_empty_stack();
+        if constexpr (kTraversal == TraversalKind::backtrack) DCHECK(!view_.tree.cells.empty());
+        start_walk(0u, start);
+        const bool is_complete = run_walk();
         DCHECK(is_complete);
         static_cast<void>(is_complete);
         return is_ended_;
@@ -100,56 +103,12 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
     Key hit_leaf() const { return hit_leaf_; }
 
   private:
-    bool walk(Key start) {
-        if constexpr (kTraversal == TraversalKind::stack) {
-            stack_walk = make_empty_stack();
-            start_stack(0u);
-            return walk_stack();
-        } else if constexpr (kTraversal == TraversalKind::restart_trail) {
-            restart_walk = start_restart_trail(0u, make_root_level());
-            return walk_restart_trail();
-        } else if constexpr (kTraversal == TraversalKind::parent_link) {
-            parent_walk = start_parent_link(0u);
-            return walk_parent_link();
-        } else if constexpr (kTraversal == TraversalKind::skip_link) {
-            skip_walk = start_skip_link(0u);
-            return walk_skip_link();
-        } else if constexpr (kTraversal == TraversalKind::trail) {
-            trail_walk = start_trail(start);
-            return walk_trail();
-        } else if constexpr (kTraversal == TraversalKind::pair_trail) {
-            pair_walk = start_pair_trail(start);
-            return walk_pair_trail();
-        } else {
-            return walk_kd();
-        }
-    }
-
-    bool walk_kd() {
-        const KdRay ray = make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper,
-                                      ray_.t_min, ray_.t_max);
-        if constexpr (kTraversal == TraversalKind::restart) {
-            kd_restart_walk = start_kd_restart(0u, ray);
-            return walk_kd_restart();
-        } else if constexpr (kTraversal == TraversalKind::push_down) {
-            kd_push_down_walk = start_kd_push_down(0u, ray);
-            return walk_kd_push_down();
-        } else {
-            DCHECK(!view_.tree.cells.empty());
-            kd_backtrack_walk = start_kd_backtrack(0u, ray);
-            return walk_kd_backtrack();
-        }
+    KdRay make_own_kd_ray() const {
+        return make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper, ray_.t_min,
+                           ray_.t_max);
     }
 
     static constexpr bool kIsCounting = requires(Counts & counts) { counts.bytes; };
-    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
-
-    static Key make_root_level() {
-        if constexpr (kIsWide)
-            return make_root_level64();
-        else
-            return make_root_level32();
-    }
 
     // The hooks of shared/tree.h.
     TreeNode load_node(uint node) const { return view_.load_node(node); }
@@ -201,16 +160,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
         if constexpr (kIsCounting) counts_.bytes += bytes;
     }
 
-#include "shared/succinct_heap.h"
-#include "shared/traverse_kd_backtrack.h"
-#include "shared/traverse_kd_push_down.h"
-#include "shared/traverse_kd_restart.h"
-#include "shared/traverse_pair_trail.h"
-#include "shared/traverse_parent_link.h"
-#include "shared/traverse_restart_trail.h"
-#include "shared/traverse_skip_link.h"
-#include "shared/traverse_stack.h"
-#include "shared/traverse_trail.h"
+#include "structures/walk_members-inl.h"
 
     const View view_;
     BoxRay& ray_;
