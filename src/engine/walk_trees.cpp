@@ -50,10 +50,10 @@ WalkTree make_tree(std::vector<Box> boxes, const RenderSettings& settings, Trave
     }
     const AxisBvh binary = build_binary(boxes, settings, max_leaf_size);
     if (traversal == TraversalKind::trail || traversal == TraversalKind::pair_trail) {
-        tree.heap = make_succinct_heap(binary.bvh, binary.axes);
+        tree.heap = make_succinct_heap(binary);
         return tree;
     }
-    tree.linked = make_linked_bvh(binary.bvh, binary.axes);
+    tree.linked = make_linked_bvh(binary);
     if (traversal != TraversalKind::parent_link) tree.linked.parents = {};
     if (traversal != TraversalKind::skip_link) tree.linked.skips = {};
     return tree;

@@ -82,7 +82,7 @@ class CompactBuild {
         const uint32_t count = uint32_t(boxes_.size());
         result_.bvh.nodes.resize(1 + 2 * size_t(cut_count_));
         result_.axes.resize(result_.bvh.nodes.size());
-        build_node({0, count}, 0);
+        result_.depth = build_node({0, count}, 0).depth;
         result_.bvh.primitive_ids = std::move(order_.ids);
         return std::move(result_);
     }
@@ -116,18 +116,23 @@ class CompactBuild {
         }
     }
 
-    Box build_node(const Range& range, uint32_t slot) {
+    struct Subtree {
+        Box box;
+        int depth = 0; ///< edges on the longest way down
+    };
+
+    Subtree build_node(const Range& range, uint32_t slot) {
         BvhNode& node = result_.bvh.nodes[slot];
         const bool is_one_code = order_.codes[range.begin] == order_.codes[range.last()];
         if (is_one_code && range.count() <= max_leaf_size_) {
             const Box box = compute_range_box(boxes_, order_.ids, range);
             node = {box.lower, range.begin, box.upper, range.count()};
-            return box;
+            return {box, 0};
         }
         const Cut cut = is_one_code ? cut_by_number(range) : cut_by_code(order_.codes, range);
         const uint32_t left_slot = 1 + 2 * numbers_[cut.cut];
         result_.axes[slot] = cut.axis;
-        Box left, right;
+        Subtree left, right;
         const auto build_left = [&] { left = build_node({range.begin, cut.cut}, left_slot); };
         const auto build_right = [&] { right = build_node({cut.cut, range.end}, left_slot + 1); };
         if (range.count() >= kParallelCount) {
@@ -136,9 +141,9 @@ class CompactBuild {
             build_left();
             build_right();
         }
-        const Box box = join(left, right);
+        const Box box = join(left.box, right.box);
         node = {box.lower, left_slot, box.upper, 0};
-        return box;
+        return {box, 1 + std::max(left.depth, right.depth)};
     }
 
     std::span<const Box> boxes_;

@@ -63,7 +63,8 @@ template <test::Intersect kIntersect> class CaseMaker {
     }
 
     void add_walks(const std::string& name, const Bvh& bvh, const std::vector<uint8_t>& axes) {
-        const auto linked = std::make_shared<const LinkedBvh>(make_linked_bvh(bvh, axes));
+        const auto linked =
+            std::make_shared<const LinkedBvh>(make_linked_bvh({bvh, axes, compute_depth(bvh)}));
         const auto view = walk_view(*linked);
         add<TraversalKind::stack>(name + ", stack", linked, view);
         add<TraversalKind::parent_link>(name + ", parent links", linked, view);
@@ -71,7 +72,8 @@ template <test::Intersect kIntersect> class CaseMaker {
         const bool is_narrow = linked->depth <= int(scalar::kTrailLevels32);
         if (is_narrow) add<TraversalKind::restart_trail>(name + ", restart trail", linked, view);
         add<TraversalKind::restart_trail>(name + ", wide restart trail", linked, wide_walk_view(*linked));
-        const auto heap = std::make_shared<const SuccinctHeap>(make_succinct_heap(bvh, axes));
+        const auto heap =
+            std::make_shared<const SuccinctHeap>(make_succinct_heap({bvh, axes, compute_depth(bvh)}));
         if (is_narrow) {
             add<TraversalKind::trail>(name + ", trail", heap, walk_view(*heap));
             add<TraversalKind::pair_trail>(name + ", pair trail", heap, walk_view(*heap));
@@ -192,7 +194,7 @@ TEST_P(Hits, from_the_leaf_of_the_last_hit_are_those_of_brute_force) {
     SahBvhBuilder::Config config;
     config.max_depth = int(scalar::kTrailLevels64);
     const Bvh bvh = SahBvhBuilder::build(set.boxes(), config);
-    const SuccinctHeap heap = make_succinct_heap(bvh, compute_axes(bvh));
+    const SuccinctHeap heap = make_succinct_heap(add_axes(bvh));
     expect_same_from_last_hit<TraversalKind::trail>(wide_walk_view(heap), set.triangles, 93);
     expect_same_from_last_hit<TraversalKind::pair_trail>(wide_walk_view(heap), set.triangles, 94);
 }

@@ -105,7 +105,8 @@ class ForestMaker {
         config.max_depth = 12;
         const Bvh bvh = SahBvhBuilder::build(boxes, config);
         const std::vector<uint8_t> axes = compute_axes(bvh);
-        const uint node = forest_.add_links(make_linked_bvh(bvh, axes), first_entry, kind);
+        const uint node =
+            forest_.add_links(make_linked_bvh({bvh, axes, compute_depth(bvh)}), first_entry, kind);
         return {node, forest_.add_heap(test::make_dense_heap(bvh, axes), first_entry, kind),
                 bvh.primitive_ids};
     }

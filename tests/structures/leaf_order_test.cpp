@@ -19,8 +19,8 @@ class OrderCase {
   public:
     OrderCase(const Bvh& bvh, const std::vector<uint8_t>& axes, const BoxRay& ray,
               const std::vector<float>& limits)
-        : linked_(make_linked_bvh(bvh, axes)),
-          succinct_(make_succinct_heap(bvh, axes)),
+        : linked_(make_linked_bvh({bvh, axes, compute_depth(bvh)})),
+          succinct_(make_succinct_heap({bvh, axes, compute_depth(bvh)})),
           ray_(ray),
           limits_(limits) {
         if (linked_.depth < 12) dense_ = test::make_dense_heap(bvh, axes);
@@ -224,7 +224,7 @@ TEST(LeafOrder, from_any_leaf_has_every_leaf_once) {
         const test::SyntheticRay ray = test::make_synthetic_ray(random());
         const Bvh bvh = test::make_synthetic_bvh(shape, random, ray, 0);
         const std::vector<uint8_t> axes = test::make_random_axes(bvh, random);
-        const SuccinctHeap heap = make_succinct_heap(bvh, axes);
+        const SuccinctHeap heap = make_succinct_heap({bvh, axes, compute_depth(bvh)});
         for (const KeyedLeaf& leaf : find_leaf_keys(bvh)) {
             const size_t count = bvh.primitive_ids.size();
             const scalar::HeapKey key{uint32_t(leaf.key), uint32_t(leaf.key >> 32)};

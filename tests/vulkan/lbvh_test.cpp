@@ -81,7 +81,7 @@ class DeviceLbvh : public GpuTest {
         const std::string name = set.name + ", " + std::to_string(config.code_bits) + " bits, leaves of " +
                                  std::to_string(config.max_leaf_size);
         const AxisBvh lbvh = LbvhBuilder::build(set.boxes, config);
-        const LinkedBvh expected = make_linked_bvh(lbvh.bvh, lbvh.axes);
+        const LinkedBvh expected = make_linked_bvh(lbvh);
         const DeviceTree found = builder_.build(upload_boxes(set.boxes), config);
         expect_same_nodes(found, expected.nodes, name);
         expect_same_words(found.primitive_ids, expected.primitive_ids, name + ": ids");
@@ -146,7 +146,7 @@ TEST_F(DeviceLbvh, of_a_mesh_is_that_of_its_triangles_boxes) {
     }
     const DeviceMesh mesh = upload_mesh(device(), positions, indices);
     const AxisBvh lbvh = LbvhBuilder::build(set.boxes, {});
-    expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh.bvh, lbvh.axes).nodes, "mesh");
+    expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh).nodes, "mesh");
     expect_same_nodes(builder_.build_heap(mesh, {}), LbvhBuilder::build_heap(set.boxes, {}).slots, "heap");
     EXPECT_THROW(upload_mesh(device(), positions, std::vector<uint32_t>{0, 1, 9000}), Error);
 }

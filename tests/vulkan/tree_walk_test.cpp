@@ -184,9 +184,10 @@ class Forest {
     const DeviceTree& keep(DeviceTree tree) { return trees_.emplace_back(std::move(tree)); }
 
     void add_linked(const std::string& name, const Bvh& bvh, const std::vector<uint8_t>& axes) {
-        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(bvh, axes));
+        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh({bvh, axes, compute_depth(bvh)}));
         add_links(name, keep(upload_tree(device_, linked)), linked);
-        const SuccinctHeap& succinct = succinct_.emplace_back(make_succinct_heap(bvh, axes));
+        const SuccinctHeap& succinct =
+            succinct_.emplace_back(make_succinct_heap({bvh, axes, compute_depth(bvh)}));
         const DeviceTree& narrow = keep(upload_tree(device_, succinct));
         if (narrow.depth <= int(scalar::kTrailLevels32))
             add_heap(name + ", succinct", narrow, walk_view(succinct));
@@ -198,7 +199,7 @@ class Forest {
 
     void add_built(DeviceLbvhBuilder& builder, const std::vector<Box>& boxes) {
         const AxisBvh lbvh = LbvhBuilder::build(boxes, {});
-        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(lbvh.bvh, lbvh.axes));
+        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(lbvh));
         add_links("LBVH of the device", keep(builder.build(mesh, {})), linked);
         const DenseHeap& dense = dense_.emplace_back(LbvhBuilder::build_heap(boxes, {}));
         add_heap("heap of the device", keep(builder.build_heap(mesh, {})), walk_view(dense));
@@ -407,7 +408,7 @@ class TreeTracing : public TreeBatch {
 
     DeviceTree make_linked() {
         const Bvh sah = SahBvhBuilder::build(boxes_, {});
-        return upload_tree(device(), make_linked_bvh(sah, compute_axes(sah)));
+        return upload_tree(device(), make_linked_bvh(add_axes(sah)));
     }
 
     TriangleSet set_;
