@@ -34,12 +34,12 @@ struct Cut {
 };
 
 void grow(Box& box, const Box& other) {
-    const auto lesser = [](float a, float b) { return a < b ? a : b; };
-    const auto greater = [](float a, float b) { return a > b ? a : b; };
-    box.lower = {lesser(box.lower.x, other.lower.x), lesser(box.lower.y, other.lower.y),
-                 lesser(box.lower.z, other.lower.z)};
-    box.upper = {greater(box.upper.x, other.upper.x), greater(box.upper.y, other.upper.y),
-                 greater(box.upper.z, other.upper.z)};
+    const auto get_lesser = [](float a, float b) { return a < b ? a : b; };
+    const auto get_greater = [](float a, float b) { return a > b ? a : b; };
+    box.lower = {get_lesser(box.lower.x, other.lower.x), get_lesser(box.lower.y, other.lower.y),
+                 get_lesser(box.lower.z, other.lower.z)};
+    box.upper = {get_greater(box.upper.x, other.upper.x), get_greater(box.upper.y, other.upper.y),
+                 get_greater(box.upper.z, other.upper.z)};
 }
 
 Box join(const Box& a, const Box& b) {

@@ -1,6 +1,6 @@
 // The walks of shared/traverse_*.h over the trees of this folder: the reference for the
 // kernels of a device, and what the CPU runs when a traversal is asked for by name.
-//   closest_hit<TraversalKind::trail>(walk_view(heap), ray, leaf);
+//   closest_hit<TraversalKind::trail>(make_walk_view(heap), ray, leaf);
 #pragma once
 
 #include <cstdint>
@@ -132,7 +132,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
 
     bool visit_leaf(uint first, uint word, uint) {
         const float limit = ray_.t_max;
-        for (uint k = 0; k < count_of_word(word) && !is_ended_; ++k) {
+        for (uint k = 0; k < get_word_count(word) && !is_ended_; ++k) {
             if constexpr (kIsCounting) ++counts_.primitive_tests;
             is_ended_ = leaf_(view_.primitive_ids()[first + k], ray_);
         }
@@ -147,7 +147,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
         if constexpr (requires { view_.get_heap_form(); })
             return find_succinct_slot(key);
         else
-            return low_word(key);
+            return get_low_word(key);
     }
 
     void count_box_test() {
@@ -178,12 +178,14 @@ inline HeapKey make_root_key(HeapKey) { return {1u, 0u}; }
 } // namespace scalar
 
 /// As narrow as the tree's depth allows; `wide` views for trees of more than kTrailLevels32 levels.
-inline scalar::BvhWalkView<uint32_t> walk_view(const LinkedBvh& tree) { return {tree}; }
-inline scalar::BvhWalkView<scalar::HeapKey> wide_walk_view(const LinkedBvh& tree) { return {tree}; }
-inline scalar::DenseWalkView walk_view(const DenseHeap& tree) { return {tree}; }
-inline scalar::SuccinctWalkView<uint32_t> walk_view(const SuccinctHeap& tree) { return {tree}; }
-inline scalar::SuccinctWalkView<scalar::HeapKey> wide_walk_view(const SuccinctHeap& tree) { return {tree}; }
-inline scalar::KdWalkView walk_view(const KdTree& tree) { return {tree}; }
+inline scalar::BvhWalkView<uint32_t> make_walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::BvhWalkView<scalar::HeapKey> make_wide_walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::DenseWalkView make_walk_view(const DenseHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<uint32_t> make_walk_view(const SuccinctHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<scalar::HeapKey> make_wide_walk_view(const SuccinctHeap& tree) {
+    return {tree};
+}
+inline scalar::KdWalkView make_walk_view(const KdTree& tree) { return {tree}; }
 
 /// As closest_hit below. The two trails may start at any node, `start`, which becomes the leaf of the hit, if
 /// there is one: rays that follow one another often end at the same things. Others start at the root.

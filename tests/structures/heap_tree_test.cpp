@@ -35,8 +35,8 @@ template <class Width> class SlotFinder {
     static constexpr uint kBrickLevels = scalar::kBrickLevels;
     static Key shift_right(const Key& key, uint count) { return scalar::shift_right(key, count); }
     static bool is_zero(const Key& key) { return scalar::is_zero(key); }
-    static uint level_of_key(const Key& key) { return scalar::level_of_key(key); }
-    static uint low_word(const Key& key) { return scalar::low_word(key); }
+    static uint get_key_level(const Key& key) { return scalar::get_key_level(key); }
+    static uint get_low_word(const Key& key) { return scalar::get_low_word(key); }
     static uint rank_bits(uint low, uint high, uint place) { return scalar::rank_bits(low, high, place); }
     HeapForm get_heap_form() const { return heap_.form; }
     HeapBlock load_heap_block(uint block) const { return heap_.blocks.at(block); }
@@ -74,7 +74,7 @@ void expect_same_node(const TreeNode& node, const Bvh& bvh, const std::vector<ui
         ASSERT_EQ(node.word, other.primitive_count);
     } else {
         ASSERT_FALSE(scalar::is_leaf_word(node.word));
-        ASSERT_EQ(scalar::axis_of_word(node.word), axes[index]);
+        ASSERT_EQ(scalar::get_word_axis(node.word), axes[index]);
     }
 }
 

@@ -168,7 +168,7 @@ template <TraversalKind kTraversal> class ForestWalker {
             enter_instance(first);
             return false;
         }
-        for (uint k = first; k < first + count_of_word(word); ++k) {
+        for (uint k = first; k < first + get_word_count(word); ++k) {
             const float t = test::intersect(ray_, forest_.triangles[k]);
             const uint32_t id = instance_ * 1000 + k;
             if (t == std::numeric_limits<float>::infinity()) continue;

@@ -83,7 +83,7 @@ void expect_order(const KdTree& tree, const BoxRay& ray, const std::vector<float
     WalkCounts counts;
     BoxRay shortened = ray;
     closest_hit<kTraversal>(
-        walk_view(tree), shortened,
+        make_walk_view(tree), shortened,
         [&](uint32_t entry, BoxRay& r) {
             entries.push_back(entry);
             r.t_max = std::min(r.t_max, limits[entry]);
@@ -102,7 +102,7 @@ void expect_order(const KdTree& tree, const BoxRay& ray, const std::vector<float
         r.t_max = std::min(r.t_max, limits[entry]);
         return entry == expected[last];
     };
-    ASSERT_TRUE(any_hit<kTraversal>(walk_view(tree), other, stop));
+    ASSERT_TRUE(any_hit<kTraversal>(make_walk_view(tree), other, stop));
     ASSERT_EQ(count, last + 1);
 }
 

@@ -195,8 +195,8 @@ template <test::Intersect kIntersect> class KdRays {
   private:
     template <TraversalKind kTraversal> int count_wrong(BoxRay ray, const Nearest& expected) const {
         NearestLeaf<kIntersect> leaf(triangles_);
-        const bool is_hit = any_hit<kTraversal>(walk_view(tree_), ray, AnyLeaf<kIntersect>(triangles_));
-        closest_hit<kTraversal>(walk_view(tree_), ray, leaf);
+        const bool is_hit = any_hit<kTraversal>(make_walk_view(tree_), ray, AnyLeaf<kIntersect>(triangles_));
+        closest_hit<kTraversal>(make_walk_view(tree_), ray, leaf);
         return leaf.best == expected && is_hit == expected.is_hit() ? 0 : 1;
     }
 

@@ -161,7 +161,7 @@ template <TraversalKind kTraversal, class Width> class SceneWalk {
 
     /// `word` of a kd leaf is its count.
     bool visit_leaf(uint first, uint word, uint) {
-        const uint count = count_of_word(word);
+        const uint count = get_word_count(word);
         if (instance_ == kNoIndex) {
             waiting_first_ = first, waiting_count_ = count;
             world_state_ = state();
