@@ -19,8 +19,8 @@ std::unique_ptr<TreeWorkshop> make_workshop(TriangleSoup soup, const RenderSetti
 #ifdef RELIEF_VULKAN
     return make_vulkan_tree_workshop(std::move(soup), settings);
 #else
-    throw Error(ErrorKind::device_missing,
-                {"this build has no Vulkan", "", "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
+    throw Error(ErrorKind::device_missing, {"this build has no Vulkan", "trees over a mesh",
+                                            "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
 #endif
 }
 

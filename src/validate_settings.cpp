@@ -1,6 +1,7 @@
 #include "validate_settings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@ namespace relief {
 
 namespace {
 
+constexpr const char* kWhere = "render settings";
+
 void require(bool condition, const char* message, const std::string& hint) {
-    if (!condition) throw Error(ErrorKind::usage, {message, "", hint});
+    if (!condition) throw Error(ErrorKind::usage, {message, kWhere, hint});
 }
 
 void require_traversal(const RenderSettings& s) {
@@ -27,7 +30,21 @@ void require_traversal(const RenderSettings& s) {
                 {fmt::format("the traversal {} does not go with the structure {} on the {} engine",
                              traversal_name(s.traversal), structure_name(s.structure),
                              s.engine == EngineKind::cpu ? "cpu" : "vulkan"),
-                 "", fmt::format("valid there: {}", fmt::join(names, ", "))});
+                 kWhere, fmt::format("valid there: {}", fmt::join(names, ", "))});
+}
+
+void require_costs(const RenderSettings& s) {
+    if (!s.sah_costs) return;
+    const auto is_cost = [](float cost) { return std::isfinite(cost) && cost > 0; };
+    require(is_cost(s.sah_costs->traversal) && is_cost(s.sah_costs->intersection),
+            "the costs of the surface-area heuristic are out of range", "above 0, finite");
+    const bool is_default_bvh = s.structure == StructureKind::bvh &&
+                                (s.traversal == TraversalKind::automatic ||
+                                 s.traversal == available_traversals(s.engine, StructureKind::bvh).front());
+    require(
+        s.structure != StructureKind::lbvh && !is_default_bvh,
+        "costs of the surface-area heuristic do not go with the linear BVH and the engine's default trees",
+        "structure kdtree, or bvh with another traversal than the default");
 }
 
 } // namespace
@@ -62,6 +79,7 @@ void validate_settings(const RenderSettings& s) {
     require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
             "engine = EngineKind::cpu");
     require_traversal(s);
+    require_costs(s);
     require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
             fmt::format("auto, or 0 to {}", kMaxLevel));
     require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,10 @@ struct RenderSettings {
     Isa isa = Isa::best;
     StructureKind structure = StructureKind::bvh;
     TraversalKind traversal = TraversalKind::automatic; ///< one of available_traversals()
+    /// Of the trees of structure kdtree, or of bvh for a traversal other than the engine's default: a bvh is
+    /// then built by a full sweep, and its leaves hold up to 8 polygons. None: what each structure has of
+    /// itself.
+    std::optional<SahCosts> sah_costs;
     SurfaceMode surface = SurfaceMode::direct;
     int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
     float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, > 0

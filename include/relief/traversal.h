@@ -20,6 +20,12 @@ enum class TraversalKind {
     backtrack
 };
 
+/// What the surface-area heuristic reckons with, relative to each other; those of GRAPP 2019.
+struct SahCosts {
+    float traversal = 3.0f;    ///< of one inner node, > 0
+    float intersection = 1.5f; ///< of one primitive, > 0
+};
+
 /// As the command spells it: "skip-link".
 const char* traversal_name(TraversalKind traversal);
 const char* structure_name(StructureKind structure);

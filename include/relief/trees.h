@@ -45,14 +45,16 @@ struct TreeBuildPart {
 
 struct TreeBuild {
     double seconds = 0;           ///< from boxes to a tree that can be walked; on a device from triangles
-    uint64_t bytes = 0;           ///< nodes, directories, ids; links not included
+    uint64_t bytes = 0;           ///< held for nodes, directories, ids; links not included
     uint64_t link_bytes = 0;      ///< what parent links, skip links or backtrack have besides, one of them
     uint64_t slots = 0, used = 0; ///< nodes that there is room for, and those that are there
     uint64_t entries = 0;         ///< ids in leaves: more than triangles in kd-trees
     int depth = 0;                ///< edges on the longest way down
     bool is_on_device = false;    ///< else the host built it
     std::vector<TreeBuildPart> parts; ///< of a build on a device
-    double bound_share = 0; ///< of the rate that memory traffic alone allows; 0: not built on a device
+    /// Of the rate that the least memory traffic of such a build allows (docs/structures/lbvh.md); 0: not
+    /// built on a device.
+    double bound_share = 0;
 };
 
 enum class HitKind { closest, any };

@@ -13,8 +13,8 @@ std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
 #ifdef RELIEF_VULKAN
     return make_vulkan_engine(std::move(scene), settings);
 #else
-    throw Error(ErrorKind::device_missing,
-                {"this build has no Vulkan", "", "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
+    throw Error(ErrorKind::device_missing, {"this build has no Vulkan", "render settings",
+                                            "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
 #endif
 }
 

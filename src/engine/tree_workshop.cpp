@@ -24,9 +24,6 @@ AxisBvh build_linear(std::span<const Box> boxes, int code_bits) {
     return limit_depth(LbvhBuilder::build(boxes, config), kMostLevels);
 }
 
-LinkedBvh link(const AxisBvh& binary) { return make_linked_bvh(binary.bvh, binary.axes); }
-SuccinctHeap pack(const AxisBvh& binary) { return make_succinct_heap(binary.bvh, binary.axes); }
-
 SahBvhBuilder::Config make_wide_config() {
     SahBvhBuilder::Config config;
     config.method = SahBvhBuilder::Method::sweep;
@@ -38,19 +35,19 @@ SahBvhBuilder::Config make_wide_config() {
 HostTree build_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) {
     switch (kind) {
     case TreeKind::sah:
-        return link(build_sah(boxes, {}));
+        return make_linked_bvh(build_sah(boxes, {}));
     case TreeKind::sah_wide:
-        return link(build_sah(boxes, make_wide_config()));
+        return make_linked_bvh(build_sah(boxes, make_wide_config()));
     case TreeKind::lbvh30:
-        return link(build_linear(boxes, 30));
+        return make_linked_bvh(build_linear(boxes, 30));
     case TreeKind::lbvh63:
-        return link(build_linear(boxes, 63));
+        return make_linked_bvh(build_linear(boxes, 63));
     case TreeKind::heap:
         return LbvhBuilder::build_heap(boxes, {30, heap_levels});
     case TreeKind::succinct_lbvh:
-        return pack(build_linear(boxes, 30));
+        return make_succinct_heap(build_linear(boxes, 30));
     case TreeKind::succinct_sah:
-        return pack(build_sah(boxes, {}));
+        return make_succinct_heap(build_sah(boxes, {}));
     case TreeKind::kdtree:
         break;
     }

@@ -12,9 +12,10 @@ namespace relief {
 namespace {
 
 constexpr uint32_t kPolygonsOfALeaf = 4;
+constexpr uint32_t kMostPolygonsOfALeaf = 8; ///< where costs decide
 
-AxisBvh build_binary(std::span<const Box> boxes, StructureKind structure, uint32_t max_leaf_size) {
-    if (structure == StructureKind::lbvh) {
+AxisBvh build_binary(std::span<const Box> boxes, const RenderSettings& settings, uint32_t max_leaf_size) {
+    if (settings.structure == StructureKind::lbvh) {
         LbvhBuilder::Config config;
         config.max_leaf_size = max_leaf_size;
         static_assert(LbvhBuilder::Config{}.code_bits + 30 <= int(scalar::kTrailLevels64));
@@ -23,26 +24,36 @@ AxisBvh build_binary(std::span<const Box> boxes, StructureKind structure, uint32
     SahBvhBuilder::Config config;
     config.max_leaf_size = max_leaf_size;
     config.max_depth = int(scalar::kTrailLevels64);
+    if (settings.sah_costs) {
+        config.method = SahBvhBuilder::Method::sweep;
+        config.traversal_cost = settings.sah_costs->traversal;
+        config.intersection_cost = settings.sah_costs->intersection;
+        if (max_leaf_size > 1) config.max_leaf_size = kMostPolygonsOfALeaf;
+    }
     return add_axes(SahBvhBuilder::build(boxes, config));
 }
 
-WalkTree make_tree(std::vector<Box> boxes, StructureKind structure, TraversalKind traversal,
+WalkTree make_tree(std::vector<Box> boxes, const RenderSettings& settings, TraversalKind traversal,
                    uint32_t max_leaf_size) {
     WalkTree tree;
     for (const Box& box : boxes) tree.bounds.extend(box);
-    if (structure == StructureKind::kdtree) {
+    if (settings.structure == StructureKind::kdtree) {
         SahKdTreeBuilder::Config config;
+        if (settings.sah_costs) {
+            config.traversal_cost = settings.sah_costs->traversal;
+            config.intersection_cost = settings.sah_costs->intersection;
+        }
         if (traversal == TraversalKind::backtrack) config.cells = SahKdTreeBuilder::Cells::kept;
         tree.kd = SahKdTreeBuilder::build(boxes, config);
         tree.boxes = std::move(boxes);
         return tree;
     }
-    const AxisBvh binary = build_binary(boxes, structure, max_leaf_size);
+    const AxisBvh binary = build_binary(boxes, settings, max_leaf_size);
     if (traversal == TraversalKind::trail || traversal == TraversalKind::pair_trail) {
-        tree.heap = make_succinct_heap(binary.bvh, binary.axes);
+        tree.heap = make_succinct_heap(binary);
         return tree;
     }
-    tree.linked = make_linked_bvh(binary.bvh, binary.axes);
+    tree.linked = make_linked_bvh(binary);
     if (traversal != TraversalKind::parent_link) tree.linked.parents = {};
     if (traversal != TraversalKind::skip_link) tree.linked.skips = {};
     return tree;
@@ -69,17 +80,17 @@ TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine
                : settings.traversal;
 }
 
-WalkTrees make_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal) {
+WalkTrees make_walk_trees(const PreparedScene& scene, const RenderSettings& settings, EngineKind engine) {
     WalkTrees trees;
-    trees.traversal = traversal;
+    const TraversalKind traversal = trees.traversal = choose_traversal(settings, engine);
     std::vector<Box> bounds;
     for (const Surface& surface : scene.surfaces) {
-        trees.surfaces.push_back(make_tree(compute_patch_boxes(surface), structure, traversal,
+        trees.surfaces.push_back(make_tree(compute_patch_boxes(surface), settings, traversal,
                                            surface.has_displacement ? 1 : kPolygonsOfALeaf));
         bounds.push_back(trees.surfaces.back().bounds);
         trees.depth = std::max(trees.depth, trees.surfaces.back().depth());
     }
-    trees.instances = make_tree(compute_instance_boxes(scene, bounds), structure, traversal, 1);
+    trees.instances = make_tree(compute_instance_boxes(scene, bounds), settings, traversal, 1);
     trees.depth = std::max(trees.depth, trees.instances.depth());
     return trees;
 }

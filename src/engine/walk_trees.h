@@ -34,7 +34,7 @@ struct WalkTrees {
 /// What RenderSettings::traversal means for an engine.
 TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine);
 
-/// `traversal` goes with `structure` and is not automatic.
-WalkTrees make_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal);
+/// Of `settings` structure, traversal and sah_costs.
+WalkTrees make_walk_trees(const PreparedScene& scene, const RenderSettings& settings, EngineKind engine);
 
 } // namespace relief

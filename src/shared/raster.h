@@ -101,24 +101,31 @@ FN ScreenBox add_point(ScreenBox box, SeenPoint p) {
     return result;
 }
 
+/// One coordinate of a seen point, times its distance before or behind the camera, and that distance.
+struct SeenCoordinate {
+    float at, error;
+    float distance, distance_error;
+};
+
 /// A coordinate where the segment from a point in front to one behind passes the camera, times something
 /// positive: its sign tells which way the segment leaves the picture. 0: unknown.
-FN float find_way_out(float front, float front_error, float behind, float behind_error, Vec2 distances,
-                      Vec2 errors) {
-    float crossing = front * distances.y + behind * distances.x;
-    float error = front_error * distances.y + behind_error * distances.x + abs(front) * errors.y +
-                  abs(behind) * errors.x +
-                  kRasterSlack * (abs(front) * distances.y + abs(behind) * distances.x);
+FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
+    float crossing = front.at * behind.distance + behind.at * front.distance;
+    float error = front.error * behind.distance + behind.error * front.distance +
+                  abs(front.at) * behind.distance_error + abs(behind.at) * front.distance_error +
+                  kRasterSlack * (abs(front.at) * behind.distance + abs(behind.at) * front.distance);
     return abs(crossing) > 2.0f * error ? crossing : 0.0f;
 }
 
 /// With what is in front of the camera of the segment between a point there and one behind it.
 FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
     float all = uintBitsToFloat(0x7f800000u);
-    Vec2 distances = {front.at.z, -behind.at.z};
-    Vec2 errors = {front.error.z, behind.error.z};
-    float x = find_way_out(front.at.x, front.error.x, behind.at.x, behind.error.x, distances, errors);
-    float y = find_way_out(front.at.y, front.error.y, behind.at.y, behind.error.y, distances, errors);
+    SeenCoordinate front_x = {front.at.x, front.error.x, front.at.z, front.error.z};
+    SeenCoordinate front_y = {front.at.y, front.error.y, front.at.z, front.error.z};
+    SeenCoordinate behind_x = {behind.at.x, behind.error.x, -behind.at.z, behind.error.z};
+    SeenCoordinate behind_y = {behind.at.y, behind.error.y, -behind.at.z, behind.error.z};
+    float x = find_way_out(front_x, behind_x);
+    float y = find_way_out(front_y, behind_y);
     ScreenBox result = {x > 0.0f ? box.x0 : -all, y > 0.0f ? box.y0 : -all, x < 0.0f ? box.x1 : all,
                         y < 0.0f ? box.y1 : all};
     return result;

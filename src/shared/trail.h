@@ -66,27 +66,27 @@ FN HeapKey clear_below(HeapKey bits, HeapKey level) {
 }
 
 /// 0 for 0.
-FN uint lowest_bit(uint bits) { return bits & (~bits + 1u); }
-FN HeapKey lowest_bit(HeapKey bits) {
-    HeapKey lowest = {lowest_bit(bits.low), bits.low != 0u ? 0u : lowest_bit(bits.high)};
+FN uint get_lowest_bit(uint bits) { return bits & (~bits + 1u); }
+FN HeapKey get_lowest_bit(HeapKey bits) {
+    HeapKey lowest = {get_lowest_bit(bits.low), bits.low != 0u ? 0u : get_lowest_bit(bits.high)};
     return lowest;
 }
 
 /// 0 for 0, where findMSB says -1.
-FN uint highest_bit(uint bits) { return bits == 0u ? 0u : 1u << uint(findMSB(bits)); }
-FN HeapKey highest_bit(HeapKey bits) {
-    HeapKey highest = {bits.high != 0u ? 0u : highest_bit(bits.low), highest_bit(bits.high)};
+FN uint get_highest_bit(uint bits) { return bits == 0u ? 0u : 1u << uint(findMSB(bits)); }
+FN HeapKey get_highest_bit(HeapKey bits) {
+    HeapKey highest = {bits.high != 0u ? 0u : get_highest_bit(bits.low), get_highest_bit(bits.high)};
     return highest;
 }
 
 /// Level of a key that is not 0: the root's is 0.
-FN uint level_of_key(uint key) { return uint(findMSB(key)); }
-FN uint level_of_key(HeapKey key) {
-    return key.high != 0u ? 32u + level_of_key(key.high) : level_of_key(key.low);
+FN uint get_key_level(uint key) { return uint(findMSB(key)); }
+FN uint get_key_level(HeapKey key) {
+    return key.high != 0u ? 32u + get_key_level(key.high) : get_key_level(key.low);
 }
 
-FN uint low_word(uint bits) { return bits; }
-FN uint low_word(HeapKey bits) { return bits.low; }
+FN uint get_low_word(uint bits) { return bits; }
+FN uint get_low_word(HeapKey bits) { return bits.low; }
 
 /// 2 bits + bit.
 FN uint append_bit(uint bits, uint bit) { return (bits << 1u) | bit; }
@@ -101,61 +101,61 @@ FN HeapKey flip_lowest(HeapKey bits) {
     return flipped;
 }
 
-FN uint sibling_key(uint key) { return flip_lowest(key); }
-FN HeapKey sibling_key(HeapKey key) { return flip_lowest(key); }
+FN uint get_sibling_key(uint key) { return flip_lowest(key); }
+FN HeapKey get_sibling_key(HeapKey key) { return flip_lowest(key); }
 
 // Trail of finished siblings (Murguia et al. 2013): below a leading 1 one bit a level, 1: the child visited
 // second is under way or done. What to do after a node: its lowest levels that are 1 are finished, the next
 // sibling up is due.
 
 /// To start at any node: nothing finished.
-FN uint make_trail(uint key) { return highest_bit(key); }
-FN HeapKey make_trail(HeapKey key) { return highest_bit(key); }
+FN uint make_trail(uint key) { return get_highest_bit(key); }
+FN HeapKey make_trail(HeapKey key) { return get_highest_bit(key); }
 
 /// 1 where all levels are finished.
-FN uint next_trail(uint trail) { return shift_right(trail, count_trailing_ones(trail)) + 1u; }
-FN HeapKey next_trail(HeapKey trail) {
+FN uint find_next_trail(uint trail) { return shift_right(trail, count_trailing_ones(trail)) + 1u; }
+FN HeapKey find_next_trail(HeapKey trail) {
     HeapKey one = {1u, 0u};
     return add_bits(shift_right(trail, count_trailing_ones(trail)), one);
 }
 
 /// 0 where all levels are finished: then all bits of the trail are 1, the leading one too.
-FN uint next_key(uint key, uint trail) {
+FN uint find_next_key(uint key, uint trail) {
     uint finished = count_trailing_ones(trail);
-    return is_zero(shift_right(trail, finished)) ? 0u : sibling_key(shift_right(key, finished));
+    return is_zero(shift_right(trail, finished)) ? 0u : get_sibling_key(shift_right(key, finished));
 }
-FN HeapKey next_key(HeapKey key, HeapKey trail) {
+FN HeapKey find_next_key(HeapKey key, HeapKey trail) {
     uint finished = count_trailing_ones(trail);
     HeapKey none = {0u, 0u};
     if (is_zero(shift_right(trail, finished))) return none;
-    return sibling_key(shift_right(key, finished));
+    return get_sibling_key(shift_right(key, finished));
 }
 
 // Trail of postponed siblings (Binder and Keller 2016): one bit a level, 1: the sibling is still to be
 // visited.
 
 /// To start at any node: every sibling on the way to the root postponed.
-FN uint make_postponed(uint key) { return key == 0u ? 0u : highest_bit(key) - 1u; }
+FN uint make_postponed(uint key) { return key == 0u ? 0u : get_highest_bit(key) - 1u; }
 FN HeapKey make_postponed(HeapKey key) {
-    HeapKey top = highest_bit(key);
+    HeapKey top = get_highest_bit(key);
     HeapKey below = {top.high != 0u ? 0xffffffffu : top.low - 1u, top.high != 0u ? top.high - 1u : 0u};
     return is_zero(key) ? key : below;
 }
 
 /// 0 where nothing is postponed.
-FN uint postponed_key(uint key, uint trail) {
-    return trail == 0u ? 0u : sibling_key(shift_right(key, count_trailing_zeros(trail)));
+FN uint find_postponed_key(uint key, uint trail) {
+    return trail == 0u ? 0u : get_sibling_key(shift_right(key, count_trailing_zeros(trail)));
 }
-FN HeapKey postponed_key(HeapKey key, HeapKey trail) {
+FN HeapKey find_postponed_key(HeapKey key, HeapKey trail) {
     HeapKey none = {0u, 0u};
     if (is_zero(trail)) return none;
-    return sibling_key(shift_right(key, count_trailing_zeros(trail)));
+    return get_sibling_key(shift_right(key, count_trailing_zeros(trail)));
 }
 
-FN uint postponed_trail(uint trail) {
+FN uint find_postponed_trail(uint trail) {
     return trail == 0u ? 0u : flip_lowest(shift_right(trail, count_trailing_zeros(trail)));
 }
-FN HeapKey postponed_trail(HeapKey trail) {
+FN HeapKey find_postponed_trail(HeapKey trail) {
     if (is_zero(trail)) return trail;
     return flip_lowest(shift_right(trail, count_trailing_zeros(trail)));
 }

@@ -1,7 +1,8 @@
 // Kd-tree, after every leaf up the parents to the first cell that the ray has not left yet (Foley and
 // Sugerman 2005). A cell is left where the nearest of its planes is crossed, by the operations that the way
-// down used; one without thickness would be left before it is entered, so the builder must make none.
-// Included as tree.h says.
+// down used; one without thickness would be left before it is entered, so the builder must make none. Cells
+// are open where the root ends: the ray's end, which has slack, comes behind its faces, and other walks go on
+// to that end. So this one visits the same leaves. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_KD_BACKTRACK_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_KD_BACKTRACK_H

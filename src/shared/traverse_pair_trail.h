@@ -32,8 +32,8 @@ PairTrailState start_pair_trail(Key key) {
 
 void leave_pair() {
     pair_walk.is_tested = 0u;
-    pair_walk.key = postponed_key(pair_walk.key, pair_walk.trail);
-    pair_walk.trail = postponed_trail(pair_walk.trail);
+    pair_walk.key = find_postponed_key(pair_walk.key, pair_walk.trail);
+    pair_walk.trail = find_postponed_trail(pair_walk.trail);
 }
 
 /// The node itself has to be read again; that its box is tested against the nearer limit costs no bytes.

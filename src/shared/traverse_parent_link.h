@@ -25,7 +25,9 @@ ParentLinkState start_parent_link(uint root) {
     return state;
 }
 
-uint near_child(TreeNode data) { return data.first + (is_axis_backward(axis_of_word(data.word)) ? 1u : 0u); }
+uint find_near_child(TreeNode data) {
+    return data.first + (is_axis_backward(get_word_axis(data.word)) ? 1u : 0u);
+}
 
 void go_to_sibling(uint pair) {
     parent_walk.node = pair + pair + 1u - parent_walk.node;
@@ -54,7 +56,7 @@ void climb_to_parent() {
     uint parent = load_parent(parent_walk.node);
     TreeNode data = load_node(parent);
     count_bytes(4u + kNodeBytes);
-    if (parent_walk.node == near_child(data))
+    if (parent_walk.node == find_near_child(data))
         go_to_sibling(data.first);
     else
         parent_walk.node = parent;
@@ -77,7 +79,7 @@ bool walk_parent_link() {
         count_box_test();
         bool is_met = enter_box(data) < make_infinity();
         if (is_met && !is_leaf_word(data.word)) {
-            parent_walk.node = near_child(data);
+            parent_walk.node = find_near_child(data);
             parent_walk.from = kFromParent;
             parent_walk.pair = data.first;
             continue;

@@ -64,12 +64,12 @@ void leave_level() {
         uint place = restart_walk.stack_top & (kShortStackSize - 1u);
         restart_walk.node = short_stack_nodes[place];
         restart_walk.entry = short_stack_entries[place];
-        restart_walk.level = lowest_bit(restart_walk.trail);
+        restart_walk.level = get_lowest_bit(restart_walk.trail);
     } else {
         count_restart();
         restart_walk.node = restart_walk.root;
         restart_walk.entry = 0.0f;
-        restart_walk.level = highest_bit(restart_walk.trail);
+        restart_walk.level = get_highest_bit(restart_walk.trail);
     }
 }
 

@@ -37,13 +37,13 @@ bool walk_trail() {
         count_box_test();
         bool is_met = enter_box(data) < make_infinity();
         if (is_met && !is_leaf_word(data.word)) {
-            trail_walk.key = append_bit(trail_walk.key, is_axis_backward(axis_of_word(data.word)) ? 1u : 0u);
+            trail_walk.key = append_bit(trail_walk.key, is_axis_backward(get_word_axis(data.word)) ? 1u : 0u);
             trail_walk.trail = append_bit(trail_walk.trail, 0u);
             continue;
         }
         if (is_met) trail_walk.leaf = trail_walk.key;
-        trail_walk.key = next_key(trail_walk.key, trail_walk.trail);
-        trail_walk.trail = next_trail(trail_walk.trail);
+        trail_walk.key = find_next_key(trail_walk.key, trail_walk.trail);
+        trail_walk.trail = find_next_trail(trail_walk.trail);
         if (is_met && visit_leaf(data.first, data.word, slot)) return true;
     }
     return false;

@@ -1,10 +1,10 @@
 // Layouts of the trees that traverse_*.h walk, and what those expect of their includer.
 //
 // traverse_*.h are no formulas but loops: GLSL includes them after the hooks below are declared, C++ includes
-// them in the body of a class that has the hooks as members (structures/walks.h). Hence they are not in
-// all.h. Each has a state of a few words, in a global variable or member: start_x(root) makes it, walk_x()
-// goes on from it. They move the state on before they visit a leaf; so a leaf that is an instance saves the
-// state and puts that of another tree in its place, and resume_walk() brings the old one back.
+// them in the body of a class that has the hooks as members (structures/walk_members-inl.h). Hence they are
+// not in all.h. Each has a state of a few words, in a global variable or member: start_x(root) makes it,
+// walk_x() goes on from it. They move the state on before they visit a leaf; so a leaf that is an instance
+// saves the state and puts that of another tree in its place, and resume_walk() brings the old one back.
 //
 // Hooks of all walks:
 // - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the walk.
@@ -62,8 +62,8 @@ const uint kNodeAxisMask = 0x0c000000u;
 const uint kEmptySlot = 0xf3ffffffu; ///< word of a heap slot without a node: no walk comes there
 
 FN bool is_leaf_word(uint word) { return (word & ~kNodeAxisMask) != 0u; }
-FN uint count_of_word(uint word) { return word & kNodeCountMask; }
-FN uint axis_of_word(uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
+FN uint get_word_count(uint word) { return word & kNodeCountMask; }
+FN uint get_word_axis(uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
 FN uint make_inner_word(uint axis) { return axis << kNodeAxisShift; }
 
 /// What enter_box returns for a ray's interval.
@@ -117,7 +117,7 @@ struct KdNode {
 const uint kKdNodeBytes = 8u;
 const uint kKdLeaf = 3u;
 
-/// Cell of a node, for the way back; kNoNode above the root.
+/// Cell of a node, for the way back, open where the root ends; kNoNode above the root.
 struct KdBox {
     Vec3 lower;
     uint parent;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <string>
+
+#include <fmt/format.h>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -15,10 +17,11 @@ using scalar::HeapBlock;
 using scalar::HeapBrick;
 using scalar::kBrickLevels;
 
-TreeNode make_heap_node(const Bvh& bvh, std::span<const uint8_t> axes, uint32_t index) {
-    TreeNode node = std::bit_cast<TreeNode>(bvh.nodes[index]);
+TreeNode make_heap_node(const AxisBvh& tree, uint32_t index) {
+    const BvhNode& source = tree.bvh.nodes[index];
+    TreeNode node = std::bit_cast<TreeNode>(source);
     // The way down follows from the key.
-    if (!bvh.nodes[index].is_leaf()) node.first = 0, node.word = scalar::make_inner_word(axes[index]);
+    if (!source.is_leaf()) node.first = 0, node.word = scalar::make_inner_word(tree.axes[index]);
     return node;
 }
 
@@ -35,34 +38,40 @@ struct KeyedNode {
     uint32_t node;
 };
 
-/// Level by level, in the order of keys: pairs get their slots in the order in which their parents come.
+/// Level by level, in the order of keys: pairs get their slots in the order in which their parents come. One
+/// thread finds the order; all of them copy the nodes.
 class SuccinctBuild {
   public:
-    SuccinctBuild(const Bvh& bvh, std::span<const uint8_t> axes) : bvh_(bvh), axes_(axes) {}
+    explicit SuccinctBuild(const AxisBvh& tree) : tree_(tree), bvh_(tree.bvh) {}
 
     SuccinctHeap run() {
-        heap_.depth = compute_depth(bvh_);
+        heap_.depth = tree_.depth;
         heap_.primitive_ids = bvh_.primitive_ids;
         const uint32_t pairs = uint32_t(bvh_.nodes.size() / 2);
         // Four to eight bits of the flat part a pair: most nodes are found by one look into it.
         const int levels = pairs > 0 ? int(std::bit_width(pairs)) + 1 : 0;
         heap_.form.flat_levels = uint32_t(std::min(levels, heap_.depth));
         heap_.blocks.resize(((size_t(2) << heap_.form.flat_levels) + 63) / 64);
-        heap_.nodes.reserve(bvh_.nodes.size() + 1);
-        TreeNode none{};
-        none.word = scalar::kEmptySlot;
-        heap_.nodes = {none, make_heap_node(bvh_, axes_, 0)};
+        first_children_.reserve(pairs);
         add_flat_levels();
         for (size_t k = 0; k < brick_roots_.size(); ++k) add_brick(brick_roots_[k]);
         rank_blocks();
+        copy_nodes();
         return std::move(heap_);
     }
 
   private:
-    void add_pair(uint32_t node) {
-        const uint32_t first = bvh_.nodes[node].first;
-        heap_.nodes.push_back(make_heap_node(bvh_, axes_, first));
-        heap_.nodes.push_back(make_heap_node(bvh_, axes_, first + 1));
+    void add_pair(uint32_t node) { first_children_.push_back(bvh_.nodes[node].first); }
+
+    void copy_nodes() {
+        heap_.nodes.resize(bvh_.nodes.size() + 1);
+        heap_.nodes[0].word = scalar::kEmptySlot;
+        heap_.nodes[1] = make_heap_node(tree_, 0);
+        parallel_for("heap_nodes", first_children_.size(), 8192, [&](size_t begin, size_t end) {
+            for (size_t pair = begin; pair < end; ++pair)
+                for (uint32_t side = 0; side < 2; ++side)
+                    heap_.nodes[2 + 2 * pair + side] = make_heap_node(tree_, first_children_[pair] + side);
+        });
     }
 
     void add_children(std::vector<KeyedNode>& list, const KeyedNode& parent) const {
@@ -93,7 +102,7 @@ class SuccinctBuild {
 
     void add_brick(uint32_t root) {
         HeapBrick brick{};
-        brick.first_pair = uint32_t(heap_.nodes.size() / 2 - 1);
+        brick.first_pair = uint32_t(first_children_.size());
         brick.first_brick = uint32_t(brick_roots_.size());
         std::vector<KeyedNode> level{{1, root}};
         for (uint32_t depth = 0; depth <= kBrickLevels; ++depth) {
@@ -122,53 +131,25 @@ class SuccinctBuild {
         }
     }
 
+    const AxisBvh& tree_;
     const Bvh& bvh_;
-    std::span<const uint8_t> axes_;
-    std::vector<uint32_t> brick_roots_; ///< in the order of brick numbers
+    std::vector<uint32_t> first_children_; ///< left node of each pair
+    std::vector<uint32_t> brick_roots_;    ///< in the order of brick numbers
     SuccinctHeap heap_;
 };
 
-[[noreturn]] void refuse_depth(int depth, int limit, const char* form) {
-    throw Error(ErrorKind::out_of_memory,
-                {std::string("a tree of ") + std::to_string(depth) + " levels below its root does not fit " +
-                     form + ", which has room for " + std::to_string(limit),
-                 "", "give the builder a smaller greatest depth"});
-}
-
 } // namespace
 
-DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
-    DCHECK(axes.size() == bvh.nodes.size());
-    DenseHeap heap;
-    if (bvh.nodes.empty()) return heap;
-    const int depth = compute_depth(bvh);
-    if (depth >= DenseHeap::kMaxLevels)
-        refuse_depth(depth, DenseHeap::kMaxLevels - 1, "a heap with empty slots");
-    heap.levels = depth + 1;
-    heap.primitive_ids = bvh.primitive_ids;
-    TreeNode none{};
-    none.word = scalar::kEmptySlot;
-    heap.slots.assign(size_t(1) << heap.levels, none);
-    std::vector<KeyedNode> pending{{1, 0}};
-    while (!pending.empty()) {
-        const KeyedNode node = pending.back();
-        pending.pop_back();
-        heap.slots[node.key] = make_heap_node(bvh, axes, node.node);
-        if (bvh.nodes[node.node].is_leaf()) continue;
-        const uint32_t first = bvh.nodes[node.node].first;
-        pending.push_back({2 * node.key, first});
-        pending.push_back({2 * node.key + 1, first + 1});
-    }
-    return heap;
-}
-
-SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes) {
-    DCHECK(axes.size() == bvh.nodes.size());
-    if (bvh.nodes.empty()) return {};
-    const int depth = compute_depth(bvh);
+SuccinctHeap make_succinct_heap(const AxisBvh& tree) {
+    DCHECK(tree.axes.size() == tree.bvh.nodes.size());
+    if (tree.bvh.nodes.empty()) return {};
     const int limit = int(scalar::kTrailLevels64);
-    if (depth > limit) refuse_depth(depth, limit, "a key of 64 bits");
-    return SuccinctBuild(bvh, axes).run();
+    if (tree.depth > limit)
+        throw Error(ErrorKind::out_of_memory,
+                    {fmt::format("a tree of {} levels below its root does not fit, room is for {}",
+                                 tree.depth, limit),
+                     "succinct heap", "give the builder a smaller greatest depth"});
+    return SuccinctBuild(tree).run();
 }
 
 bool contains_key(const DenseHeap& heap, uint64_t key) {

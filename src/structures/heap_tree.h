@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "structures/tree_links.h"
@@ -40,11 +39,9 @@ struct SuccinctHeap {
     }
 };
 
-/// `axes` as for make_linked_bvh. Throws Error for more than DenseHeap::kMaxLevels levels.
-DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes);
-
-/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth helps.
-SuccinctHeap make_succinct_heap(const Bvh& bvh, std::span<const uint8_t> axes);
+/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth
+/// helps.
+SuccinctHeap make_succinct_heap(const AxisBvh& tree);
 
 /// Whether there is a node of that key. Of a succinct heap the directory alone is read.
 bool contains_key(const DenseHeap& heap, uint64_t key);

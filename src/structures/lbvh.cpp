@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -32,12 +34,12 @@ struct Cut {
 };
 
 void grow(Box& box, const Box& other) {
-    const auto lesser = [](float a, float b) { return a < b ? a : b; };
-    const auto greater = [](float a, float b) { return a > b ? a : b; };
-    box.lower = {lesser(box.lower.x, other.lower.x), lesser(box.lower.y, other.lower.y),
-                 lesser(box.lower.z, other.lower.z)};
-    box.upper = {greater(box.upper.x, other.upper.x), greater(box.upper.y, other.upper.y),
-                 greater(box.upper.z, other.upper.z)};
+    const auto get_lesser = [](float a, float b) { return a < b ? a : b; };
+    const auto get_greater = [](float a, float b) { return a > b ? a : b; };
+    box.lower = {get_lesser(box.lower.x, other.lower.x), get_lesser(box.lower.y, other.lower.y),
+                 get_lesser(box.lower.z, other.lower.z)};
+    box.upper = {get_greater(box.upper.x, other.upper.x), get_greater(box.upper.y, other.upper.y),
+                 get_greater(box.upper.z, other.upper.z)};
 }
 
 Box join(const Box& a, const Box& b) {
@@ -80,7 +82,7 @@ class CompactBuild {
         const uint32_t count = uint32_t(boxes_.size());
         result_.bvh.nodes.resize(1 + 2 * size_t(cut_count_));
         result_.axes.resize(result_.bvh.nodes.size());
-        build_node({0, count}, 0);
+        result_.depth = build_node({0, count}, 0).depth;
         result_.bvh.primitive_ids = std::move(order_.ids);
         return std::move(result_);
     }
@@ -114,18 +116,23 @@ class CompactBuild {
         }
     }
 
-    Box build_node(const Range& range, uint32_t slot) {
+    struct Subtree {
+        Box box;
+        int depth = 0; ///< edges on the longest way down
+    };
+
+    Subtree build_node(const Range& range, uint32_t slot) {
         BvhNode& node = result_.bvh.nodes[slot];
         const bool is_one_code = order_.codes[range.begin] == order_.codes[range.last()];
         if (is_one_code && range.count() <= max_leaf_size_) {
             const Box box = compute_range_box(boxes_, order_.ids, range);
             node = {box.lower, range.begin, box.upper, range.count()};
-            return box;
+            return {box, 0};
         }
         const Cut cut = is_one_code ? cut_by_number(range) : cut_by_code(order_.codes, range);
         const uint32_t left_slot = 1 + 2 * numbers_[cut.cut];
         result_.axes[slot] = cut.axis;
-        Box left, right;
+        Subtree left, right;
         const auto build_left = [&] { left = build_node({range.begin, cut.cut}, left_slot); };
         const auto build_right = [&] { right = build_node({cut.cut, range.end}, left_slot + 1); };
         if (range.count() >= kParallelCount) {
@@ -134,9 +141,9 @@ class CompactBuild {
             build_left();
             build_right();
         }
-        const Box box = join(left, right);
+        const Box box = join(left.box, right.box);
         node = {box.lower, left_slot, box.upper, 0};
-        return box;
+        return {box, 1 + std::max(left.depth, right.depth)};
     }
 
     std::span<const Box> boxes_;
@@ -199,7 +206,8 @@ AxisBvh LbvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a bounding volume hierarchy holds at most 2^30 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "linear BVH",
+                     "split the scene into instances of several meshes"});
     return CompactBuild(boxes, config).run();
 }
 
@@ -208,7 +216,8 @@ DenseHeap LbvhBuilder::build_heap(std::span<const Box> boxes, const HeapConfig& 
     if (boxes.empty()) return {};
     if (boxes.size() > scalar::kNodeCountMask)
         throw Error(ErrorKind::out_of_memory,
-                    {"a heap of the linear builder holds less than 2^26 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for less than 2^26", boxes.size()),
+                     "linear BVH as a heap", "build it without a heap, or split the mesh"});
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(boxes.size());
     return HeapBuild(boxes, config.code_bits, levels).run();
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -49,19 +51,19 @@ class SahBuild {
     Bvh run() {
         const uint32_t count = uint32_t(boxes_.size());
         SetBounds bounds;
-        refs_.reserve(count);
+        members_.reserve(count);
         for (uint32_t id = 0; id < count; ++id) {
-            refs_.push_back(make_box_ref(boxes_[id], id));
-            bounds.extend(refs_.back());
+            members_.push_back(make_numbered_box(boxes_[id], id));
+            bounds.extend(members_.back());
         }
         bvh_.nodes.resize(2 * size_t(count) - 1);
         if (config_.method == SahBvhBuilder::Method::sweep) {
             sweep_entries_.resize(count);
-            sweep_refs_.resize(count);
+            sweep_members_.resize(count);
         }
         build_subtree({0, count, 0, 1, 0}, bounds);
         bvh_.primitive_ids.reserve(count);
-        for (const BoxRef& ref : refs_) bvh_.primitive_ids.push_back(ref.id);
+        for (const NumberedBox& member : members_) bvh_.primitive_ids.push_back(member.id);
         remove_unused_slots();
         return std::move(bvh_);
     }
@@ -103,16 +105,16 @@ class SahBuild {
         const bool may_be_leaf = count <= config_.max_leaf_size;
         const double leaf_cost = double(config_.intersection_cost) * count;
         if (may_be_leaf && leaf_cost <= config_.traversal_cost) return {};
-        const SplitInput input{std::span(refs_).subspan(tree.begin, count), bounds.centroids};
+        const SplitInput input{std::span(members_).subspan(tree.begin, count), bounds.centroids};
         const bool is_swept = config_.method == SahBvhBuilder::Method::sweep || count <= kSmallCount;
         std::array<SweepEntry, kSmallCount> small_entries;
-        std::array<BoxRef, kSmallCount> small_refs;
+        std::array<NumberedBox, kSmallCount> small_refs;
         SweepScratch scratch;
         if (count <= kSmallCount)
             scratch = {std::span(small_entries).first(count), small_refs};
         else if (is_swept)
             scratch = {std::span(sweep_entries_).subspan(tree.begin, count),
-                       std::span(sweep_refs_).subspan(tree.begin, count)};
+                       std::span(sweep_members_).subspan(tree.begin, count)};
         const int bin_count = choose_bin_count(count, config_.bin_count);
         const double half_area = bounds.box.half_area();
         SahSplit best;
@@ -149,9 +151,9 @@ class SahBuild {
 
     std::span<const Box> boxes_;
     const SahBvhBuilder::Config& config_;
-    std::vector<BoxRef> refs_;
+    std::vector<NumberedBox> members_;
     std::vector<SweepEntry> sweep_entries_;
-    std::vector<BoxRef> sweep_refs_;
+    std::vector<NumberedBox> sweep_members_;
     Bvh bvh_;
 };
 
@@ -165,7 +167,8 @@ Bvh SahBvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     if (boxes.empty()) return {};
     if (boxes.size() > kMaxPrimitiveCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a bounding volume hierarchy holds at most 2^30 primitives", "", "split the scene"});
+                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "SAH BVH",
+                     "split the scene into instances of several meshes"});
     return SahBuild(boxes, config).run();
 }
 

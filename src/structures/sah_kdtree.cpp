@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/parallel.h"
 #include "relief/error.h"
@@ -68,6 +70,21 @@ Box cut_cell(Box cell, int axis, float lower, float upper) {
     return cell;
 }
 
+/// A ray leaves the tree at its end, which has slack, and not at the faces of the root: without a plane of
+/// their own there, cells are left where the way down ends them.
+void open_outer_faces(std::span<scalar::KdBox> cells, const Box& bounds) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    parallel_for("outer faces", cells.size(), 4096, [&](size_t begin, size_t end) {
+        for (scalar::KdBox& cell : cells.subspan(begin, end - begin))
+            for (int axis = 0; axis < 3; ++axis) {
+                if (get_component(cell.lower, axis) == get_component(bounds.lower, axis))
+                    set_component(cell.lower, axis, -kInfinity);
+                if (get_component(cell.upper, axis) == get_component(bounds.upper, axis))
+                    set_component(cell.upper, axis, kInfinity);
+            }
+    });
+}
+
 class KdBuild {
   public:
     KdBuild(std::span<const Box> boxes, const SahKdTreeBuilder::Config& config) : config_(config) {
@@ -89,13 +106,16 @@ class KdBuild {
         const uint64_t budget = uint64_t(double(boxes_.size()) * config_.max_duplication);
         build_node(make_root_set(), {bounds_, scalar::kNoNode, 0, budget}, output);
         if (output.nodes.size() > kMaxNodeCount)
-            throw Error(ErrorKind::out_of_memory, {"a kd-tree holds at most 2^30 nodes", "",
-                                                   "split the scene or allow a smaller depth"});
+            throw Error(ErrorKind::out_of_memory,
+                        {fmt::format("{} nodes are too many, room is for 2^30", output.nodes.size()),
+                         "kd-tree",
+                         "choose the structure bvh, or split the scene into instances of several meshes"});
         KdTree tree;
         tree.bounds = bounds_;
         tree.nodes = std::move(output.nodes);
         tree.primitive_ids = std::move(output.ids);
         tree.cells = std::move(output.cells);
+        open_outer_faces(tree.cells, bounds_);
         tree.depth = output.depth;
         return tree;
     }
@@ -281,8 +301,11 @@ KdTree SahKdTreeBuilder::build(std::span<const Box> boxes, const Config& config)
     if (boxes.size() > scalar::kNodeCountMask ||
         double(boxes.size()) * config.max_duplication > kMaxEntryCount)
         throw Error(ErrorKind::out_of_memory,
-                    {"a kd-tree holds less than 2^26 primitives, and 2^29 with repeated ones", "",
-                     "split the scene or allow fewer duplicates"});
+                    {fmt::format("{} primitives are too many, room is for less than 2^26, and for 2^29 with "
+                                 "{} entries each",
+                                 boxes.size(), config.max_duplication),
+                     "kd-tree",
+                     "choose the structure bvh, or split the scene into instances of several meshes"});
     return KdBuild(boxes, config).run();
 }
 

@@ -32,8 +32,8 @@ class BinMap {
     bool is_flat(int axis) const { return scale_[axis] == 0; }
     /// Always in [0, bin count): a centroid that is no number goes to bin 0.
     Int4 compute_bins(Float4 centroid) const {
-        const Float4 bin = greater((centroid - lower_) * scale_, Float4{});
-        return __builtin_convertvector(lesser(bin, last_), Int4);
+        const Float4 bin = get_greater((centroid - lower_) * scale_, Float4{});
+        return __builtin_convertvector(get_lesser(bin, last_), Int4);
     }
 
   private:
@@ -68,19 +68,19 @@ SahSplit find_best_cut(const Bins& bins, int bin_count, uint32_t primitive_count
 }
 
 /// Bounds of both sides of a set that is in order already.
-SplitSets measure_sets(std::span<const BoxRef> refs, uint32_t left_count) {
+SplitSets measure_sets(std::span<const NumberedBox> members, uint32_t left_count) {
     SplitSets sets;
     sets.left_count = left_count;
-    for (size_t k = 0; k < refs.size(); ++k) sets.bounds[k < left_count ? 0 : 1].extend(refs[k]);
+    for (size_t k = 0; k < members.size(); ++k) sets.bounds[k < left_count ? 0 : 1].extend(members[k]);
     return sets;
 }
 
 void sort_along(const SplitInput& input, int axis, std::span<SweepEntry> entries) {
-    for (size_t k = 0; k < input.refs.size(); ++k)
-        entries[k] = {compute_centroid(input.refs[k])[axis], uint32_t(k), 0};
+    for (size_t k = 0; k < input.members.size(); ++k)
+        entries[k] = {compute_centroid(input.members[k])[axis], uint32_t(k), 0};
     std::sort(entries.begin(), entries.end(), [&](const SweepEntry& a, const SweepEntry& b) {
         return a.centroid < b.centroid ||
-               (a.centroid == b.centroid && input.refs[a.place].id < input.refs[b.place].id);
+               (a.centroid == b.centroid && input.members[a.place].id < input.members[b.place].id);
     });
 }
 
@@ -88,8 +88,8 @@ SahSplit sweep_along(const SplitInput& input, int axis, std::span<SweepEntry> en
     sort_along(input, axis, entries);
     const size_t count = entries.size();
     const auto extend = [&](Box4& box, size_t k) {
-        const BoxRef& ref = input.refs[entries[k].place];
-        box.extend(make_float4(ref.lower), make_float4(ref.upper));
+        const NumberedBox& member = input.members[entries[k].place];
+        box.extend(make_float4(member.lower), make_float4(member.upper));
     };
     Box4 box;
     for (size_t k = count; k-- > 1;) {
@@ -120,8 +120,8 @@ double compute_half_area(const Box& box) {
 SahSplit find_binned_split(const SplitInput& input, int bin_count) {
     Bins bins(bin_count);
     const BinMap map(input.centroids, bin_count);
-    for (const BoxRef& ref : input.refs) {
-        const Float4 low = make_float4(ref.lower), high = make_float4(ref.upper);
+    for (const NumberedBox& member : input.members) {
+        const Float4 low = make_float4(member.lower), high = make_float4(member.upper);
         const Int4 bin = map.compute_bins(low * 0.5f + high * 0.5f);
         for (int axis = 0; axis < 3; ++axis) {
             bins.box[axis][bin[axis]].extend(low, high);
@@ -131,7 +131,7 @@ SahSplit find_binned_split(const SplitInput& input, int bin_count) {
     SahSplit best;
     for (int axis = 0; axis < 3; ++axis) {
         if (map.is_flat(axis)) continue;
-        const SahSplit split = find_best_cut(bins, bin_count, uint32_t(input.refs.size()), axis);
+        const SahSplit split = find_best_cut(bins, bin_count, uint32_t(input.members.size()), axis);
         if (split.is_better_than(best)) best = split;
     }
     return best;
@@ -139,19 +139,19 @@ SahSplit find_binned_split(const SplitInput& input, int bin_count) {
 
 SplitSets apply_binned_split(const SplitInput& input, const SahSplit& split, int bin_count) {
     const BinMap map(input.centroids, bin_count);
-    const auto is_left = [&](const BoxRef& ref) {
-        return map.compute_bins(compute_centroid(ref))[split.axis] < int(split.cut);
+    const auto is_left = [&](const NumberedBox& member) {
+        return map.compute_bins(compute_centroid(member))[split.axis] < int(split.cut);
     };
     SetBounds left, right;
-    BoxRef* const refs = input.refs.data();
-    size_t begin = 0, end = input.refs.size();
+    NumberedBox* const members = input.members.data();
+    size_t begin = 0, end = input.members.size();
     while (true) {
-        for (; begin < end && is_left(refs[begin]); ++begin) left.extend(refs[begin]);
-        for (; begin < end && !is_left(refs[end - 1]); --end) right.extend(refs[end - 1]);
+        for (; begin < end && is_left(members[begin]); ++begin) left.extend(members[begin]);
+        for (; begin < end && !is_left(members[end - 1]); --end) right.extend(members[end - 1]);
         if (begin == end) break;
-        std::swap(refs[begin], refs[end - 1]);
-        left.extend(refs[begin++]);
-        right.extend(refs[--end]);
+        std::swap(members[begin], members[end - 1]);
+        left.extend(members[begin++]);
+        right.extend(members[--end]);
     }
     return {uint32_t(begin), {left, right}};
 }
@@ -168,9 +168,10 @@ SahSplit find_sweep_split(const SplitInput& input, const SweepScratch& scratch) 
 
 SplitSets apply_sweep_split(const SplitInput& input, const SahSplit& split, const SweepScratch& scratch) {
     sort_along(input, split.axis, scratch.entries);
-    std::copy(input.refs.begin(), input.refs.end(), scratch.refs.begin());
-    for (size_t k = 0; k < input.refs.size(); ++k) input.refs[k] = scratch.refs[scratch.entries[k].place];
-    return measure_sets(input.refs, split.cut);
+    std::copy(input.members.begin(), input.members.end(), scratch.members.begin());
+    for (size_t k = 0; k < input.members.size(); ++k)
+        input.members[k] = scratch.members[scratch.entries[k].place];
+    return measure_sets(input.members, split.cut);
 }
 
 SplitSets apply_median_split(const SplitInput& input) {
@@ -180,13 +181,14 @@ SplitSets apply_median_split(const SplitInput& input) {
         const double extent = double(input.centroids.upper[k]) - input.centroids.lower[k];
         if (extent > widest) widest = extent, axis = k;
     }
-    const size_t half = input.refs.size() / 2;
-    const auto is_before = [&](const BoxRef& a, const BoxRef& b) {
+    const size_t half = input.members.size() / 2;
+    const auto is_before = [&](const NumberedBox& a, const NumberedBox& b) {
         const float x = compute_centroid(a)[axis], y = compute_centroid(b)[axis];
         return x < y || (x == y && a.id < b.id);
     };
-    std::nth_element(input.refs.begin(), input.refs.begin() + ptrdiff_t(half), input.refs.end(), is_before);
-    return measure_sets(input.refs, uint32_t(half));
+    std::nth_element(input.members.begin(), input.members.begin() + ptrdiff_t(half), input.members.end(),
+                     is_before);
+    return measure_sets(input.members, uint32_t(half));
 }
 
 } // namespace relief

@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "structures/box_ref.h"
+#include "structures/numbered_box.h"
 
 namespace relief {
 
@@ -28,7 +28,7 @@ struct SahSplit {
 
 /// A set, and the box of its centroids.
 struct SplitInput {
-    std::span<BoxRef> refs;
+    std::span<NumberedBox> members;
     Box4 centroids;
 };
 
@@ -53,7 +53,7 @@ struct SweepEntry {
 /// As long as the set.
 struct SweepScratch {
     std::span<SweepEntry> entries;
-    std::span<BoxRef> refs;
+    std::span<NumberedBox> members;
 };
 
 /// Tries every cut between neighbours in the order of centroids (MacDonald and Booth 1990). Invalid when all

@@ -11,6 +11,7 @@ namespace relief {
 namespace {
 
 constexpr size_t kGrain = 16384;
+constexpr size_t kSubtreeCount = 256;
 
 struct Place {
     uint32_t node;
@@ -30,6 +31,22 @@ uint8_t choose_axis(const BvhNode& left, const BvhNode& right) {
     return uint8_t(best);
 }
 
+/// Of the subtree at `root`, counted as its depth is.
+int find_deepest(const Bvh& bvh, const Place& root) {
+    int deepest = root.depth;
+    std::vector<Place> pending{root};
+    while (!pending.empty()) {
+        const Place place = pending.back();
+        pending.pop_back();
+        deepest = std::max(deepest, place.depth);
+        const BvhNode& node = bvh.nodes[place.node];
+        if (node.is_leaf()) continue;
+        pending.push_back({node.first, place.depth + 1});
+        pending.push_back({node.first + 1, place.depth + 1});
+    }
+    return deepest;
+}
+
 } // namespace
 
 std::vector<uint8_t> compute_axes(const Bvh& bvh) {
@@ -43,48 +60,54 @@ std::vector<uint8_t> compute_axes(const Bvh& bvh) {
     return axes;
 }
 
-LinkedBvh make_linked_bvh(const Bvh& bvh, std::span<const uint8_t> axes) {
-    DCHECK(axes.size() == bvh.nodes.size());
+LinkedBvh make_linked_bvh(const AxisBvh& tree) {
+    const std::vector<BvhNode>& nodes = tree.bvh.nodes;
+    DCHECK(tree.axes.size() == nodes.size());
     LinkedBvh result;
-    const size_t count = bvh.nodes.size();
-    result.primitive_ids = bvh.primitive_ids;
-    result.nodes.resize(count);
-    result.parents.assign(count, scalar::kNoNode);
-    result.skips.assign(count, scalar::kNoNode);
-    if (count == 0) return result;
-    std::vector<Place> pending{{0, 0}};
-    while (!pending.empty()) {
-        const Place place = pending.back();
-        pending.pop_back();
-        const BvhNode& node = bvh.nodes[place.node];
-        result.nodes[place.node] = std::bit_cast<TreeNode>(node);
-        result.depth = std::max(result.depth, place.depth);
-        if (node.is_leaf()) continue;
-        result.nodes[place.node].word = scalar::make_inner_word(axes[place.node]);
-        const uint32_t left = node.first, right = node.first + 1;
-        result.parents[left] = result.parents[right] = place.node;
-        result.skips[left] = right;
-        result.skips[right] = result.skips[place.node];
-        pending.push_back({right, place.depth + 1});
-        pending.push_back({left, place.depth + 1});
-    }
+    result.primitive_ids = tree.bvh.primitive_ids;
+    result.depth = tree.depth;
+    result.nodes.resize(nodes.size());
+    result.parents.assign(nodes.size(), scalar::kNoNode);
+    result.skips.assign(nodes.size(), scalar::kNoNode);
+    parallel_for("links", nodes.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            result.nodes[k] = std::bit_cast<TreeNode>(nodes[k]);
+            if (nodes[k].is_leaf()) continue;
+            result.nodes[k].word = scalar::make_inner_word(tree.axes[k]);
+            const uint32_t left = nodes[k].first, right = left + 1;
+            result.parents[left] = result.parents[right] = uint32_t(k);
+            result.skips[left] = right;
+        }
+    });
+    // The right children below a left one, or below the root, share its skip.
+    parallel_for("skips", nodes.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            if (k > 0 && nodes[result.parents[k]].first != k) continue;
+            for (size_t node = k; !nodes[node].is_leaf(); node = nodes[node].first + 1)
+                result.skips[nodes[node].first + 1] = result.skips[k];
+        }
+    });
     return result;
 }
 
 int compute_depth(const Bvh& bvh) {
     if (bvh.nodes.empty()) return 0;
-    int depth = 0;
-    std::vector<Place> pending{{0, 0}};
-    while (!pending.empty()) {
-        const Place place = pending.back();
-        pending.pop_back();
-        depth = std::max(depth, place.depth);
-        const BvhNode& node = bvh.nodes[place.node];
-        if (node.is_leaf()) continue;
-        pending.push_back({node.first, place.depth + 1});
-        pending.push_back({node.first + 1, place.depth + 1});
+    // Subtrees below a few levels, each for one thread.
+    std::vector<Place> roots{{0, 0}};
+    for (size_t before = 0; before < roots.size() && roots.size() < kSubtreeCount;) {
+        before = roots.size();
+        for (size_t k = 0; k < before; ++k) {
+            const auto [node, depth] = roots[k];
+            if (bvh.nodes[node].is_leaf()) continue;
+            roots[k] = {bvh.nodes[node].first, depth + 1};
+            roots.push_back({bvh.nodes[node].first + 1, depth + 1});
+        }
     }
-    return depth;
+    std::vector<int> depths(roots.size());
+    parallel_for("depth", roots.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) depths[k] = find_deepest(bvh, roots[k]);
+    });
+    return *std::max_element(depths.begin(), depths.end());
 }
 
 namespace {
@@ -147,11 +170,12 @@ Bvh limit_depth(const Bvh& bvh, int max_depth) {
 
 AxisBvh add_axes(Bvh bvh) {
     std::vector<uint8_t> axes = compute_axes(bvh);
-    return {std::move(bvh), std::move(axes)};
+    const int depth = compute_depth(bvh);
+    return {std::move(bvh), std::move(axes), depth};
 }
 
 AxisBvh limit_depth(AxisBvh tree, int max_depth) {
-    if (compute_depth(tree.bvh) <= max_depth) return tree;
+    if (tree.depth <= max_depth) return tree;
     return add_axes(limit_depth(tree.bvh, max_depth));
 }
 

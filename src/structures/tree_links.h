@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "math/scalar.h"
@@ -28,27 +27,28 @@ struct LinkedBvh {
     }
 };
 
-/// A tree, and for each of its nodes the axis as make_linked_bvh takes it.
+/// A tree, and what forms of it need: builders know it, or add_axes works it out.
 struct AxisBvh {
     Bvh bvh;
-    std::vector<uint8_t> axes;
+    std::vector<uint8_t> axes; ///< one a node: of the cut, or compute_axes
+    int depth = 0;             ///< of `bvh`
 };
 
 /// Axis of each inner node, along which its left child lies below the right one by most; 0 for leaves. Rays
 /// that go backwards along it take the right child first.
 std::vector<uint8_t> compute_axes(const Bvh& bvh);
 
-/// `axes`: one a node, as a builder gives them or compute_axes.
-LinkedBvh make_linked_bvh(const Bvh& bvh, std::span<const uint8_t> axes);
+/// In parallel.
+LinkedBvh make_linked_bvh(const AxisBvh& tree);
 
-/// Edges on the longest way from the root to a leaf; 0 without nodes.
+/// Edges on the longest way from the root to a leaf, in parallel; 0 without nodes.
 int compute_depth(const Bvh& bvh);
 
 /// Every node on level `max_depth` >= 0 becomes a leaf of all primitives below it. In trees of this folder
 /// these stand next to each other.
 Bvh limit_depth(const Bvh& bvh, int max_depth);
 
-/// With axes of its own.
+/// With axes of its own, and its depth.
 AxisBvh add_axes(Bvh bvh);
 /// The same tree where it is not deeper.
 AxisBvh limit_depth(AxisBvh tree, int max_depth);

@@ -1,9 +1,8 @@
-// The walks of shared/traverse_*.h over the trees of this folder: the reference for the SIMD kernels and
-// those of a device, and what the CPU runs when a traversal is asked for by name.
-//   closest_hit<TraversalKind::trail>(walk_view(heap), ray, leaf);
+// The walks of shared/traverse_*.h over the trees of this folder: the reference for the
+// kernels of a device, and what the CPU runs when a traversal is asked for by name.
+//   closest_hit<TraversalKind::trail>(make_walk_view(heap), ray, leaf);
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -28,15 +27,6 @@ struct WalkCounts {
 struct NoCounts {};
 
 namespace scalar {
-
-struct PlainWalkView {
-    using Key = uint;
-    const Bvh& tree;
-
-    bool is_empty() const { return tree.nodes.empty(); }
-    TreeNode load_node(uint node) const { return std::bit_cast<TreeNode>(tree.nodes[node]); }
-    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
-};
 
 /// `Width`: uint or HeapKey, for the restart trail: trees of 30 or 62 levels.
 template <class Width> struct BvhWalkView {
@@ -100,7 +90,10 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
     bool run(Key start) {
         hit_leaf_ = start;
         if (view_.is_empty()) return false;
-        const bool is_complete = walk(start);
+        if constexpr (kTraversal == TraversalKind::stack) stack_walk = make_empty_stack();
+        if constexpr (kTraversal == TraversalKind::backtrack) DCHECK(!view_.tree.cells.empty());
+        start_walk(0u, start);
+        const bool is_complete = run_walk();
         DCHECK(is_complete);
         static_cast<void>(is_complete);
         return is_ended_;
@@ -110,56 +103,12 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
     Key hit_leaf() const { return hit_leaf_; }
 
   private:
-    bool walk(Key start) {
-        if constexpr (kTraversal == TraversalKind::stack) {
-            stack_walk = make_empty_stack();
-            start_stack(0u);
-            return walk_stack();
-        } else if constexpr (kTraversal == TraversalKind::restart_trail) {
-            restart_walk = start_restart_trail(0u, make_root_level());
-            return walk_restart_trail();
-        } else if constexpr (kTraversal == TraversalKind::parent_link) {
-            parent_walk = start_parent_link(0u);
-            return walk_parent_link();
-        } else if constexpr (kTraversal == TraversalKind::skip_link) {
-            skip_walk = start_skip_link(0u);
-            return walk_skip_link();
-        } else if constexpr (kTraversal == TraversalKind::trail) {
-            trail_walk = start_trail(start);
-            return walk_trail();
-        } else if constexpr (kTraversal == TraversalKind::pair_trail) {
-            pair_walk = start_pair_trail(start);
-            return walk_pair_trail();
-        } else {
-            return walk_kd();
-        }
-    }
-
-    bool walk_kd() {
-        const KdRay ray = make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper,
-                                      ray_.t_min, ray_.t_max);
-        if constexpr (kTraversal == TraversalKind::restart) {
-            kd_restart_walk = start_kd_restart(0u, ray);
-            return walk_kd_restart();
-        } else if constexpr (kTraversal == TraversalKind::push_down) {
-            kd_push_down_walk = start_kd_push_down(0u, ray);
-            return walk_kd_push_down();
-        } else {
-            DCHECK(!view_.tree.cells.empty());
-            kd_backtrack_walk = start_kd_backtrack(0u, ray);
-            return walk_kd_backtrack();
-        }
+    KdRay make_own_kd_ray() const {
+        return make_kd_ray(object_ray_, view_.tree.bounds.lower, view_.tree.bounds.upper, ray_.t_min,
+                           ray_.t_max);
     }
 
     static constexpr bool kIsCounting = requires(Counts & counts) { counts.bytes; };
-    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
-
-    static Key make_root_level() {
-        if constexpr (kIsWide)
-            return make_root_level64();
-        else
-            return make_root_level32();
-    }
 
     // The hooks of shared/tree.h.
     TreeNode load_node(uint node) const { return view_.load_node(node); }
@@ -183,7 +132,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
 
     bool visit_leaf(uint first, uint word, uint) {
         const float limit = ray_.t_max;
-        for (uint k = 0; k < count_of_word(word) && !is_ended_; ++k) {
+        for (uint k = 0; k < get_word_count(word) && !is_ended_; ++k) {
             if constexpr (kIsCounting) ++counts_.primitive_tests;
             is_ended_ = leaf_(view_.primitive_ids()[first + k], ray_);
         }
@@ -198,7 +147,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
         if constexpr (requires { view_.get_heap_form(); })
             return find_succinct_slot(key);
         else
-            return low_word(key);
+            return get_low_word(key);
     }
 
     void count_box_test() {
@@ -211,16 +160,7 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts> class 
         if constexpr (kIsCounting) counts_.bytes += bytes;
     }
 
-#include "shared/succinct_heap.h"
-#include "shared/traverse_kd_backtrack.h"
-#include "shared/traverse_kd_push_down.h"
-#include "shared/traverse_kd_restart.h"
-#include "shared/traverse_pair_trail.h"
-#include "shared/traverse_parent_link.h"
-#include "shared/traverse_restart_trail.h"
-#include "shared/traverse_skip_link.h"
-#include "shared/traverse_stack.h"
-#include "shared/traverse_trail.h"
+#include "structures/walk_members-inl.h"
 
     const View view_;
     BoxRay& ray_;
@@ -238,12 +178,14 @@ inline HeapKey make_root_key(HeapKey) { return {1u, 0u}; }
 } // namespace scalar
 
 /// As narrow as the tree's depth allows; `wide` views for trees of more than kTrailLevels32 levels.
-inline scalar::BvhWalkView<uint32_t> walk_view(const LinkedBvh& tree) { return {tree}; }
-inline scalar::BvhWalkView<scalar::HeapKey> wide_walk_view(const LinkedBvh& tree) { return {tree}; }
-inline scalar::DenseWalkView walk_view(const DenseHeap& tree) { return {tree}; }
-inline scalar::SuccinctWalkView<uint32_t> walk_view(const SuccinctHeap& tree) { return {tree}; }
-inline scalar::SuccinctWalkView<scalar::HeapKey> wide_walk_view(const SuccinctHeap& tree) { return {tree}; }
-inline scalar::KdWalkView walk_view(const KdTree& tree) { return {tree}; }
+inline scalar::BvhWalkView<uint32_t> make_walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::BvhWalkView<scalar::HeapKey> make_wide_walk_view(const LinkedBvh& tree) { return {tree}; }
+inline scalar::DenseWalkView make_walk_view(const DenseHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<uint32_t> make_walk_view(const SuccinctHeap& tree) { return {tree}; }
+inline scalar::SuccinctWalkView<scalar::HeapKey> make_wide_walk_view(const SuccinctHeap& tree) {
+    return {tree};
+}
+inline scalar::KdWalkView make_walk_view(const KdTree& tree) { return {tree}; }
 
 /// As closest_hit below. The two trails may start at any node, `start`, which becomes the leaf of the hit, if
 /// there is one: rays that follow one another often end at the same things. Others start at the root.
@@ -285,15 +227,6 @@ template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCou
 bool any_hit(const View& view, const BoxRay& ray, Leaf&& leaf, Counts&& counts = {}) {
     auto start = scalar::make_root_key(typename View::Key{});
     return any_hit_from<kTraversal>(view, start, ray, leaf, counts);
-}
-
-/// Of a tree as it is, by a full stack: what other structures are compared with.
-template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
-    closest_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
-}
-
-template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
-    return any_hit<TraversalKind::stack>(scalar::PlainWalkView{bvh}, ray, leaf);
 }
 
 } // namespace relief

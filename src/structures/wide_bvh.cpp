@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "relief/error.h"
 #include "structures/wide_children.h"
 
@@ -125,7 +127,10 @@ WideBvh make_wide_bvh(const Bvh& bvh) {
     if (bvh.primitive_ids.size() > size_t(WideNode::kMaxLeafFirst) + 1)
         throw Error(
             ErrorKind::out_of_memory,
-            {"a wide bounding volume hierarchy holds at most 2^28 primitives", "", "split the scene"});
+            {fmt::format("{} primitives are too many, room is for 2^28", bvh.primitive_ids.size()),
+             "wide BVH",
+             "choose a traversal that walks the binary tree, or split the scene into instances of several "
+             "meshes"});
     return Collapse(bvh).run();
 }
 

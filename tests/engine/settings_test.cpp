@@ -1,4 +1,7 @@
 // Settings that contradict each other are refused before anything is made.
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "relief/error.h"
@@ -32,6 +35,25 @@ TEST(Settings, of_one_engine_do_not_go_with_the_other) {
     expect_usage_error(settings);
     settings.isa = Isa::best;
     settings.device = -2;
+    expect_usage_error(settings);
+}
+
+TEST(Settings, of_costs_are_refused_where_no_tree_is_built_by_them) {
+    RenderSettings settings;
+    settings.sah_costs = SahCosts{};
+    expect_usage_error(settings);
+    settings.traversal = TraversalKind::wide;
+    expect_usage_error(settings);
+    settings.structure = StructureKind::lbvh, settings.traversal = TraversalKind::stack;
+    expect_usage_error(settings);
+    settings.structure = StructureKind::bvh;
+    for (const float cost : {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        settings.sah_costs = SahCosts{cost, 1};
+        expect_usage_error(settings);
+        settings.sah_costs = SahCosts{1, cost};
+        expect_usage_error(settings);
+    }
+    settings.engine = EngineKind::vulkan, settings.sah_costs = SahCosts{};
     expect_usage_error(settings);
 }
 

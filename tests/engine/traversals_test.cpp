@@ -83,7 +83,7 @@ TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
     const auto prepared = prepare_scene(scene, settings);
     settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
     if (settings.structure == StructureKind::lbvh) {
-        EXPECT_GT(make_walk_trees(*prepared, settings.structure, settings.traversal).depth, 35);
+        EXPECT_GT(make_walk_trees(*prepared, settings, EngineKind::cpu).depth, 35);
     }
     const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
     const test::CpuAnswers expected = test::cast_on_cpu(prepared, {}, rays);
@@ -94,6 +94,21 @@ TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
         ASSERT_EQ(found.closest[k].patch, expected.closest[k].patch) << "ray " << k;
         ASSERT_EQ(found.closest[k].t, expected.closest[k].t) << "ray " << k;
     }
+}
+
+TEST_P(Traversals, find_them_in_trees_of_the_costs_asked_for) {
+    const bool is_default = GetParam().traversal == TraversalKind::wide;
+    if (is_default || GetParam().structure == StructureKind::lbvh) GTEST_SKIP() << "no costs to ask for";
+    Scene scene = test::make_crowd();
+    for (Object& object : scene.objects) object.displacement = kNoIndex;
+    RenderSettings settings;
+    settings.sah_costs = SahCosts{};
+    expect_same_hits(scene, settings);
+    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    const auto prepared = prepare_scene(scene, settings);
+    const size_t bytes = make_walk_trees(*prepared, settings, EngineKind::cpu).byte_count();
+    settings.sah_costs = SahCosts{0.01f, 1.0f};
+    EXPECT_LT(bytes, make_walk_trees(*prepared, settings, EngineKind::cpu).byte_count());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(test::list_choices(EngineKind::cpu)),

@@ -58,37 +58,37 @@ TEST(Trail, shifts_adds_and_cuts_two_words_like_one) {
             const uint64_t below = (uint64_t(1) << level) - 1;
             EXPECT_EQ(to_bits(clear_below(make_key(bits), make_key(below + 1))), bits & ~below);
         }
-        EXPECT_EQ(to_bits(lowest_bit(make_key(bits))), bits & (~bits + 1));
-        EXPECT_EQ(to_bits(highest_bit(make_key(bits))), std::bit_floor(bits));
+        EXPECT_EQ(to_bits(get_lowest_bit(make_key(bits))), bits & (~bits + 1));
+        EXPECT_EQ(to_bits(get_highest_bit(make_key(bits))), std::bit_floor(bits));
         EXPECT_EQ(to_bits(append_bit(make_key(bits), 1u)), bits * 2 + 1);
         EXPECT_EQ(to_bits(flip_lowest(make_key(bits))), bits ^ 1);
-        if (bits != 0) EXPECT_EQ(level_of_key(make_key(bits)), uint32_t(std::bit_width(bits) - 1));
+        if (bits != 0) EXPECT_EQ(get_key_level(make_key(bits)), uint32_t(std::bit_width(bits) - 1));
     });
 }
 
 TEST(Trail, ends_when_all_levels_are_finished) {
     for (int level = 0; level <= int(kTrailLevels64); ++level) {
         const uint64_t finished = (uint64_t(2) << level) - 1, key = finished; // the last node of its level
-        EXPECT_TRUE(is_zero(next_key(make_key(key), make_key(finished)))) << level;
-        EXPECT_EQ(to_bits(next_trail(make_key(finished))), 1u) << level;
-        EXPECT_TRUE(is_zero(postponed_key(make_key(key), make_key(0)))) << level;
-        EXPECT_TRUE(is_zero(postponed_trail(make_key(0))));
+        EXPECT_TRUE(is_zero(find_next_key(make_key(key), make_key(finished)))) << level;
+        EXPECT_EQ(to_bits(find_next_trail(make_key(finished))), 1u) << level;
+        EXPECT_TRUE(is_zero(find_postponed_key(make_key(key), make_key(0)))) << level;
+        EXPECT_TRUE(is_zero(find_postponed_trail(make_key(0))));
         if (level > int(kTrailLevels32)) continue;
-        EXPECT_EQ(next_key(uint32_t(key), uint32_t(finished)), 0u);
-        EXPECT_EQ(next_trail(uint32_t(finished)), 1u);
-        EXPECT_EQ(postponed_key(uint32_t(key), 0u), 0u);
+        EXPECT_EQ(find_next_key(uint32_t(key), uint32_t(finished)), 0u);
+        EXPECT_EQ(find_next_trail(uint32_t(finished)), 1u);
+        EXPECT_EQ(find_postponed_key(uint32_t(key), 0u), 0u);
     }
-    EXPECT_EQ(next_key(0xffffffffu, 0xffffffffu), 0u);
-    EXPECT_EQ(next_trail(0xffffffffu), 1u);
+    EXPECT_EQ(find_next_key(0xffffffffu, 0xffffffffu), 0u);
+    EXPECT_EQ(find_next_trail(0xffffffffu), 1u);
 }
 
 TEST(Trail, steps_to_the_sibling_of_the_lowest_level_that_is_not_finished) {
     // Root, left, right, left: at 0b1010 with the first and the last level begun and the middle one finished.
-    EXPECT_EQ(next_key(0b1010u, 0b1010u), 0b1011u);
-    EXPECT_EQ(next_trail(0b1010u), 0b1011u);
-    EXPECT_EQ(next_key(0b1011u, 0b1011u), 0b11u);
-    EXPECT_EQ(next_trail(0b1011u), 0b11u);
-    EXPECT_EQ(next_key(0b11u, 0b11u), 0u);
+    EXPECT_EQ(find_next_key(0b1010u, 0b1010u), 0b1011u);
+    EXPECT_EQ(find_next_trail(0b1010u), 0b1011u);
+    EXPECT_EQ(find_next_key(0b1011u, 0b1011u), 0b11u);
+    EXPECT_EQ(find_next_trail(0b1011u), 0b11u);
+    EXPECT_EQ(find_next_key(0b11u, 0b11u), 0u);
 }
 
 TEST(Trail, of_both_widths_agrees) {
@@ -98,10 +98,11 @@ TEST(Trail, of_both_widths_agrees) {
         const uint32_t top = 1u << level;
         const uint32_t key = top | (random() % top), trail = top | (random() % top),
                        postponed = random() % top;
-        EXPECT_EQ(to_bits(next_key(make_key(key), make_key(trail))), next_key(key, trail));
-        EXPECT_EQ(to_bits(next_trail(make_key(trail))), next_trail(trail));
-        EXPECT_EQ(to_bits(postponed_key(make_key(key), make_key(postponed))), postponed_key(key, postponed));
-        EXPECT_EQ(to_bits(postponed_trail(make_key(postponed))), postponed_trail(postponed));
+        EXPECT_EQ(to_bits(find_next_key(make_key(key), make_key(trail))), find_next_key(key, trail));
+        EXPECT_EQ(to_bits(find_next_trail(make_key(trail))), find_next_trail(trail));
+        EXPECT_EQ(to_bits(find_postponed_key(make_key(key), make_key(postponed))),
+                  find_postponed_key(key, postponed));
+        EXPECT_EQ(to_bits(find_postponed_trail(make_key(postponed))), find_postponed_trail(postponed));
         EXPECT_EQ(to_bits(make_trail(make_key(key))), make_trail(key));
         EXPECT_EQ(to_bits(make_postponed(make_key(key))), make_postponed(key));
     }

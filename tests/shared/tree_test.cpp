@@ -12,12 +12,12 @@ namespace {
 TEST(Tree, words_of_nodes_keep_axis_count_and_kind_apart) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
         EXPECT_FALSE(scalar::is_leaf_word(scalar::make_inner_word(axis)));
-        EXPECT_EQ(scalar::axis_of_word(scalar::make_inner_word(axis)), axis);
+        EXPECT_EQ(scalar::get_word_axis(scalar::make_inner_word(axis)), axis);
     }
     EXPECT_TRUE(scalar::is_leaf_word(1));
     EXPECT_TRUE(scalar::is_leaf_word(1u << 28)); // a kind without a count
-    EXPECT_EQ(scalar::count_of_word(3u << 28 | 17u), 17u);
-    EXPECT_EQ(scalar::count_of_word(scalar::kNodeCountMask), scalar::kNodeCountMask);
+    EXPECT_EQ(scalar::get_word_count(3u << 28 | 17u), 17u);
+    EXPECT_EQ(scalar::get_word_count(scalar::kNodeCountMask), scalar::kNodeCountMask);
 }
 
 TEST(Tree, ranks_the_bits_of_two_words) {

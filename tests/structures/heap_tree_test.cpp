@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "box_sets.h"
+#include "dense_heap.h"
 #include "relief/error.h"
 #include "structures/lbvh.h"
 #include "structures/sah_bvh.h"
@@ -34,8 +35,8 @@ template <class Width> class SlotFinder {
     static constexpr uint kBrickLevels = scalar::kBrickLevels;
     static Key shift_right(const Key& key, uint count) { return scalar::shift_right(key, count); }
     static bool is_zero(const Key& key) { return scalar::is_zero(key); }
-    static uint level_of_key(const Key& key) { return scalar::level_of_key(key); }
-    static uint low_word(const Key& key) { return scalar::low_word(key); }
+    static uint get_key_level(const Key& key) { return scalar::get_key_level(key); }
+    static uint get_low_word(const Key& key) { return scalar::get_low_word(key); }
     static uint rank_bits(uint low, uint high, uint place) { return scalar::rank_bits(low, high, place); }
     HeapForm get_heap_form() const { return heap_.form; }
     HeapBlock load_heap_block(uint block) const { return heap_.blocks.at(block); }
@@ -73,13 +74,13 @@ void expect_same_node(const TreeNode& node, const Bvh& bvh, const std::vector<ui
         ASSERT_EQ(node.word, other.primitive_count);
     } else {
         ASSERT_FALSE(scalar::is_leaf_word(node.word));
-        ASSERT_EQ(scalar::axis_of_word(node.word), axes[index]);
+        ASSERT_EQ(scalar::get_word_axis(node.word), axes[index]);
     }
 }
 
 /// Every key leads to its node; siblings are neighbours on a line of 64 bytes; no slot is without a node.
 void expect_complete(const Bvh& bvh, const std::vector<uint8_t>& axes) {
-    const SuccinctHeap heap = make_succinct_heap(bvh, axes);
+    const SuccinctHeap heap = make_succinct_heap({bvh, axes, compute_depth(bvh)});
     SlotFinder<scalar::HeapKey> wide(heap);
     SlotFinder<uint32_t> narrow(heap);
     std::vector<int> used(heap.nodes.size());
@@ -111,6 +112,7 @@ TEST(SuccinctHeap, leads_from_every_key_to_its_node) {
         const Bvh bvh = SahBvhBuilder::build(set.boxes, config);
         expect_complete(bvh, compute_axes(bvh));
         const AxisBvh linear = LbvhBuilder::build(set.boxes, {63, 1});
+        EXPECT_EQ(linear.depth, compute_depth(linear.bvh));
         const Bvh limited = limit_depth(linear.bvh, 62);
         expect_complete(limited, compute_axes(limited));
     }
@@ -133,7 +135,7 @@ TEST(SuccinctHeap, spends_two_bytes_on_the_way_to_a_pair) {
     const std::vector<Box> boxes = test::make_random_boxes(82, 50000, 10, 0.05f);
     for (const bool is_linear : {false, true}) {
         const Bvh bvh = is_linear ? LbvhBuilder::build(boxes, {30, 1}).bvh : SahBvhBuilder::build(boxes, {});
-        const SuccinctHeap heap = make_succinct_heap(bvh, compute_axes(bvh));
+        const SuccinctHeap heap = make_succinct_heap(add_axes(bvh));
         EXPECT_LT(double(heap.directory_bytes()), 2.0 * double(bvh.nodes.size() / 2) + 64);
         EXPECT_EQ(heap.byte_count(),
                   heap.directory_bytes() + heap.nodes.size() * 32 + heap.primitive_ids.size() * 4);
@@ -145,10 +147,9 @@ TEST(SuccinctHeap, refuses_trees_that_are_deeper_than_its_keys) {
     const test::SyntheticRay ray = test::make_synthetic_ray(0);
     const Bvh bvh = test::make_synthetic_bvh(test::make_chain(63, 0), random, ray, 0);
     const std::vector<uint8_t> axes = compute_axes(bvh);
-    EXPECT_THROW(make_succinct_heap(bvh, axes), Error);
-    EXPECT_THROW(make_dense_heap(bvh, axes), Error);
+    EXPECT_THROW(make_succinct_heap({bvh, axes, compute_depth(bvh)}), Error);
     const Bvh limited = limit_depth(bvh, 62);
-    EXPECT_NO_THROW(make_succinct_heap(limited, compute_axes(limited)));
+    EXPECT_NO_THROW(make_succinct_heap(add_axes(limited)));
 }
 
 TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
@@ -158,7 +159,7 @@ TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
         config.max_depth = 16;
         const Bvh bvh = SahBvhBuilder::build(set.boxes, config);
         const std::vector<uint8_t> axes = compute_axes(bvh);
-        const DenseHeap heap = make_dense_heap(bvh, axes);
+        const DenseHeap heap = test::make_dense_heap(bvh, axes);
         EXPECT_EQ(count_used_slots(heap), bvh.nodes.size());
         EXPECT_EQ(heap.slots[0].word, scalar::kEmptySlot);
         for (const KeyedNode& place : find_keys(bvh))
@@ -167,9 +168,8 @@ TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
 }
 
 TEST(Heaps, are_empty_without_primitives) {
-    EXPECT_TRUE(make_dense_heap({}, {}).slots.empty());
-    EXPECT_TRUE(make_succinct_heap({}, {}).nodes.empty());
-    EXPECT_TRUE(make_linked_bvh({}, {}).nodes.empty());
+    EXPECT_TRUE(make_succinct_heap({}).nodes.empty());
+    EXPECT_TRUE(make_linked_bvh({}).nodes.empty());
     EXPECT_EQ(compute_depth(Bvh{}), 0);
     EXPECT_EQ(compute_depth(DenseHeap{}), 0);
 }
@@ -178,7 +178,7 @@ TEST(LinkedBvh, has_parents_and_skips_of_the_depth_first_order) {
     for (const BoxSet& set : test::make_box_sets()) {
         SCOPED_TRACE(set.name);
         const Bvh bvh = SahBvhBuilder::build(set.boxes, {});
-        const LinkedBvh linked = make_linked_bvh(bvh, compute_axes(bvh));
+        const LinkedBvh linked = make_linked_bvh(add_axes(bvh));
         EXPECT_EQ(linked.depth, compute_depth(bvh));
         EXPECT_EQ(linked.parents[0], scalar::kNoNode);
         std::vector<uint32_t> order, pending{0};

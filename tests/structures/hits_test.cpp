@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "dense_heap.h"
 #include "ray_cases.h"
 #include "structures/lbvh.h"
 #include "structures/sah_bvh.h"
@@ -62,28 +63,31 @@ template <test::Intersect kIntersect> class CaseMaker {
     }
 
     void add_walks(const std::string& name, const Bvh& bvh, const std::vector<uint8_t>& axes) {
-        const auto linked = std::make_shared<const LinkedBvh>(make_linked_bvh(bvh, axes));
-        const auto view = walk_view(*linked);
+        const auto linked =
+            std::make_shared<const LinkedBvh>(make_linked_bvh({bvh, axes, compute_depth(bvh)}));
+        const auto view = make_walk_view(*linked);
         add<TraversalKind::stack>(name + ", stack", linked, view);
         add<TraversalKind::parent_link>(name + ", parent links", linked, view);
         add<TraversalKind::skip_link>(name + ", skip links", linked, view);
         const bool is_narrow = linked->depth <= int(scalar::kTrailLevels32);
         if (is_narrow) add<TraversalKind::restart_trail>(name + ", restart trail", linked, view);
-        add<TraversalKind::restart_trail>(name + ", wide restart trail", linked, wide_walk_view(*linked));
-        const auto heap = std::make_shared<const SuccinctHeap>(make_succinct_heap(bvh, axes));
+        add<TraversalKind::restart_trail>(name + ", wide restart trail", linked,
+                                          make_wide_walk_view(*linked));
+        const auto heap =
+            std::make_shared<const SuccinctHeap>(make_succinct_heap({bvh, axes, compute_depth(bvh)}));
         if (is_narrow) {
-            add<TraversalKind::trail>(name + ", trail", heap, walk_view(*heap));
-            add<TraversalKind::pair_trail>(name + ", pair trail", heap, walk_view(*heap));
+            add<TraversalKind::trail>(name + ", trail", heap, make_walk_view(*heap));
+            add<TraversalKind::pair_trail>(name + ", pair trail", heap, make_walk_view(*heap));
         }
-        add<TraversalKind::trail>(name + ", wide trail", heap, wide_walk_view(*heap));
-        add<TraversalKind::pair_trail>(name + ", wide pair trail", heap, wide_walk_view(*heap));
-        if (linked->depth < 18) add_dense(name + ", dense", make_dense_heap(bvh, axes));
+        add<TraversalKind::trail>(name + ", wide trail", heap, make_wide_walk_view(*heap));
+        add<TraversalKind::pair_trail>(name + ", wide pair trail", heap, make_wide_walk_view(*heap));
+        if (linked->depth < 18) add_dense(name + ", dense", test::make_dense_heap(bvh, axes));
     }
 
     void add_dense(const std::string& name, DenseHeap heap) {
         const auto shared = std::make_shared<const DenseHeap>(std::move(heap));
-        add<TraversalKind::trail>(name + ", trail", shared, walk_view(*shared));
-        add<TraversalKind::pair_trail>(name + ", pair trail", shared, walk_view(*shared));
+        add<TraversalKind::trail>(name + ", trail", shared, make_walk_view(*shared));
+        add<TraversalKind::pair_trail>(name + ", pair trail", shared, make_walk_view(*shared));
     }
 
     void add_kd(float empty_factor) {
@@ -91,9 +95,9 @@ template <test::Intersect kIntersect> class CaseMaker {
         config.empty_factor = empty_factor;
         config.cells = SahKdTreeBuilder::Cells::kept;
         const auto tree = std::make_shared<const KdTree>(SahKdTreeBuilder::build(boxes_, config));
-        add<TraversalKind::restart>("kd-tree, restart", tree, walk_view(*tree));
-        add<TraversalKind::push_down>("kd-tree, push-down", tree, walk_view(*tree));
-        add<TraversalKind::backtrack>("kd-tree, backtrack", tree, walk_view(*tree));
+        add<TraversalKind::restart>("kd-tree, restart", tree, make_walk_view(*tree));
+        add<TraversalKind::push_down>("kd-tree, push-down", tree, make_walk_view(*tree));
+        add<TraversalKind::backtrack>("kd-tree, backtrack", tree, make_walk_view(*tree));
     }
 
     template <TraversalKind kTraversal, class Tree, class View>
@@ -186,14 +190,14 @@ TEST_P(Hits, from_the_leaf_of_the_last_hit_are_those_of_brute_force) {
     const TriangleSet& set = GetParam();
     if (set.triangles.empty()) return;
     const DenseHeap paper = LbvhBuilder::build_heap(set.boxes(), {});
-    expect_same_from_last_hit<TraversalKind::trail>(walk_view(paper), set.triangles, 91);
-    expect_same_from_last_hit<TraversalKind::pair_trail>(walk_view(paper), set.triangles, 92);
+    expect_same_from_last_hit<TraversalKind::trail>(make_walk_view(paper), set.triangles, 91);
+    expect_same_from_last_hit<TraversalKind::pair_trail>(make_walk_view(paper), set.triangles, 92);
     SahBvhBuilder::Config config;
     config.max_depth = int(scalar::kTrailLevels64);
     const Bvh bvh = SahBvhBuilder::build(set.boxes(), config);
-    const SuccinctHeap heap = make_succinct_heap(bvh, compute_axes(bvh));
-    expect_same_from_last_hit<TraversalKind::trail>(wide_walk_view(heap), set.triangles, 93);
-    expect_same_from_last_hit<TraversalKind::pair_trail>(wide_walk_view(heap), set.triangles, 94);
+    const SuccinctHeap heap = make_succinct_heap(add_axes(bvh));
+    expect_same_from_last_hit<TraversalKind::trail>(make_wide_walk_view(heap), set.triangles, 93);
+    expect_same_from_last_hit<TraversalKind::pair_trail>(make_wide_walk_view(heap), set.triangles, 94);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, Hits, testing::ValuesIn(test::make_triangle_sets()),

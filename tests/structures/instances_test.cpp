@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <stdexcept>
 
+#include "dense_heap.h"
 #include "ray_cases.h"
 #include "structures/sah_bvh.h"
 #include "structures/walks.h"
@@ -103,8 +105,10 @@ class ForestMaker {
         config.max_depth = 12;
         const Bvh bvh = SahBvhBuilder::build(boxes, config);
         const std::vector<uint8_t> axes = compute_axes(bvh);
-        const uint node = forest_.add_links(make_linked_bvh(bvh, axes), first_entry, kind);
-        return {node, forest_.add_heap(make_dense_heap(bvh, axes), first_entry, kind), bvh.primitive_ids};
+        const uint node =
+            forest_.add_links(make_linked_bvh({bvh, axes, compute_depth(bvh)}), first_entry, kind);
+        return {node, forest_.add_heap(test::make_dense_heap(bvh, axes), first_entry, kind),
+                bvh.primitive_ids};
     }
 
     void add_body(uint32_t body, const std::vector<uint32_t>& bodies) {
@@ -164,7 +168,7 @@ template <TraversalKind kTraversal> class ForestWalker {
             enter_instance(first);
             return false;
         }
-        for (uint k = first; k < first + count_of_word(word); ++k) {
+        for (uint k = first; k < first + get_word_count(word); ++k) {
             const float t = test::intersect(ray_, forest_.triangles[k]);
             const uint32_t id = instance_ * 1000 + k;
             if (t == std::numeric_limits<float>::infinity()) continue;
@@ -205,7 +209,9 @@ template <TraversalKind kTraversal> class ForestWalker {
         object_ray_ = make_object_ray(origin, ray_.direction);
     }
 
-    TreeNode load_node(uint node) const {
+    TreeNode load_node(uint node) {
+        // A walk that is brought back wrongly may never end.
+        if (++loads_ > 100'000) throw std::runtime_error("the walk does not end");
         constexpr bool kIsHeap =
             kTraversal == TraversalKind::trail || kTraversal == TraversalKind::pair_trail;
         return kIsHeap ? forest_.slots[node] : forest_.nodes[node];
@@ -239,6 +245,7 @@ template <TraversalKind kTraversal> class ForestWalker {
     Nearest best_;
     std::function<void()> restore_; ///< the state outside of the instance
     uint instance_ = 0, heap_base_ = 0;
+    int loads_ = 0;
 };
 
 Nearest find_by_brute_force(const Forest& forest, BoxRay ray) {

@@ -185,12 +185,12 @@ void expect_same_tree(const DenseHeap& heap, const AxisBvh& tree, uint32_t key, 
     const bool is_last_level = int(std::bit_width(key)) == heap.levels;
     ASSERT_EQ(scalar::is_leaf_word(node.word), other.is_leaf() || is_last_level);
     if (!scalar::is_leaf_word(node.word)) {
-        ASSERT_EQ(scalar::axis_of_word(node.word), tree.axes[index]);
+        ASSERT_EQ(scalar::get_word_axis(node.word), tree.axes[index]);
         expect_same_tree(heap, tree, 2 * key, other.first, used);
         expect_same_tree(heap, tree, 2 * key + 1, other.first + 1, used);
     } else if (other.is_leaf()) {
         ASSERT_EQ(node.first, other.first);
-        ASSERT_EQ(scalar::count_of_word(node.word), other.primitive_count);
+        ASSERT_EQ(scalar::get_word_count(node.word), other.primitive_count);
     }
 }
 
@@ -210,7 +210,7 @@ TEST(Lbvh, in_the_heap_of_the_paper_is_the_compact_tree) {
                 std::vector<int> seen(set.boxes.size());
                 for (const TreeNode& node : heap.slots) {
                     if (node.word == scalar::kEmptySlot || !scalar::is_leaf_word(node.word)) continue;
-                    for (uint32_t k = 0; k < scalar::count_of_word(node.word); ++k)
+                    for (uint32_t k = 0; k < scalar::get_word_count(node.word); ++k)
                         ++seen[heap.primitive_ids[node.first + k]];
                 }
                 for (const int times : seen) ASSERT_EQ(times, 1);

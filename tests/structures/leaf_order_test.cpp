@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "dense_heap.h"
 #include "structures/walks.h"
 #include "synthetic_trees.h"
 
@@ -18,28 +19,28 @@ class OrderCase {
   public:
     OrderCase(const Bvh& bvh, const std::vector<uint8_t>& axes, const BoxRay& ray,
               const std::vector<float>& limits)
-        : linked_(make_linked_bvh(bvh, axes)),
-          succinct_(make_succinct_heap(bvh, axes)),
+        : linked_(make_linked_bvh({bvh, axes, compute_depth(bvh)})),
+          succinct_(make_succinct_heap({bvh, axes, compute_depth(bvh)})),
           ray_(ray),
           limits_(limits) {
-        if (linked_.depth < 12) dense_ = make_dense_heap(bvh, axes);
+        if (linked_.depth < 12) dense_ = test::make_dense_heap(bvh, axes);
     }
 
     void expect_same_order() {
-        expect<TraversalKind::stack>(walk_view(linked_), Order::distance);
-        expect<TraversalKind::parent_link>(walk_view(linked_), Order::axis);
-        expect<TraversalKind::skip_link>(walk_view(linked_), Order::left);
-        expect<TraversalKind::restart_trail>(wide_walk_view(linked_), Order::distance);
-        expect<TraversalKind::trail>(wide_walk_view(succinct_), Order::axis);
-        expect<TraversalKind::pair_trail>(wide_walk_view(succinct_), Order::distance);
+        expect<TraversalKind::stack>(make_walk_view(linked_), Order::distance);
+        expect<TraversalKind::parent_link>(make_walk_view(linked_), Order::axis);
+        expect<TraversalKind::skip_link>(make_walk_view(linked_), Order::left);
+        expect<TraversalKind::restart_trail>(make_wide_walk_view(linked_), Order::distance);
+        expect<TraversalKind::trail>(make_wide_walk_view(succinct_), Order::axis);
+        expect<TraversalKind::pair_trail>(make_wide_walk_view(succinct_), Order::distance);
         if (linked_.depth <= int(scalar::kTrailLevels32)) {
-            expect<TraversalKind::restart_trail>(walk_view(linked_), Order::distance);
-            expect<TraversalKind::trail>(walk_view(succinct_), Order::axis);
-            expect<TraversalKind::pair_trail>(walk_view(succinct_), Order::distance);
+            expect<TraversalKind::restart_trail>(make_walk_view(linked_), Order::distance);
+            expect<TraversalKind::trail>(make_walk_view(succinct_), Order::axis);
+            expect<TraversalKind::pair_trail>(make_walk_view(succinct_), Order::distance);
         }
         if (!dense_.slots.empty()) {
-            expect<TraversalKind::trail>(walk_view(dense_), Order::axis);
-            expect<TraversalKind::pair_trail>(walk_view(dense_), Order::distance);
+            expect<TraversalKind::trail>(make_walk_view(dense_), Order::axis);
+            expect<TraversalKind::pair_trail>(make_walk_view(dense_), Order::distance);
         }
     }
 
@@ -223,15 +224,17 @@ TEST(LeafOrder, from_any_leaf_has_every_leaf_once) {
         const test::SyntheticRay ray = test::make_synthetic_ray(random());
         const Bvh bvh = test::make_synthetic_bvh(shape, random, ray, 0);
         const std::vector<uint8_t> axes = test::make_random_axes(bvh, random);
-        const SuccinctHeap heap = make_succinct_heap(bvh, axes);
+        const SuccinctHeap heap = make_succinct_heap({bvh, axes, compute_depth(bvh)});
         for (const KeyedLeaf& leaf : find_leaf_keys(bvh)) {
             const size_t count = bvh.primitive_ids.size();
             const scalar::HeapKey key{uint32_t(leaf.key), uint32_t(leaf.key >> 32)};
-            expect_all_from<TraversalKind::trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
-            expect_all_from<TraversalKind::pair_trail>(wide_walk_view(heap), key, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::trail>(make_wide_walk_view(heap), key, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::pair_trail>(make_wide_walk_view(heap), key, leaf.id, count,
+                                                       ray.ray());
             if (heap.depth > int(scalar::kTrailLevels32)) continue;
-            expect_all_from<TraversalKind::trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
-            expect_all_from<TraversalKind::pair_trail>(walk_view(heap), key.low, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::trail>(make_walk_view(heap), key.low, leaf.id, count, ray.ray());
+            expect_all_from<TraversalKind::pair_trail>(make_walk_view(heap), key.low, leaf.id, count,
+                                                       ray.ray());
         }
     }
 }
@@ -240,18 +243,19 @@ TEST(LeafOrder, remembers_the_leaf_that_stopped_a_ray) {
     std::mt19937 random(8);
     const test::SyntheticRay ray = test::make_synthetic_ray(0);
     const Bvh bvh = test::make_synthetic_bvh(test::make_random_shape(random, 9, 0.9, 200), random, ray, 0);
-    const DenseHeap heap = make_dense_heap(bvh, test::make_random_axes(bvh, random));
+    const DenseHeap heap = test::make_dense_heap(bvh, test::make_random_axes(bvh, random));
     for (const KeyedLeaf& wanted : find_leaf_keys(bvh)) {
         const auto leaf = [&](uint32_t id, const BoxRay&) { return id == wanted.id; };
         uint32_t trail_start = 1, pair_start = 1;
-        EXPECT_TRUE(any_hit_from<TraversalKind::trail>(walk_view(heap), trail_start, ray.ray(), leaf));
-        EXPECT_TRUE(any_hit_from<TraversalKind::pair_trail>(walk_view(heap), pair_start, ray.ray(), leaf));
+        EXPECT_TRUE(any_hit_from<TraversalKind::trail>(make_walk_view(heap), trail_start, ray.ray(), leaf));
+        EXPECT_TRUE(
+            any_hit_from<TraversalKind::pair_trail>(make_walk_view(heap), pair_start, ray.ray(), leaf));
         EXPECT_EQ(trail_start, wanted.key);
         EXPECT_EQ(pair_start, wanted.key);
         // The next ray needs one box for the same answer.
         WalkCounts counts;
         EXPECT_TRUE(
-            any_hit_from<TraversalKind::trail>(walk_view(heap), trail_start, ray.ray(), leaf, counts));
+            any_hit_from<TraversalKind::trail>(make_walk_view(heap), trail_start, ray.ray(), leaf, counts));
         EXPECT_EQ(counts.box_tests, 1u);
         EXPECT_EQ(counts.primitive_tests, 1u);
     }

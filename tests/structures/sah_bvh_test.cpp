@@ -169,9 +169,9 @@ TEST(SahSplit, binning_stays_inside_the_bins_whatever_the_centroids_are) {
     for (const float x : {-kInfinity, -3e38f, -1.0f, 0.0f, 1.0f, 3e38f, kInfinity})
         boxes.push_back({{x, 0, 0}, {x, 1, 1}});
     boxes.push_back({{-kInfinity, 0, 0}, {kInfinity, 1, 1}}); // its centroid is no number
-    std::vector<BoxRef> refs;
-    for (const Box& box : boxes) refs.push_back(make_box_ref(box, uint32_t(refs.size())));
-    const SplitInput input{refs, {{-1, 0, 0, 0}, {1, 1, 1, 0}}};
+    std::vector<NumberedBox> members;
+    for (const Box& box : boxes) members.push_back(make_numbered_box(box, uint32_t(members.size())));
+    const SplitInput input{members, {{-1, 0, 0, 0}, {1, 1, 1, 0}}};
     constexpr int kBins = 16;
     SahSplit split;
     split.axis = 0;
@@ -179,7 +179,7 @@ TEST(SahSplit, binning_stays_inside_the_bins_whatever_the_centroids_are) {
         split.cut = cut;
         const uint32_t left = apply_binned_split(input, split, kBins).left_count;
         std::vector<uint32_t> front;
-        for (uint32_t k = 0; k < left; ++k) front.push_back(refs[k].id);
+        for (uint32_t k = 0; k < left; ++k) front.push_back(members[k].id);
         for (const uint32_t low : {0u, 1u, 2u, 7u}) EXPECT_EQ(std::count(front.begin(), front.end(), low), 1);
         for (const uint32_t high : {4u, 5u, 6u}) EXPECT_EQ(std::count(front.begin(), front.end(), high), 0);
     }

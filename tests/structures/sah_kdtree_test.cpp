@@ -37,7 +37,10 @@ bool touches(const Box& a, const Box& b) {
            b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
 
-/// Cells tile their parents and have a thickness; the leaves hold what touches them.
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Cells tile their parents, have a thickness and are open where the root ends; the leaves hold what touches
+/// them.
 class SoundCheck {
   public:
     SoundCheck(const KdTree& tree, const std::vector<Box>& boxes) : tree_(tree), boxes_(boxes) {}
@@ -55,8 +58,13 @@ class SoundCheck {
         ++visited_;
         depth_ = std::max(depth_, depth);
         ASSERT_LT(index, tree_.nodes.size());
-        ASSERT_EQ(tree_.cells[index].lower, cell.lower);
-        ASSERT_EQ(tree_.cells[index].upper, cell.upper);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float lower = get_component(cell.lower, axis), upper = get_component(cell.upper, axis);
+            const bool is_first = lower == get_component(tree_.bounds.lower, axis);
+            const bool is_last = upper == get_component(tree_.bounds.upper, axis);
+            ASSERT_EQ(get_component(tree_.cells[index].lower, axis), is_first ? -kInfinity : lower);
+            ASSERT_EQ(get_component(tree_.cells[index].upper, axis), is_last ? kInfinity : upper);
+        }
         ASSERT_EQ(tree_.cells[index].parent, parent);
         const scalar::KdNode& node = tree_.nodes[index];
         const uint32_t axis = node.word & 3u;
@@ -187,8 +195,8 @@ template <test::Intersect kIntersect> class KdRays {
   private:
     template <TraversalKind kTraversal> int count_wrong(BoxRay ray, const Nearest& expected) const {
         NearestLeaf<kIntersect> leaf(triangles_);
-        const bool is_hit = any_hit<kTraversal>(walk_view(tree_), ray, AnyLeaf<kIntersect>(triangles_));
-        closest_hit<kTraversal>(walk_view(tree_), ray, leaf);
+        const bool is_hit = any_hit<kTraversal>(make_walk_view(tree_), ray, AnyLeaf<kIntersect>(triangles_));
+        closest_hit<kTraversal>(make_walk_view(tree_), ray, leaf);
         return leaf.best == expected && is_hit == expected.is_hit() ? 0 : 1;
     }
 

@@ -155,7 +155,7 @@ class RecursiveWalk {
         bool is_right_first = false;
         if (order_ == Order::distance) is_right_first = enter(node.first + 1) < enter(node.first);
         if (order_ == Order::axis)
-            is_right_first = get_component(ray_.direction, int(scalar::axis_of_word(node.word))) < 0;
+            is_right_first = get_component(ray_.direction, int(scalar::get_word_axis(node.word))) < 0;
         visit(node.first + (is_right_first ? 1 : 0));
         visit(node.first + (is_right_first ? 0 : 1));
     }

@@ -3,8 +3,8 @@
 #include "box_sets.h"
 #include "structures/brute_force.h"
 #include "structures/sah_bvh.h"
-#include "structures/walk_wide.h"
-#include "structures/walks.h"
+#include "walk_plain.h"
+#include "walk_wide.h"
 
 namespace relief {
 namespace {

@@ -65,19 +65,24 @@ class DeviceLbvh : public GpuTest {
   protected:
     DeviceLbvh() : builder_(get_builder()) {}
 
-    static Buffer upload_boxes(const std::vector<Box>& boxes) {
-        Buffer buffer(device(), {.name = "boxes", .bytes = boxes.size() * sizeof(Box)});
-        if (!boxes.empty()) buffer.upload(boxes);
-        return buffer;
+    /// A triangle a box, from corner to corner.
+    static DeviceMesh upload_boxes(const std::vector<Box>& boxes) {
+        std::vector<Vec3f> positions;
+        std::vector<uint32_t> indices;
+        for (const Box& box : boxes) {
+            const uint32_t first = uint32_t(positions.size());
+            positions.insert(positions.end(), {box.lower, box.upper});
+            indices.insert(indices.end(), {first, first + 1, first});
+        }
+        return upload_mesh(device(), positions, indices);
     }
 
     void expect_same_tree(const BoxSet& set, const LbvhBuilder::Config& config) {
         const std::string name = set.name + ", " + std::to_string(config.code_bits) + " bits, leaves of " +
                                  std::to_string(config.max_leaf_size);
         const AxisBvh lbvh = LbvhBuilder::build(set.boxes, config);
-        const LinkedBvh expected = make_linked_bvh(lbvh.bvh, lbvh.axes);
-        const Buffer boxes = upload_boxes(set.boxes);
-        const DeviceTree found = builder_.build(boxes, uint32_t(set.boxes.size()), config);
+        const LinkedBvh expected = make_linked_bvh(lbvh);
+        const DeviceTree found = builder_.build(upload_boxes(set.boxes), config);
         expect_same_nodes(found, expected.nodes, name);
         expect_same_words(found.primitive_ids, expected.primitive_ids, name + ": ids");
         expect_same_words(found.parents, expected.parents, name + ": parents");
@@ -89,8 +94,7 @@ class DeviceLbvh : public GpuTest {
         const std::string name = set.name + ", " + std::to_string(config.code_bits) + " bits, " +
                                  std::to_string(config.levels) + " levels";
         const DenseHeap expected = LbvhBuilder::build_heap(set.boxes, config);
-        const Buffer boxes = upload_boxes(set.boxes);
-        const DeviceTree found = builder_.build_heap(boxes, uint32_t(set.boxes.size()), config);
+        const DeviceTree found = builder_.build_heap(upload_boxes(set.boxes), config);
         expect_same_nodes(found, expected.slots, name);
         expect_same_words(found.primitive_ids, expected.primitive_ids, name + ": ids");
         EXPECT_EQ(found.depth, compute_depth(expected)) << name;
@@ -142,16 +146,16 @@ TEST_F(DeviceLbvh, of_a_mesh_is_that_of_its_triangles_boxes) {
     }
     const DeviceMesh mesh = upload_mesh(device(), positions, indices);
     const AxisBvh lbvh = LbvhBuilder::build(set.boxes, {});
-    expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh.bvh, lbvh.axes).nodes, "mesh");
+    expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh).nodes, "mesh");
     expect_same_nodes(builder_.build_heap(mesh, {}), LbvhBuilder::build_heap(set.boxes, {}).slots, "heap");
     EXPECT_THROW(upload_mesh(device(), positions, std::vector<uint32_t>{0, 1, 9000}), Error);
 }
 
 TEST_F(DeviceLbvh, twice_gives_the_same_bits) {
     const std::vector<Box> boxes = make_lattice_boxes(20'000, 24);
-    const Buffer uploaded = upload_boxes(boxes);
-    const DeviceTree first = builder_.build(uploaded, uint32_t(boxes.size()), {});
-    const DeviceTree second = builder_.build(uploaded, uint32_t(boxes.size()), {});
+    const DeviceMesh uploaded = upload_boxes(boxes);
+    const DeviceTree first = builder_.build(uploaded, {});
+    const DeviceTree second = builder_.build(uploaded, {});
     ASSERT_EQ(first.node_count, second.node_count);
     const size_t words = size_t(first.node_count) * 8;
     EXPECT_EQ(first.nodes.download<uint32_t>(words), second.nodes.download<uint32_t>(words));
@@ -160,14 +164,14 @@ TEST_F(DeviceLbvh, twice_gives_the_same_bits) {
 TEST_F(DeviceLbvh, says_so_when_the_device_ends_a_loop_early) {
     if (!device().is_cpu()) GTEST_SKIP() << "only a device that bounds its loops";
     const std::vector<Box> boxes(70'000, Box{{1, 2, 3}, {2, 3, 5}});
-    const Buffer uploaded = upload_boxes(boxes);
-    EXPECT_THROW(builder_.build_heap(uploaded, uint32_t(boxes.size()), {.levels = 2}), Error);
+    const DeviceMesh uploaded = upload_boxes(boxes);
+    EXPECT_THROW(builder_.build_heap(uploaded, {.levels = 2}), Error);
 }
 
 TEST_F(DeviceLbvh, reports_times_and_bytes_of_a_build) {
     const std::vector<Box> boxes = test::make_random_boxes(41, 50'000, 10, 0.1f);
-    const Buffer uploaded = upload_boxes(boxes);
-    builder_.build(uploaded, uint32_t(boxes.size()), {});
+    const DeviceMesh uploaded = upload_boxes(boxes);
+    builder_.build(uploaded, {});
     const BuildReport& report = builder_.report();
     EXPECT_EQ(report.primitive_count, boxes.size());
     for (size_t part = 0; part < BuildReport::kPartCount; ++part) {
@@ -181,6 +185,16 @@ TEST_F(DeviceLbvh, reports_times_and_bytes_of_a_build) {
     EXPECT_LT(share, 1.5);
     RecordProperty("primitives_per_second", std::to_string(report.primitives_per_second()));
     RecordProperty("share_of_bound", std::to_string(share));
+}
+
+TEST(LeastBuildBytes, grow_with_the_codes_and_the_slots_of_a_heap) {
+    BuildReport report;
+    report.primitive_count = 1000;
+    EXPECT_EQ(compute_least_build_bytes(report), 292'000);
+    report.code_bits = 63;
+    EXPECT_EQ(compute_least_build_bytes(report), 432'000);
+    report.code_bits = 30, report.heap_slots = 4096;
+    EXPECT_EQ(compute_least_build_bytes(report), 148'000 + 64 * 4096);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "engine/vulkan/lbvh_builder.h"
 #include "engine/vulkan/tree_tracer.h"
 #include "relief/error.h"
+#include "structures/dense_heap.h"
 #include "structures/ray_cases.h"
 #include "structures/sah_bvh.h"
 #include "vulkan/gpu_fixture.h"
@@ -172,9 +173,9 @@ class Forest {
         const auto& kd =
             kd_.emplace_back(SahKdTreeBuilder::build(boxes, {.cells = SahKdTreeBuilder::Cells::kept}));
         const DeviceTree& tree = keep(upload_tree(device_, kd));
-        add<TraversalKind::restart>("kd-tree", tree, walk_view(kd));
-        add<TraversalKind::push_down>("kd-tree", tree, walk_view(kd));
-        add<TraversalKind::backtrack>("kd-tree", tree, walk_view(kd));
+        add<TraversalKind::restart>("kd-tree", tree, make_walk_view(kd));
+        add<TraversalKind::push_down>("kd-tree", tree, make_walk_view(kd));
+        add<TraversalKind::backtrack>("kd-tree", tree, make_walk_view(kd));
     }
 
     const std::vector<WalkCase>& walks() const { return walks_; }
@@ -183,34 +184,36 @@ class Forest {
     const DeviceTree& keep(DeviceTree tree) { return trees_.emplace_back(std::move(tree)); }
 
     void add_linked(const std::string& name, const Bvh& bvh, const std::vector<uint8_t>& axes) {
-        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(bvh, axes));
+        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh({bvh, axes, compute_depth(bvh)}));
         add_links(name, keep(upload_tree(device_, linked)), linked);
-        const SuccinctHeap& succinct = succinct_.emplace_back(make_succinct_heap(bvh, axes));
+        const SuccinctHeap& succinct =
+            succinct_.emplace_back(make_succinct_heap({bvh, axes, compute_depth(bvh)}));
         const DeviceTree& narrow = keep(upload_tree(device_, succinct));
         if (narrow.depth <= int(scalar::kTrailLevels32))
-            add_heap(name + ", succinct", narrow, walk_view(succinct));
-        add_heap(name + ", succinct, wide", widen(upload_tree(device_, succinct)), wide_walk_view(succinct));
+            add_heap(name + ", succinct", narrow, make_walk_view(succinct));
+        add_heap(name + ", succinct, wide", widen(upload_tree(device_, succinct)),
+                 make_wide_walk_view(succinct));
         if (linked.depth >= 16) return;
-        const DenseHeap& dense = dense_.emplace_back(make_dense_heap(bvh, axes));
-        add_heap(name + ", dense", keep(upload_tree(device_, dense)), walk_view(dense));
+        const DenseHeap& dense = dense_.emplace_back(test::make_dense_heap(bvh, axes));
+        add_heap(name + ", dense", keep(upload_tree(device_, dense)), make_walk_view(dense));
     }
 
     void add_built(DeviceLbvhBuilder& builder, const std::vector<Box>& boxes) {
         const AxisBvh lbvh = LbvhBuilder::build(boxes, {});
-        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(lbvh.bvh, lbvh.axes));
+        const LinkedBvh& linked = linked_.emplace_back(make_linked_bvh(lbvh));
         add_links("LBVH of the device", keep(builder.build(mesh, {})), linked);
         const DenseHeap& dense = dense_.emplace_back(LbvhBuilder::build_heap(boxes, {}));
-        add_heap("heap of the device", keep(builder.build_heap(mesh, {})), walk_view(dense));
+        add_heap("heap of the device", keep(builder.build_heap(mesh, {})), make_walk_view(dense));
     }
 
     void add_links(const std::string& name, const DeviceTree& tree, const LinkedBvh& linked) {
-        add<TraversalKind::stack>(name, tree, walk_view(linked));
-        add<TraversalKind::parent_link>(name, tree, walk_view(linked));
-        add<TraversalKind::skip_link>(name, tree, walk_view(linked));
+        add<TraversalKind::stack>(name, tree, make_walk_view(linked));
+        add<TraversalKind::parent_link>(name, tree, make_walk_view(linked));
+        add<TraversalKind::skip_link>(name, tree, make_walk_view(linked));
         if (tree.depth <= int(scalar::kTrailLevels32))
-            add<TraversalKind::restart_trail>(name, tree, walk_view(linked));
+            add<TraversalKind::restart_trail>(name, tree, make_walk_view(linked));
         add<TraversalKind::restart_trail>(name + ", wide", widen(upload_tree(device_, linked)),
-                                          wide_walk_view(linked));
+                                          make_wide_walk_view(linked));
     }
 
     template <class View> void add_heap(const std::string& name, const DeviceTree& tree, const View& view) {
@@ -406,7 +409,7 @@ class TreeTracing : public TreeBatch {
 
     DeviceTree make_linked() {
         const Bvh sah = SahBvhBuilder::build(boxes_, {});
-        return upload_tree(device(), make_linked_bvh(sah, compute_axes(sah)));
+        return upload_tree(device(), make_linked_bvh(add_axes(sah)));
     }
 
     TriangleSet set_;
@@ -448,7 +451,7 @@ TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
         const TreeNode& leaf = host.slots[noted.leaves[k].low];
         ASSERT_TRUE(scalar::is_leaf_word(leaf.word));
         const auto begin = host.primitive_ids.begin() + leaf.first;
-        EXPECT_EQ(std::count(begin, begin + scalar::count_of_word(leaf.word), noted.hits[k].primitive), 1);
+        EXPECT_EQ(std::count(begin, begin + scalar::get_word_count(leaf.word), noted.hits[k].primitive), 1);
     }
 }
 

@@ -39,7 +39,7 @@ struct Tracer::Implementation {
     void make_trees(const PreparedScene& scene, const RenderSettings& settings) {
         const TraversalKind traversal = choose_traversal(settings, EngineKind::cpu);
         if (traversal != TraversalKind::wide) {
-            walk_trees = make_walk_trees(scene, settings.structure, traversal);
+            walk_trees = make_walk_trees(scene, settings, EngineKind::cpu);
             walk = find_walk(traversal, walk_trees.depth);
             return;
         }
@@ -57,7 +57,7 @@ struct Tracer::Implementation {
         instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
     }
 
-    WalkView walk_view() const { return {view, walk_trees, kernels->primitive}; }
+    WalkView make_walk_view() const { return {view, walk_trees, kernels->primitive}; }
 
     /// `cast` is the place in TraceContext::casts.
     template <class Trace> void trace_batch(size_t cast, size_t rays, const Trace& trace) const {
@@ -128,7 +128,7 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
     implementation_->trace_batch(2 * size_t(depth), rays.size(), [&](TraceContext& context) {
         const Implementation& self = *implementation_;
         if (self.walk.closest_hits)
-            self.walk.closest_hits(self.walk_view(), context, rays.data(), hits.data(), rays.size());
+            self.walk.closest_hits(self.make_walk_view(), context, rays.data(), hits.data(), rays.size());
         else
             self.kernels->closest_hits(self.view, context, rays.data(), hits.data(), rays.size());
     });
@@ -138,7 +138,7 @@ void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occlude
     implementation_->trace_batch(2 * size_t(depth) + 1, rays.size(), [&](TraceContext& context) {
         const Implementation& self = *implementation_;
         if (self.walk.any_hits)
-            self.walk.any_hits(self.walk_view(), context, rays.data(), occluded.data(), rays.size());
+            self.walk.any_hits(self.make_walk_view(), context, rays.data(), occluded.data(), rays.size());
         else
             self.kernels->any_hits(self.view, context, rays.data(), occluded.data(), rays.size());
     });

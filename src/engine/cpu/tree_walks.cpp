@@ -62,23 +62,14 @@ template <TraversalKind kTraversal, class Width> class SceneWalk {
         leave_instance();
         stack_walk = make_empty_stack();
         start();
-        const bool is_complete = walk();
+        const bool is_complete = run_walk();
         DCHECK(is_complete);
         static_cast<void>(is_complete);
         return is_ended_;
     }
 
   private:
-#include "shared/succinct_heap.h"
-#include "shared/traverse_kd_backtrack.h"
-#include "shared/traverse_kd_push_down.h"
-#include "shared/traverse_kd_restart.h"
-#include "shared/traverse_pair_trail.h"
-#include "shared/traverse_parent_link.h"
-#include "shared/traverse_restart_trail.h"
-#include "shared/traverse_skip_link.h"
-#include "shared/traverse_stack.h"
-#include "shared/traverse_trail.h"
+#include "structures/walk_members-inl.h"
 
     void leave_instance() {
         instance_ = kNoIndex;
@@ -98,24 +89,9 @@ template <TraversalKind kTraversal, class Width> class SceneWalk {
 
     /// Walks the current tree from its root.
     void start() {
-        const uint root = tree_->bounds.is_empty() ? kNoNode : 0u;
-        if constexpr (kTraversal == TraversalKind::stack)
-            start_stack(root);
-        else if constexpr (kTraversal == TraversalKind::restart_trail)
-            restart_walk = start_restart_trail(root, make_root_level());
-        else if constexpr (kTraversal == TraversalKind::parent_link)
-            parent_walk = start_parent_link(root);
-        else if constexpr (kTraversal == TraversalKind::skip_link)
-            skip_walk = start_skip_link(root);
-        else if constexpr (kTraversal == TraversalKind::trail)
-            trail_walk = start_trail(make_key(root == kNoNode ? 0u : 1u));
-        else if constexpr (kTraversal == TraversalKind::pair_trail)
-            pair_walk = start_pair_trail(make_key(root == kNoNode ? 0u : 1u));
-        else
-            start_kd(root);
+        const bool is_empty = tree_->bounds.is_empty();
+        start_walk(is_empty ? kNoNode : 0u, make_key(is_empty ? 0u : 1u));
     }
-
-    static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
 
     static Key make_key(uint low) {
         if constexpr (kIsWide)
@@ -124,48 +100,10 @@ template <TraversalKind kTraversal, class Width> class SceneWalk {
             return low;
     }
 
-    static Key make_root_level() {
-        if constexpr (kIsWide)
-            return make_root_level64();
-        else
-            return make_root_level32();
-    }
-
-    void start_kd(uint root) {
+    KdRay make_own_kd_ray() const {
         const Box& cell = tree_->kd.bounds;
-        const KdRay ray = make_kd_ray(ray_, cell.lower, cell.upper, world_.t_min, limit_);
-        if constexpr (kTraversal == TraversalKind::restart)
-            kd_restart_walk = start_kd_restart(root, ray);
-        else if constexpr (kTraversal == TraversalKind::push_down)
-            kd_push_down_walk = start_kd_push_down(root, ray);
-        else
-            kd_backtrack_walk = start_kd_backtrack(root, ray);
+        return make_kd_ray(ray_, cell.lower, cell.upper, world_.t_min, limit_);
     }
-
-    bool walk() {
-        if constexpr (kTraversal == TraversalKind::stack)
-            return walk_stack();
-        else if constexpr (kTraversal == TraversalKind::restart_trail)
-            return walk_restart_trail();
-        else if constexpr (kTraversal == TraversalKind::parent_link)
-            return walk_parent_link();
-        else if constexpr (kTraversal == TraversalKind::skip_link)
-            return walk_skip_link();
-        else if constexpr (kTraversal == TraversalKind::trail)
-            return walk_trail();
-        else if constexpr (kTraversal == TraversalKind::pair_trail)
-            return walk_pair_trail();
-        else if constexpr (kTraversal == TraversalKind::restart)
-            return walk_kd_restart();
-        else if constexpr (kTraversal == TraversalKind::push_down)
-            return walk_kd_push_down();
-        else
-            return walk_kd_backtrack();
-    }
-
-    static constexpr bool kIsKd = kTraversal == TraversalKind::restart ||
-                                  kTraversal == TraversalKind::push_down ||
-                                  kTraversal == TraversalKind::backtrack;
 
     /// In the order of TraversalKind.
     static constexpr size_t kIndex = size_t(kTraversal) - size_t(TraversalKind::stack);
@@ -223,7 +161,7 @@ template <TraversalKind kTraversal, class Width> class SceneWalk {
 
     /// `word` of a kd leaf is its count.
     bool visit_leaf(uint first, uint word, uint) {
-        const uint count = count_of_word(word);
+        const uint count = get_word_count(word);
         if (instance_ == kNoIndex) {
             waiting_first_ = first, waiting_count_ = count;
             world_state_ = state();

@@ -143,32 +143,32 @@ class Walks {
         switch (query_.traversal) {
         case TraversalKind::restart_trail:
             return tree.depth <= int(scalar::kTrailLevels32)
-                       ? run<TraversalKind::restart_trail>(walk_view(tree))
-                       : run<TraversalKind::restart_trail>(wide_walk_view(tree));
+                       ? run<TraversalKind::restart_trail>(make_walk_view(tree))
+                       : run<TraversalKind::restart_trail>(make_wide_walk_view(tree));
         case TraversalKind::parent_link:
-            return run<TraversalKind::parent_link>(walk_view(tree));
+            return run<TraversalKind::parent_link>(make_walk_view(tree));
         case TraversalKind::skip_link:
-            return run<TraversalKind::skip_link>(walk_view(tree));
+            return run<TraversalKind::skip_link>(make_walk_view(tree));
         default:
-            return run<TraversalKind::stack>(walk_view(tree));
+            return run<TraversalKind::stack>(make_walk_view(tree));
         }
     }
 
-    TreeCast operator()(const DenseHeap& tree) const { return run_trail(walk_view(tree)); }
+    TreeCast operator()(const DenseHeap& tree) const { return run_trail(make_walk_view(tree)); }
 
     TreeCast operator()(const SuccinctHeap& tree) const {
-        return tree.depth <= int(scalar::kTrailLevels32) ? run_trail(walk_view(tree))
-                                                         : run_trail(wide_walk_view(tree));
+        return tree.depth <= int(scalar::kTrailLevels32) ? run_trail(make_walk_view(tree))
+                                                         : run_trail(make_wide_walk_view(tree));
     }
 
     TreeCast operator()(const KdTree& tree) const {
         switch (query_.traversal) {
         case TraversalKind::push_down:
-            return run<TraversalKind::push_down>(walk_view(tree));
+            return run<TraversalKind::push_down>(make_walk_view(tree));
         case TraversalKind::backtrack:
-            return run<TraversalKind::backtrack>(walk_view(tree));
+            return run<TraversalKind::backtrack>(make_walk_view(tree));
         default:
-            return run<TraversalKind::restart>(walk_view(tree));
+            return run<TraversalKind::restart>(make_walk_view(tree));
         }
     }
 

@@ -66,7 +66,7 @@ DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene, const
     if (settings.structure == StructureKind::bvh && traversal == TraversalKind::stack)
         add_trees(scene, arrays);
     else
-        add_walk_trees(scene, settings.structure, traversal, arrays);
+        add_walk_trees(scene, settings, arrays);
     add_instances(scene, arrays);
     upload(device, arrays);
 }
@@ -167,10 +167,9 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
     node_count_ = arrays.nodes.size();
 }
 
-void DeviceScene::add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
-                                 Arrays& arrays) {
-    const WalkTrees trees = make_walk_trees(scene, structure, traversal);
-    traversal_kernel_ = name_walk("scene_walk", traversal, trees.depth);
+void DeviceScene::add_walk_trees(const PreparedScene& scene, const RenderSettings& settings, Arrays& arrays) {
+    const WalkTrees trees = make_walk_trees(scene, settings, EngineKind::vulkan);
+    traversal_kernel_ = name_walk("scene_walk", trees.traversal, trees.depth);
     append_walk_trees(trees, arrays.nodes, arrays.primitive_ids);
     for (const WalkTree& tree : trees.surfaces)
         arrays.surface_roots.push_back(tree.bounds.is_empty() ? kNone : 0);

@@ -59,8 +59,7 @@ class DeviceScene {
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
     void add_instances(const PreparedScene& scene, Arrays& arrays);
     void add_trees(const PreparedScene& scene, Arrays& arrays);
-    void add_walk_trees(const PreparedScene& scene, StructureKind structure, TraversalKind traversal,
-                        Arrays& arrays);
+    void add_walk_trees(const PreparedScene& scene, const RenderSettings& settings, Arrays& arrays);
     void upload(const Device& device, Arrays& arrays);
 
     Tables tables_;

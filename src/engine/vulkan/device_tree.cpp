@@ -36,9 +36,10 @@ DeviceMesh upload_mesh(const Device& device, std::span<const Vec3f> positions,
     for (size_t k = 0; k + 2 < indices.size(); k += 3) {
         for (size_t corner = 0; corner < 3; ++corner)
             if (indices[k + corner] >= positions.size())
-                throw Error(ErrorKind::bad_input, {fmt::format("triangle {} has a vertex {} of {}", k / 3,
-                                                               indices[k + corner], positions.size()),
-                                                   "mesh", ""});
+                throw Error(ErrorKind::bad_input,
+                            {fmt::format("vertex {} is out of range, there are {}", indices[k + corner],
+                                         positions.size()),
+                             fmt::format("mesh, triangle {}", k / 3), "write the indices from 0 on"});
         triangles.insert(triangles.end(), {indices[k], indices[k + 1], indices[k + 2], 0u});
     }
     return {make_geometry(device, "mesh positions", TexelFormat::rgba32_float, vertices),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "engine/vulkan/radix_sort.h"
 #include "relief/error.h"
@@ -24,11 +26,11 @@ constexpr std::array<Stage, BuildReport::kPartCount> kStages = {
 
 constexpr uint32_t kMostPrimitives = 1u << 30;
 
-void check_count(uint32_t count, uint32_t most) {
+void check_count(uint32_t count, uint32_t most, const char* where) {
     if (count > most)
-        throw Error(
-            ErrorKind::out_of_memory,
-            {"a linear tree holds at most 2^30 primitives, as a heap less than 2^26", "", "split the scene"});
+        throw Error(ErrorKind::out_of_memory,
+                    {fmt::format("{} primitives are too many, room is for {}", count, most), where,
+                     "build it on the host as another tree, or split the mesh"});
 }
 
 /// Kernels that read codes, for one width of them.
@@ -44,8 +46,7 @@ struct CodeKernels {
 
 struct Kernels {
     explicit Kernels(const Device& device)
-        : mesh_boxes(device, {"lbvh_boxes", {kGroupSize, 30, 1}}),
-          box_bounds(device, {"lbvh_boxes", {kGroupSize, 30, 0}}),
+        : boxes(device, {"lbvh_boxes", {kGroupSize}}),
           order(device, {"lbvh_order", {kGroupSize}}),
           sums(device, {"lbvh_sums", {scalar::kBuildGroupSize}}),
           numbers(device, {"lbvh_numbers", {scalar::kBuildGroupSize}}),
@@ -57,7 +58,7 @@ struct Kernels {
 
     const CodeKernels& find(int code_bits) const { return code_bits == 30 ? of_30_bits : of_63_bits; }
 
-    Kernel mesh_boxes, box_bounds, order, sums, numbers, refit, heap_refit;
+    Kernel boxes, order, sums, numbers, refit, heap_refit;
     RadixSort sort;
     CodeKernels of_30_bits, of_63_bits;
 };
@@ -111,10 +112,17 @@ void bind_tree(BindingTable& bindings, const DeviceTree& tree) {
 
 double BuildReport::total_seconds() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
 
-uint64_t BuildReport::total_bytes() const { return std::accumulate(bytes.begin(), bytes.end(), uint64_t(0)); }
+double compute_least_build_bytes(const BuildReport& report) {
+    const uint64_t code_bytes = report.code_bits == 63 ? 8 : 4, passes = code_bytes;
+    const uint64_t box_bytes = 18, pair_bytes = code_bytes + 4;
+    uint64_t bytes = box_bytes + (box_bytes + pair_bytes) + (passes * 2 * pair_bytes + code_bytes);
+    bytes += report.heap_slots > 0 ? 32 + code_bytes : (20 + code_bytes) + 68 + 88;
+    return double(report.primitive_count) * double(bytes) +
+           double(report.heap_slots) * double(2 * sizeof(TreeNode));
+}
 
 double compute_bound_share(const BuildReport& report, double bandwidth) {
-    return report.primitives_per_second() * kLeastBuildBytes / bandwidth;
+    return compute_least_build_bytes(report) / report.total_seconds() / bandwidth;
 }
 
 double measure_copy_bandwidth(const Device& device, uint64_t bytes) {
@@ -142,7 +150,7 @@ struct DeviceLbvhBuilder::Implementation {
 
     void begin(Part part) { commands.begin_stage(kStages[size_t(part)]); }
     void count_bytes(Part part, uint64_t bytes) { report.bytes[size_t(part)] += bytes; }
-    void order_primitives(const Input& input, int code_bits);
+    void order_primitives(const DeviceMesh& mesh, int code_bits);
     void sort_codes(uint32_t count, int code_bits);
     void build_hierarchy(const scalar::BuildPush& push, const CodeKernels& of_codes);
     scalar::BuildState finish();
@@ -157,30 +165,29 @@ struct DeviceLbvhBuilder::Implementation {
 };
 
 /// Boxes, codes and their order.
-void DeviceLbvhBuilder::Implementation::order_primitives(const Input& input, int code_bits) {
+void DeviceLbvhBuilder::Implementation::order_primitives(const DeviceMesh& mesh, int code_bits) {
     DCHECK(code_bits == 30 || code_bits == 63);
-    const uint64_t count = input.count;
+    const uint32_t count = mesh.triangle_count;
     if (!scratch || scratch->capacity < count)
         scratch = std::make_unique<Scratch>(device, count, kernels.sort.histogram_words(count));
     scratch->bind(bindings);
-    if (input.boxes) bindings.bind(scalar::kBindBuildBoxes, *input.boxes);
-    if (input.mesh) bindings.bind(scalar::kBindMeshTriangles, input.mesh->triangles);
-    if (input.mesh) bindings.bind(scalar::kBindMeshPositions, input.mesh->positions);
-    report = {.primitive_count = input.count};
+    bindings.bind(scalar::kBindMeshTriangles, mesh.triangles);
+    bindings.bind(scalar::kBindMeshPositions, mesh.positions);
+    report = {.primitive_count = count, .code_bits = code_bits};
     seconds_before = commands.stage_seconds();
     begin(Part::boxes);
     commands.fill(scratch->state, 0, sizeof(scalar::BuildState), 0);
-    commands.fill(scratch->state, scalar::kBuildCountWord * 4, 4, input.count);
+    commands.fill(scratch->state, scalar::kBuildCountWord * 4, 4, count);
     commands.fill(scratch->state, offsetof(scalar::BuildState, lower), 12, 0xffffffffu);
-    const scalar::BuildPush push{input.count, 0, 0, 0};
-    commands.dispatch(input.boxes ? kernels.box_bounds : kernels.mesh_boxes, count, push);
+    const scalar::BuildPush push{count, 0, 0, 0};
+    commands.dispatch(kernels.boxes, count, push);
     // A triangle is 64 bytes with its corners.
-    count_bytes(Part::boxes, count * (input.boxes ? 24 : 64 + 24));
+    count_bytes(Part::boxes, count * uint64_t(64 + 24));
     begin(Part::codes);
     commands.dispatch(kernels.find(code_bits).codes, count, push);
-    count_bytes(Part::codes, count * (code_bits == 63 ? 40 : 32));
+    count_bytes(Part::codes, count * uint64_t(code_bits == 63 ? 40 : 32));
     begin(Part::sort);
-    sort_codes(input.count, code_bits);
+    sort_codes(count, code_bits);
 }
 
 void DeviceLbvhBuilder::Implementation::sort_codes(uint32_t count, int code_bits) {
@@ -230,19 +237,20 @@ DeviceLbvhBuilder::DeviceLbvhBuilder(const Device& device)
     : implementation_(std::make_unique<Implementation>(device)) {}
 DeviceLbvhBuilder::~DeviceLbvhBuilder() = default;
 
-DeviceTree DeviceLbvhBuilder::build(const Input& input, const LbvhBuilder::Config& config) {
+DeviceTree DeviceLbvhBuilder::build(const DeviceMesh& mesh, const LbvhBuilder::Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= scalar::kNodeCountMask);
     Implementation& own = *implementation_;
-    check_count(input.count, kMostPrimitives);
-    const uint64_t count = input.count, nodes = count > 0 ? 2 * count - 1 : 0;
+    check_count(mesh.triangle_count, kMostPrimitives, "linear BVH on the device");
+    const uint64_t count = mesh.triangle_count, nodes = count > 0 ? 2 * count - 1 : 0;
     DeviceTree tree =
         make_device_tree(own.device, TreeForm::linked,
                          {.nodes = nodes, .primitive_ids = count, .parents = nodes, .skips = nodes});
     own.report = {};
     if (count == 0) return tree;
     bind_tree(own.bindings, tree);
-    own.order_primitives(input, config.code_bits);
-    own.build_hierarchy({input.count, config.max_leaf_size, 0, 0}, own.kernels.find(config.code_bits));
+    own.order_primitives(mesh, config.code_bits);
+    own.build_hierarchy({mesh.triangle_count, config.max_leaf_size, 0, 0},
+                        own.kernels.find(config.code_bits));
     const scalar::BuildState state = own.finish();
     tree.node_count = 1 + 2 * state.cut_count;
     tree.depth = int(state.depth);
@@ -252,11 +260,11 @@ DeviceTree DeviceLbvhBuilder::build(const Input& input, const LbvhBuilder::Confi
     return tree;
 }
 
-DeviceTree DeviceLbvhBuilder::build_heap(const Input& input, const LbvhBuilder::HeapConfig& config) {
+DeviceTree DeviceLbvhBuilder::build_heap(const DeviceMesh& mesh, const LbvhBuilder::HeapConfig& config) {
     DCHECK(config.levels >= 0 && config.levels <= DenseHeap::kMaxLevels);
     Implementation& own = *implementation_;
-    check_count(input.count, scalar::kNodeCountMask);
-    const uint32_t count = input.count;
+    check_count(mesh.triangle_count, scalar::kNodeCountMask, "linear BVH as a heap on the device");
+    const uint32_t count = mesh.triangle_count;
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(count);
     const uint64_t slots = count > 0 ? uint64_t(1) << levels : 0;
     DeviceTree tree =
@@ -264,7 +272,8 @@ DeviceTree DeviceLbvhBuilder::build_heap(const Input& input, const LbvhBuilder::
     own.report = {};
     if (count == 0) return tree;
     bind_tree(own.bindings, tree);
-    own.order_primitives(input, config.code_bits);
+    own.order_primitives(mesh, config.code_bits);
+    own.report.heap_slots = slots;
     own.begin(Part::hierarchy);
     const Kernel& split = own.kernels.find(config.code_bits).split;
     own.commands.dispatch(split, count, scalar::BuildPush{count, 0, 0, 0});
@@ -279,21 +288,6 @@ DeviceTree DeviceLbvhBuilder::build_heap(const Input& input, const LbvhBuilder::
     own.count_bytes(Part::hierarchy, count * uint64_t(16) + slots * (32 + 16));
     own.count_bytes(Part::refit, count * uint64_t(32) + slots * 16);
     return tree;
-}
-
-DeviceTree DeviceLbvhBuilder::build(const DeviceMesh& mesh, const LbvhBuilder::Config& config) {
-    return build({.mesh = &mesh, .count = mesh.triangle_count}, config);
-}
-DeviceTree DeviceLbvhBuilder::build(const Buffer& boxes, uint32_t box_count,
-                                    const LbvhBuilder::Config& config) {
-    return build({.boxes = &boxes, .count = box_count}, config);
-}
-DeviceTree DeviceLbvhBuilder::build_heap(const DeviceMesh& mesh, const LbvhBuilder::HeapConfig& config) {
-    return build_heap({.mesh = &mesh, .count = mesh.triangle_count}, config);
-}
-DeviceTree DeviceLbvhBuilder::build_heap(const Buffer& boxes, uint32_t box_count,
-                                         const LbvhBuilder::HeapConfig& config) {
-    return build_heap({.boxes = &boxes, .count = box_count}, config);
 }
 
 const BuildReport& DeviceLbvhBuilder::report() const { return implementation_->report; }

@@ -1,5 +1,4 @@
-// Linear BVHs built on the device, from boxes that are there already: node for node the trees of
-// structures/lbvh.h.
+// Linear BVHs over a mesh, built on the device: node for node the trees of structures/lbvh.h.
 #pragma once
 
 #include <array>
@@ -17,18 +16,20 @@ struct BuildReport {
     static constexpr size_t kPartCount = 5;
 
     uint32_t primitive_count = 0;
+    int code_bits = 30;
+    uint64_t heap_slots = 0; ///< 0: no heap
     std::array<double, kPartCount> seconds{};
     std::array<uint64_t, kPartCount> bytes{}; ///< that the kernels read and write
 
     double total_seconds() const;
-    uint64_t total_bytes() const;
     double primitives_per_second() const { return primitive_count / total_seconds(); }
 };
 
-/// Bytes a primitive that a build with codes of 30 bits has to read and write, with a sort that goes over its
-/// pairs once a pass: 18 for the box and 26 for the code of a triangle, 68 for four passes of eight bits, 24
-/// for links, 68 for leaves and 88 for inner nodes.
-inline constexpr double kLeastBuildBytes = 290;
+/// Bytes that a build like this one has to read and write, with a sort that goes over its pairs once a pass
+/// of eight bits. For a triangle 18 of its box, 26 of its code (30 with 63 bits) and 68 of the sort (200); of
+/// a linked tree 24 of links (28), 68 of leaves and 88 of inner nodes; of a heap 36 of its entry (40), and
+/// for each slot 64: it is written on the way down and on the way up.
+double compute_least_build_bytes(const BuildReport& report);
 
 /// Share of the rate that memory traffic alone allows; `bandwidth` in bytes a second
 /// (measure_copy_bandwidth).
@@ -43,27 +44,17 @@ class DeviceLbvhBuilder {
     explicit DeviceLbvhBuilder(const Device& device);
     ~DeviceLbvhBuilder();
 
-    /// As LbvhBuilder::build and make_linked_bvh; the buffers have room for a node pair a primitive. The mesh
-    /// or the boxes (six floats each, finite, lower <= upper) are only read. Throws Error{out_of_memory}.
+    /// As LbvhBuilder::build and make_linked_bvh, from finite triangles; the buffers have room for a node
+    /// pair a triangle. Throws Error{out_of_memory}.
     DeviceTree build(const DeviceMesh& mesh, const LbvhBuilder::Config& config);
-    DeviceTree build(const Buffer& boxes, uint32_t box_count, const LbvhBuilder::Config& config);
 
     /// As LbvhBuilder::build_heap.
     DeviceTree build_heap(const DeviceMesh& mesh, const LbvhBuilder::HeapConfig& config);
-    DeviceTree build_heap(const Buffer& boxes, uint32_t box_count, const LbvhBuilder::HeapConfig& config);
 
     /// Of the last build.
     const BuildReport& report() const;
 
   private:
-    struct Input {
-        const DeviceMesh* mesh = nullptr;
-        const Buffer* boxes = nullptr; ///< null: of the mesh
-        uint32_t count = 0;
-    };
-    DeviceTree build(const Input& input, const LbvhBuilder::Config& config);
-    DeviceTree build_heap(const Input& input, const LbvhBuilder::HeapConfig& config);
-
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };

@@ -95,10 +95,9 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         report.is_on_device = true;
         report.seconds = built.total_seconds();
         const bool is_heap = tree_->form == TreeForm::dense_heap;
-        report.bytes =
-            uint64_t(tree_->node_count) * sizeof(TreeNode) + built.primitive_count * sizeof(uint32_t);
-        report.link_bytes = is_heap ? 0 : uint64_t(tree_->node_count) * sizeof(uint32_t);
-        report.slots = tree_->node_count,
+        report.bytes = tree_->nodes.byte_count() + tree_->primitive_ids.byte_count();
+        report.link_bytes = tree_->parents.byte_count();
+        report.slots = tree_->nodes.byte_count() / sizeof(TreeNode),
         report.used =
             is_heap ? uint64_t(std::count(used_slots_.begin(), used_slots_.end(), true)) : tree_->node_count;
         report.entries = built.primitive_count;

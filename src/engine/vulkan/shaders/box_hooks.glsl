@@ -35,7 +35,7 @@ HeapBrick load_heap_brick(uint brick) { return heap_bricks[brick]; }
 #include "shared/succinct_heap.h"
 
 uint find_slot(Key key) {
-    if (kIsSuccinct == 0u) return low_word(key);
+    if (kIsSuccinct == 0u) return get_low_word(key);
     return find_succinct_slot(key);
 }
 

@@ -20,7 +20,7 @@ void main() {
     if (word == kEmptySlot) return;
     NodeBox box;
     if (is_leaf_word(word)) {
-        box = join_primitives(first, count_of_word(word));
+        box = join_primitives(first, get_word_count(word));
         if (state.depth < push.level) atomicMax(state.depth, push.level);
     } else {
         box = join_boxes(load_box(2u * key), load_box(2u * key + 1u));

@@ -29,13 +29,13 @@ NodeBox load_primitive_box(uint primitive) {
                    vec3(boxes[first + 3u], boxes[first + 4u], boxes[first + 5u]));
 }
 
-float lesser(float a, float b) { return a < b ? a : b; }
-float greater(float a, float b) { return a > b ? a : b; }
+float get_lesser(float a, float b) { return a < b ? a : b; }
+float get_greater(float a, float b) { return a > b ? a : b; }
 
 NodeBox join_boxes(NodeBox a, NodeBox b) {
     return NodeBox(
-        vec3(lesser(a.lower.x, b.lower.x), lesser(a.lower.y, b.lower.y), lesser(a.lower.z, b.lower.z)),
-        vec3(greater(a.upper.x, b.upper.x), greater(a.upper.y, b.upper.y), greater(a.upper.z, b.upper.z)));
+        vec3(get_lesser(a.lower.x, b.lower.x), get_lesser(a.lower.y, b.lower.y), get_lesser(a.lower.z, b.lower.z)),
+        vec3(get_greater(a.upper.x, b.upper.x), get_greater(a.upper.y, b.upper.y), get_greater(a.upper.z, b.upper.z)));
 }
 
 /// Of entries [first, first + count).
@@ -60,7 +60,7 @@ HeapKey differ_bits(HeapKey a, HeapKey b) { return HeapKey(a.low ^ b.low, a.high
 uint find_bit(uint first, uint last, uint bit) {
     while (last - first > 1u) {
         uint middle = first + (last - first) / 2u;
-        if ((low_word(shift_right(load_code(middle), bit)) & 1u) != 0u)
+        if ((get_low_word(shift_right(load_code(middle), bit)) & 1u) != 0u)
             last = middle;
         else
             first = middle;
@@ -75,12 +75,12 @@ struct Cut {
 
 /// Of entries [first, last] whose codes are not all equal.
 Cut cut_by_code(uint first, uint last) {
-    uint bit = level_of_key(differ_bits(load_code(first), load_code(last)));
+    uint bit = get_key_level(differ_bits(load_code(first), load_code(last)));
     return Cut(find_bit(first, last, bit), axis_of_morton_bit(bit));
 }
 
 /// Of entries of equal codes.
 Cut cut_by_number(uint first, uint last) {
-    uint bit = level_of_key(first ^ last);
+    uint bit = get_key_level(first ^ last);
     return Cut((last >> bit) << bit, 0u);
 }

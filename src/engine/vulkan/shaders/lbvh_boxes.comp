@@ -1,10 +1,8 @@
-// The box of each triangle, where the input is no boxes already, and the union of all.
+// The box of each triangle, and the union of all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engine/vulkan/shaders/kernel.glsl"
 #include "engine/vulkan/shaders/lbvh.glsl"
-
-layout(constant_id = 2) const uint kIsMesh = 0u;
 
 layout(set = 0, binding = kBindMeshTriangles) uniform usamplerBuffer mesh_triangles;
 layout(set = 0, binding = kBindMeshPositions) uniform samplerBuffer mesh_positions;
@@ -36,13 +34,8 @@ void main() {
     barrier();
     uint primitive = invocation_index();
     if (primitive < push.primitive_count) {
-        NodeBox box;
-        if (kIsMesh != 0u) {
-            box = find_triangle_box(primitive);
-            store_primitive_box(primitive, box);
-        } else {
-            box = load_primitive_box(primitive);
-        }
+        NodeBox box = find_triangle_box(primitive);
+        store_primitive_box(primitive, box);
         for (uint axis = 0u; axis < 3u; ++axis) {
             atomicMin(group_lower[axis], order_float(select_axis(box.lower, axis)));
             atomicMax(group_upper[axis], order_float(select_axis(box.upper, axis)));

@@ -44,7 +44,7 @@ uint count_from(uint entry, HeapKey code, uint most) {
 bool is_cut(uint entry) {
     HeapKey code = load_code(entry);
     if (!is_code(entry - 1u, code)) return true;
-    uint most = min(lowest_bit(entry), push.max_leaf_size);
+    uint most = min(get_lowest_bit(entry), push.max_leaf_size);
     return count_before(entry, code, most) + count_from(entry, code, most) > push.max_leaf_size;
 }
 

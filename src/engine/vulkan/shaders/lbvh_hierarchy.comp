@@ -25,7 +25,7 @@ NodePrefix find_prefix(uint cut) {
         uint bit = count_trailing_zeros(cut) + 1u;
         return NodePrefix(code, bit, shift_right(cut, bit), true);
     }
-    uint bit = level_of_key(difference) + 1u;
+    uint bit = get_key_level(difference) + 1u;
     return NodePrefix(shift_right(code, bit), bit, 0u, false);
 }
 

@@ -23,7 +23,7 @@ NodeBox load_box(uint node) {
 uint bound_leaf(uint node) {
     uint word = nodes[2u * node + 1u].w;
     if (!is_leaf_word(word)) return 0u;
-    store_box(node, join_primitives(nodes[2u * node].w, count_of_word(word)));
+    store_box(node, join_primitives(nodes[2u * node].w, get_word_count(word)));
     return 1u;
 }
 

@@ -155,7 +155,7 @@ bool enter_next_instance() {
 }
 
 bool visit_leaf(uint first, uint word, uint node) {
-    uint count = count_of_word(word);
+    uint count = get_word_count(word);
     float leaf_entry = enter_leaf(node);
     if (instance_index == kNone) {
         waiting_first = tree.ids + first;

@@ -84,7 +84,7 @@ void offer_triangle(uint primitive) {
 
 /// The count of a kd leaf has the place of a word.
 bool visit_leaf(uint first, uint word, uint node) {
-    uint count = count_of_word(word);
+    uint count = get_word_count(word);
     float limit = walk_best.t;
     bool is_ended = false;
     for (uint k = 0u; k < count && !is_ended; ++k) {
