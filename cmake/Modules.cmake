@@ -22,3 +22,16 @@ function(relief_module name)
   list(TRANSFORM ARG_MODULES PREPEND relief_ OUTPUT_VARIABLE modules)
   target_link_libraries(relief_${name} ${scope} relief_options ${modules} ${ARG_LIBRARIES})
 endfunction()
+
+# relief_precompile(NAME HEADERS... LIBRARIES ...): headers of other projects, compiled once for all targets that say
+# target_precompile_headers(TARGET REUSE_FROM NAME). For tests and applications, where they are most of what a compiler
+# reads; the flags of the folder must be those of the targets.
+function(relief_precompile name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+  file(CONFIGURE OUTPUT ${name}.cpp CONTENT "" @ONLY)
+  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE relief_options ${ARG_LIBRARIES})
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+  # ccache compares contents.
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+endfunction()

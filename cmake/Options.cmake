@@ -21,7 +21,8 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
 find_program(RELIEF_CCACHE ccache)
 if(RELIEF_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${RELIEF_CCACHE})
+  # What ccache asks for before it takes part where headers are precompiled; nothing here names a date or a time.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${RELIEF_CCACHE})
 endif()
 
 add_library(relief_options INTERFACE)
