@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "io/exr_header.h"
+#include "io/exr_source.h"
 #include "io/file_system.h"
+#include "io/picture_library.h"
 #include "io/png_header.h"
 #include "relief/error.h"
 #include "relief/scene.h"
@@ -19,50 +22,38 @@ namespace relief {
 namespace {
 
 constexpr int kMaxSide = kMaxPictureSize;
-constexpr int64_t kMaxTexels = int64_t(1) << 31;
-constexpr int kMaxChannels = 1024;
+constexpr uint64_t kMaxTexels = uint64_t(1) << 31;
+constexpr size_t kMaxChannels = 1024;
 constexpr std::array<std::string_view, 8> kExtensions = {".exr", ".tif", ".tiff", ".tx",
                                                          ".png", ".hdr", ".jpg",  ".jpeg"};
 const char* const kDamagedHint = "the file is damaged or incomplete: export or copy it again";
 
-OIIO::ImageSpec make_raw_config() {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    config.attribute("oiio:RawColor", 1);
-    return config;
+[[noreturn]] void fail(const std::string& name, const std::string& message, const std::string& hint) {
+    throw Error(ErrorKind::bad_input, {message, name, hint});
 }
 
-} // namespace
-
-bool has_near_display(const OIIO::ImageSpec& spec) {
-    return spec.full_width > 0 && spec.full_height > 0 && spec.full_width <= 4 * spec.width &&
-           spec.full_height <= 4 * spec.height;
-}
-
-namespace {
-
-void check_size(const ImageInput& image, uint64_t file_bytes) {
-    const OIIO::ImageSpec& spec = image.spec;
-    if (spec.deep) image.fail("is a deep image", "flatten it first");
-    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0)
-        image.fail(fmt::format("has no pixels ({} x {})", spec.width, spec.height), kDamagedHint);
-    if (spec.width > kMaxSide || spec.height > kMaxSide || spec.depth > 1 ||
-        int64_t(spec.width) * spec.height > kMaxTexels || spec.nchannels > kMaxChannels)
-        image.fail(
-            fmt::format("is too large: {} x {} with {} channels", spec.width, spec.height, spec.nchannels),
-            fmt::format("the limit is {} a side and 2^31 texels", kMaxSide));
+void check_size(const PixelHeader& header, const std::string& name, uint64_t file_bytes) {
+    if (header.is_deep) fail(name, "is a deep image", "flatten it first");
+    if (header.width <= 0 || header.height <= 0 || header.channels.empty())
+        fail(name, fmt::format("has no pixels ({} x {})", header.width, header.height), kDamagedHint);
+    const uint64_t pixels = uint64_t(header.width) * uint64_t(header.height);
+    if (header.width > kMaxSide || header.height > kMaxSide || header.depth > 1 || pixels > kMaxTexels ||
+        header.channels.size() > kMaxChannels)
+        fail(name,
+             fmt::format("is too large: {} x {} with {} channels", header.width, header.height,
+                         header.channels.size()),
+             fmt::format("the limit is {} a side and 2^31 texels", kMaxSide));
     // No supported compression packs constant pixels tighter than this; a longer claim would only exhaust
     // memory.
     constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20;
     // A display window that surrounds the pixels is filled up with zeros, which takes memory as well.
-    const uint64_t display_bytes =
-        uint64_t(std::max(0, spec.full_width)) * uint64_t(std::max(0, spec.full_height)) * spec.pixel_bytes();
-    const uint64_t largest =
-        std::max(uint64_t(spec.image_bytes()), has_near_display(spec) ? display_bytes : 0);
-    if (largest > file_bytes * kBestCompression + kSlack)
-        image.fail(
-            fmt::format("claims {} x {} pixels in a file of {} bytes", spec.width, spec.height, file_bytes),
-            kDamagedHint);
+    const uint64_t display_pixels =
+        has_near_display(header) ? uint64_t(header.full_width) * uint64_t(header.full_height) : 0;
+    if (std::max(pixels, display_pixels) * header.pixel_bytes > file_bytes * kBestCompression + kSlack)
+        fail(name,
+             fmt::format("claims {} x {} pixels in a file of {} bytes", header.width, header.height,
+                         file_bytes),
+             kDamagedHint);
 }
 
 void check_extension(const std::string& name) {
@@ -72,71 +63,48 @@ void check_extension(const std::string& name) {
                                            suggest_word(extension, kExtensions)});
 }
 
-void check_attributes(const ImageInput& image, std::istream& stream, uint64_t file_bytes) {
-    if (const std::optional<std::string> name = find_oversized_exr_attribute(stream, file_bytes))
-        image.fail(fmt::format("is damaged: attribute '{}' is longer than the file", *name), kDamagedHint);
+void check_attributes(std::istream& stream, const std::string& name, uint64_t file_bytes) {
+    if (const std::optional<std::string> attribute = find_oversized_exr_attribute(stream, file_bytes))
+        fail(name, fmt::format("is damaged: attribute '{}' is longer than the file", *attribute),
+             kDamagedHint);
     stream.clear();
     stream.seekg(0);
     if (has_oversized_png_chunk(stream, file_bytes))
-        image.fail("is damaged: it ends within a chunk", kDamagedHint);
+        fail(name, "is damaged: it ends within a chunk", kDamagedHint);
+    stream.clear();
+    stream.seekg(0);
 }
 
-void open(ImageInput& image, uint64_t file_bytes) {
-    const OIIO::ImageSpec config = make_raw_config();
-    image.input = OIIO::ImageInput::create(image.name, false, &config, image.proxy.get());
-    if (!image.input) image.fail("cannot be opened: " + OIIO::geterror(), kDamagedHint);
-    if (image.proxy) image.input->set_ioproxy(image.proxy.get());
-    if (!image.input->open(image.name, image.spec, config))
-        image.fail("cannot be opened: " + image.input->geterror(), kDamagedHint);
-    check_size(image, file_bytes);
+/// Plain EXR files are read at once; all else is left to the library of pictures.
+std::unique_ptr<PixelSource> open(std::unique_ptr<std::istream> stream, const std::string& name,
+                                  uint64_t file_bytes,
+                                  const std::function<std::unique_ptr<PixelSource>()>& open_other) {
+    check_attributes(*stream, name, file_bytes);
+    std::unique_ptr<PixelSource> source = open_plain_exr(std::move(stream), name);
+    if (!source) source = open_other();
+    check_size(source->header(), name, file_bytes);
+    return source;
 }
 
 } // namespace
 
-void ImageInput::fail(const std::string& message, const std::string& hint) const {
-    std::string line = message;
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw Error(ErrorKind::bad_input, {line, name, hint});
+bool has_near_display(const PixelHeader& header) {
+    return header.full_width > 0 && header.full_height > 0 && header.full_width <= 4 * header.width &&
+           header.full_height <= 4 * header.height;
 }
 
-ImageInput open_image(const std::filesystem::path& file) {
+std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file) {
     require_file(file);
-    check_extension(file.string());
-    ImageInput image;
-    image.name = file.string();
-    std::ifstream stream(file, std::ios::binary);
-    check_attributes(image, stream, std::filesystem::file_size(file));
-    open(image, std::filesystem::file_size(file));
-    return image;
-}
-
-ImageInput open_image_bytes(std::string_view bytes, const std::string& name) {
+    const std::string name = file.string();
     check_extension(name);
-    ImageInput image;
-    image.name = name;
-    std::istringstream stream{std::string(bytes)};
-    check_attributes(image, stream, bytes.size());
-    image.proxy = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
-    open(image, bytes.size());
-    return image;
+    return open(std::make_unique<std::ifstream>(file, std::ios::binary), name,
+                std::filesystem::file_size(file), [&] { return get_picture_library(name).open_file(name); });
 }
 
-SampleType get_sample_type(const OIIO::TypeDesc& type) {
-    switch (type.basetype) {
-    case OIIO::TypeDesc::UINT8:
-    case OIIO::TypeDesc::INT8:
-        return SampleType::uint8;
-    case OIIO::TypeDesc::UINT16:
-    case OIIO::TypeDesc::INT16:
-        return SampleType::uint16;
-    case OIIO::TypeDesc::UINT32:
-    case OIIO::TypeDesc::INT32:
-        return SampleType::uint32;
-    case OIIO::TypeDesc::HALF:
-        return SampleType::float16;
-    default:
-        return SampleType::float32;
-    }
+std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std::string& name) {
+    check_extension(name);
+    return open(std::make_unique<std::istringstream>(std::string(bytes)), name, bytes.size(),
+                [&] { return get_picture_library(name).open_bytes(bytes, name); });
 }
 
 } // namespace relief

@@ -4,73 +4,42 @@
 #include <cstdio>
 #include <cstring>
 
-#include <OpenImageIO/filesystem.h>
-#include <fmt/format.h>
-
 #include "io/file_system.h"
 
 namespace relief {
 
-namespace {
+CheckedFile::CheckedFile(const std::filesystem::path& file) : stream_(std::fopen(file.c_str(), "wb")) {
+    if (!stream_) note_failure();
+}
 
-/// A file that remembers its first failed write: some encoders write their tables in destructors and drop
-/// errors.
-class CheckedFile final : public OIIO::Filesystem::IOProxy {
-  public:
-    explicit CheckedFile(const std::filesystem::path& file)
-        : IOProxy(file.string(), Write), stream_(std::fopen(file.c_str(), "wb")) {
-        if (!stream_) note_failure();
-    }
-    ~CheckedFile() override { finish(); }
+void CheckedFile::write(const void* bytes, size_t count) {
+    if (!stream_ || std::fwrite(bytes, 1, count, stream_) != count) note_failure();
+}
 
-    const char* proxytype() const override { return "checked"; }
-    bool opened() const override { return stream_ != nullptr; }
-    int64_t tell() override { return stream_ ? int64_t(std::ftell(stream_)) : 0; }
-    bool seek(int64_t offset) override {
-        if (stream_ && std::fseek(stream_, long(offset), SEEK_SET) == 0) return true;
-        note_failure();
-        return false;
-    }
-    size_t write(const void* buffer, size_t size) override {
-        const size_t written = stream_ ? std::fwrite(buffer, 1, size, stream_) : 0;
-        if (written != size) note_failure();
-        return written;
-    }
-    /// The encoder may close and go on; the file is closed by finish().
-    void close() override {}
+uint64_t CheckedFile::tell() { return stream_ ? uint64_t(std::ftell(stream_)) : 0; }
 
-    /// Closes; returns what went wrong first, or an empty text.
-    std::string finish() {
-        if (stream_ && std::fclose(stream_) != 0) note_failure();
-        stream_ = nullptr;
-        return failure_;
-    }
+void CheckedFile::seek(uint64_t position) {
+    if (!stream_ || std::fseek(stream_, long(position), SEEK_SET) != 0) note_failure();
+}
 
-  private:
-    void note_failure() {
-        if (failure_.empty()) failure_ = std::strerror(errno);
-    }
+std::string CheckedFile::finish() {
+    if (stream_ && std::fclose(stream_) != 0) note_failure();
+    stream_ = nullptr;
+    return failure_;
+}
 
-    std::FILE* stream_;
-    std::string failure_;
-};
+void CheckedFile::note_failure() {
+    if (failure_.empty()) failure_ = std::strerror(errno);
+}
 
-} // namespace
-
-void write_pixels(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
-                  const OIIO::TypeDesc& type, const void* pixels) {
+void write_checked(const std::filesystem::path& file, const std::function<void(CheckedFile&)>& encode) {
     AtomicFile atomic(file);
     CheckedFile stream(atomic.temporary());
     std::string message;
-    {
-        std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-        if (!output) atomic.fail(fmt::format("cannot be written as {}: {}", format, OIIO::geterror()));
-        output->set_ioproxy(&stream);
-        const bool is_written =
-            output->open(atomic.temporary().string(), spec) && output->write_image(type, pixels);
-        const bool is_closed = output->close();
-        if (!is_written || !is_closed) message = output->geterror();
-        if ((!is_written || !is_closed) && message.empty()) message = "the encoder failed";
+    try {
+        encode(stream);
+    } catch (const std::exception& error) {
+        message = error.what();
     }
     const std::string disk_message = stream.finish();
     if (!disk_message.empty()) atomic.fail("cannot be written: " + disk_message);

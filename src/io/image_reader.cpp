@@ -1,8 +1,6 @@
 // read_texture and read_image: pixels as stored.
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "io/image_input.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -11,63 +9,57 @@ namespace relief {
 
 namespace {
 
-const char* const kIncompleteHint = "the file is incomplete: export or copy it again";
 constexpr uint16_t kHalfOne = 0x3c00;
 
-template <class T>
-void read_texels(ImageInput& image, const OIIO::TypeDesc& type, T one, std::vector<T>& texels) {
-    const size_t count = size_t(image.spec.width) * image.spec.height;
-    const int channels = std::min(4, image.spec.nchannels);
-    texels.assign(4 * count, T(0));
-    for (size_t i = 0; i < count; ++i) texels[4 * i + 3] = one;
-    if (!image.input->read_image(0, 0, 0, channels, type, texels.data(), OIIO::stride_t(4 * sizeof(T))))
-        image.fail("cannot be read: " + image.input->geterror(), kIncompleteHint);
+/// Room for four channels a pixel: those that the file lacks are 0, a missing fourth is 1.
+template <class T> std::vector<T> make_texels(const PixelHeader& header, T one) {
+    std::vector<T> texels(4 * size_t(header.width) * size_t(header.height), T(0));
+    for (size_t i = 3; i < texels.size(); i += 4) texels[i] = one;
+    return texels;
 }
 
 /// A data window smaller than the display window is put into its place; what the file leaves out is 0.
-template <class T> void place_in_display_window(const OIIO::ImageSpec& spec, std::vector<T>& texels) {
+template <class T> void place_in_display_window(const PixelHeader& header, std::vector<T>& texels) {
     if (texels.empty()) return;
-    std::vector<T> placed(4 * size_t(spec.full_width) * spec.full_height, T(0));
-    for (int y = 0; y < spec.height; ++y) {
-        const int row = spec.y + y - spec.full_y;
-        if (row < 0 || row >= spec.full_height) continue;
-        for (int x = 0; x < spec.width; ++x) {
-            const int column = spec.x + x - spec.full_x;
-            if (column < 0 || column >= spec.full_width) continue;
-            const auto* source = &texels[4 * (size_t(y) * spec.width + x)];
-            std::copy(source, source + 4, &placed[4 * (size_t(row) * spec.full_width + column)]);
+    std::vector<T> placed(4 * size_t(header.full_width) * header.full_height, T(0));
+    for (int y = 0; y < header.height; ++y) {
+        const int row = header.y + y - header.full_y;
+        if (row < 0 || row >= header.full_height) continue;
+        for (int x = 0; x < header.width; ++x) {
+            const int column = header.x + x - header.full_x;
+            if (column < 0 || column >= header.full_width) continue;
+            const auto* source = &texels[4 * (size_t(y) * header.width + x)];
+            std::copy(source, source + 4, &placed[4 * (size_t(row) * header.full_width + column)]);
         }
     }
     texels = std::move(placed);
 }
 
-Texture read_pixels(ImageInput image) {
-    const OIIO::ImageSpec& spec = image.spec;
+Texture read_pixels(PixelSource& source, const std::string& name) {
+    const PixelHeader& header = source.header();
+    const int channel_count = int(std::min<size_t>(4, header.channels.size()));
     Texture texture;
-    texture.file = image.name;
-    texture.width = uint32_t(spec.width);
-    texture.height = uint32_t(spec.height);
-    texture.channel_count = uint32_t(std::min(4, spec.nchannels));
-    texture.source_type = get_sample_type(spec.format);
-    if (texture.source_type == SampleType::float16)
-        read_texels(image, OIIO::TypeDesc::HALF, kHalfOne, texture.halves);
-    else
-        read_texels(image, OIIO::TypeDesc::FLOAT, 1.0f, texture.floats);
-
-    const bool is_whole = spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
-                          spec.height == spec.full_height;
-    if (!is_whole && has_near_display(spec)) {
-        place_in_display_window(spec, texture.floats);
-        place_in_display_window(spec, texture.halves);
-        texture.width = uint32_t(spec.full_width);
-        texture.height = uint32_t(spec.full_height);
+    texture.file = name;
+    texture.width = uint32_t(header.width);
+    texture.height = uint32_t(header.height);
+    texture.channel_count = uint32_t(channel_count);
+    texture.source_type = header.type;
+    if (texture.source_type == SampleType::float16) {
+        texture.halves = make_texels(header, kHalfOne);
+        source.read_halves(channel_count, 4, texture.halves.data());
+    } else {
+        texture.floats = make_texels(header, 1.0f);
+        source.read_floats(channel_count, 4, texture.floats.data());
+    }
+    const bool is_whole = header.x == header.full_x && header.y == header.full_y &&
+                          header.width == header.full_width && header.height == header.full_height;
+    if (!is_whole && has_near_display(header)) {
+        place_in_display_window(header, texture.floats);
+        place_in_display_window(header, texture.halves);
+        texture.width = uint32_t(header.full_width);
+        texture.height = uint32_t(header.full_height);
     }
     return texture;
-}
-
-/// Header entries of other programs' making (compression, library hints) are not the picture's.
-bool is_own_metadata(const std::string& name) {
-    return name != "compression" && !name.starts_with("oiio:") && !name.starts_with("openexr:");
 }
 
 template <class Read> auto with_memory_error(const std::string& name, const Read& read) {
@@ -82,31 +74,27 @@ template <class Read> auto with_memory_error(const std::string& name, const Read
 } // namespace
 
 Texture read_texture(const std::filesystem::path& file) {
-    return with_memory_error(file.string(), [&] { return read_pixels(open_image(file)); });
+    return with_memory_error(file.string(), [&] { return read_pixels(*open_image(file), file.string()); });
 }
 
 Texture parse_texture(std::string_view bytes, const std::string& name) {
-    return with_memory_error(name, [&] { return read_pixels(open_image_bytes(bytes, name)); });
+    return with_memory_error(name, [&] { return read_pixels(*open_image_bytes(bytes, name), name); });
 }
 
 Image read_image(const std::filesystem::path& file) {
     return with_memory_error(file.string(), [&] {
-        ImageInput source = open_image(file);
-        const OIIO::ImageSpec& spec = source.spec;
+        const std::unique_ptr<PixelSource> source = open_image(file);
+        const PixelHeader& header = source->header();
         Image image;
-        image.width = spec.width, image.height = spec.height;
-        image.x0 = spec.x - spec.full_x, image.y0 = spec.y - spec.full_y;
-        image.full_width = spec.full_width, image.full_height = spec.full_height;
-        image.channels = spec.channelnames;
-        image.source_type = get_sample_type(spec.format);
-        image.pixels.resize(size_t(spec.width) * spec.height * spec.nchannels);
-        if (!source.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-            source.fail("cannot be read: " + source.input->geterror(), kIncompleteHint);
-        for (const OIIO::ParamValue& entry : spec.extra_attribs) {
-            const std::string name = entry.name().string();
-            if (entry.type() == OIIO::TypeString && is_own_metadata(name))
-                image.metadata[name] = entry.get_string();
-        }
+        image.width = header.width, image.height = header.height;
+        image.x0 = header.x - header.full_x, image.y0 = header.y - header.full_y;
+        image.full_width = header.full_width, image.full_height = header.full_height;
+        image.channels = header.channels;
+        image.metadata = header.metadata;
+        image.source_type = header.type;
+        const size_t channel_count = header.channels.size();
+        image.pixels.resize(size_t(header.width) * size_t(header.height) * channel_count);
+        source->read_floats(int(channel_count), channel_count, image.pixels.data());
         return image;
     });
 }

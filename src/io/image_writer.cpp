@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/file_system.h"
-#include "io/image_output.h"
+#include "io/image_coders.h"
 #include "math/scalar.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -41,45 +41,27 @@ std::array<size_t, 3> find_colour_channels(const Image& image) {
     return result;
 }
 
-void write_exr(const Image& image, const std::filesystem::path& file) {
-    OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
-    spec.channelnames = image.channels;
-    spec.x = image.x0, spec.y = image.y0;
-    spec.full_x = 0, spec.full_y = 0;
-    spec.full_width = image.full_width > 0 ? image.full_width : image.x0 + image.width;
-    spec.full_height = image.full_height > 0 ? image.full_height : image.y0 + image.height;
-    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
-    spec.attribute("compression", "zip");
-    write_pixels(file, "openexr", spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
+FillRow<Vec3f> make_colour_rows(const Image& image) {
+    return [&image, channels = find_colour_channels(image)](int y, std::vector<Vec3f>& row) {
+        const float* pixel = &image.pixels[size_t(y) * size_t(image.width) * image.channels.size()];
+        for (Vec3f& colour : row) {
+            colour = {pixel[channels[0]], pixel[channels[1]], pixel[channels[2]]};
+            pixel += image.channels.size();
+        }
+    };
 }
 
-std::vector<Vec3f> gather_colours(const Image& image) {
-    const std::array<size_t, 3> channels = find_colour_channels(image);
-    std::vector<Vec3f> colours(size_t(image.width) * image.height);
-    for (size_t i = 0; i < colours.size(); ++i) {
-        const float* pixel = &image.pixels[i * image.channels.size()];
-        colours[i] = {pixel[channels[0]], pixel[channels[1]], pixel[channels[2]]};
-    }
-    return colours;
-}
-
-void write_hdr(const Image& image, const std::filesystem::path& file) {
-    const OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT);
-    const std::vector<Vec3f> colours = gather_colours(image);
-    write_pixels(file, "hdr", spec, OIIO::TypeDesc::FLOAT, colours.data());
-}
-
-void write_png(const Image& image, const std::filesystem::path& file) {
-    OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    std::vector<uint8_t> bytes;
-    bytes.reserve(3 * size_t(image.width) * image.height);
-    for (const Vec3f& colour : gather_colours(image)) {
-        const Vec3f shown = scalar::tone_map_filmic(colour);
-        for (const float value : {shown.x, shown.y, shown.z})
-            bytes.push_back(uint8_t(scalar::encode_srgb(value) * 255.0f + 0.5f));
-    }
-    write_pixels(file, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+FillRow<uint8_t> make_shown_rows(const Image& image) {
+    return [fill_colours = make_colour_rows(image),
+            colours = std::vector<Vec3f>(size_t(image.width))](int y, std::vector<uint8_t>& row) mutable {
+        fill_colours(y, colours);
+        uint8_t* byte = row.data();
+        for (const Vec3f& colour : colours) {
+            const Vec3f shown = scalar::tone_map_filmic(colour);
+            for (const float value : {shown.x, shown.y, shown.z})
+                *byte++ = uint8_t(scalar::encode_srgb(value) * 255.0f + 0.5f);
+        }
+    };
 }
 
 } // namespace
@@ -88,12 +70,14 @@ void write_image(const Image& image, const std::filesystem::path& file) {
     check_output_extension(file);
     check_image(image, file);
     const std::string extension = get_extension(file);
-    if (extension == ".exr")
-        write_exr(image, file);
-    else if (extension == ".hdr")
-        write_hdr(image, file);
-    else
-        write_png(image, file);
+    write_checked(file, [&](CheckedFile& stream) {
+        if (extension == ".exr")
+            encode_exr(image, stream);
+        else if (extension == ".hdr")
+            encode_hdr(image.width, image.height, make_colour_rows(image), stream);
+        else
+            encode_png(image.width, image.height, make_shown_rows(image), stream);
+    });
 }
 
 void check_writable(const std::filesystem::path& file) {

@@ -8,7 +8,7 @@
 
 #include "io/displacement_reader.h"
 #include "io/file_system.h"
-#include "io/image_output.h"
+#include "io/image_coders.h"
 #include "io/json_node.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -68,26 +68,7 @@ std::string format_obj(const Mesh& mesh) {
 }
 
 void write_map(const Texture& texture, const std::filesystem::path& file) {
-    const bool is_half = !texture.halves.empty();
-    const OIIO::TypeDesc type = is_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
-    const int channels = int(texture.channel_count);
-    OIIO::ImageSpec spec(int(texture.width), int(texture.height), channels, type);
-    if (channels < 3)
-        spec.channelnames =
-            channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G"};
-    spec.attribute("compression", "zip");
-    const auto pack = [&](const auto& texels) {
-        std::decay_t<decltype(texels)> packed;
-        packed.reserve(texels.size() / 4 * size_t(channels));
-        for (size_t i = 0; i < texels.size(); i += 4)
-            packed.insert(packed.end(), texels.begin() + ptrdiff_t(i),
-                          texels.begin() + ptrdiff_t(i) + channels);
-        write_pixels(file, "openexr", spec, type, packed.data());
-    };
-    if (is_half)
-        pack(texture.halves);
-    else
-        pack(texture.floats);
+    write_checked(file, [&](CheckedFile& stream) { encode_exr(texture, stream); });
 }
 
 class SceneWriter {

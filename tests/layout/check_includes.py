@@ -26,7 +26,8 @@ ALLOWED = {
 LIBRARIES = {
     r"(oneapi/)?tbb/": ["src/base"],
     r"hwy/": ["src/math", "src/engine/cpu"],
-    r"OpenImageIO/|Imath/|OpenEXR/": ["src/io"],
+    r"OpenImageIO/": ["src/io/pictures"],
+    r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
     r"tiny_obj_loader\.h": ["src/io"],
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps"],

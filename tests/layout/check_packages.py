@@ -11,6 +11,8 @@ PACKAGES = {
     "hwy": ["libhwy-dev"],
     # Its CMake file names the tools, and the headers those of Imath.
     "OpenImageIO": ["libopenimageio-dev", "openimageio-tools", "libimath-dev"],
+    "OpenEXR": ["libopenexr-dev", "libimath-dev"],
+    "ZLIB": ["zlib1g-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
     "tinyobjloader": ["libtinyobjloader-dev"],
     "assimp": ["libassimp-dev"],

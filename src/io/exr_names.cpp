@@ -1,0 +1,41 @@
+#include "io/exr_names.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <OpenEXR/ImfThreading.h>
+
+namespace relief {
+
+namespace {
+
+/// The standard attributes whose metadata other kinds of files know by another name.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
+    {{"owner", "Copyright"}, {"comments", "ImageDescription"}, {"capDate", "DateTime"}}};
+constexpr std::array<std::string_view, 3> kOfTheFile = {"name", "type", "view"};
+
+} // namespace
+
+std::string get_metadata_name(const std::string& attribute) {
+    if (std::find(kOfTheFile.begin(), kOfTheFile.end(), attribute) != kOfTheFile.end()) return {};
+    for (const auto& [standard, name] : kNames)
+        if (attribute == standard) return std::string(name);
+    return attribute;
+}
+
+std::string get_attribute_name(const std::string& metadata) {
+    for (const auto& [standard, name] : kNames)
+        if (metadata == name) return std::string(standard);
+    return metadata;
+}
+
+void use_threads_of_exr() {
+    static std::once_flag once;
+    std::call_once(once, [] { Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency())); });
+}
+
+} // namespace relief

@@ -1,0 +1,33 @@
+// The door to relief_pictures: OpenImageIO, for the kinds of pictures that Relief has no reader of its own
+// for. It brings some 250 shared libraries, so it is a module that is loaded when the first such picture is
+// opened.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/pixel_source.h"
+
+namespace relief {
+
+/// What the module offers. For any thread.
+class PictureLibrary {
+  public:
+    virtual ~PictureLibrary() = default;
+    /// Throws Error{bad_input}.
+    virtual std::unique_ptr<PixelSource> open_file(const std::string& file) const = 0;
+    /// The same for the bytes of a file, which must outlive the source; the extension of `name` tells the
+    /// kind.
+    virtual std::unique_ptr<PixelSource> open_bytes(std::string_view bytes,
+                                                    const std::string& name) const = 0;
+};
+
+/// Of the module: `const PictureLibrary* relief_picture_library()`, C linkage.
+inline constexpr const char* kPictureLibraryEntry = "relief_picture_library";
+
+/// Loads the module when first called. It lies beside the program, or where the build put it. Throws
+/// Error{failed}, with `name`, the picture, as the place, where it is missing.
+const PictureLibrary& get_picture_library(const std::string& name);
+
+} // namespace relief

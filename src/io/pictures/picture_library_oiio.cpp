@@ -1,0 +1,125 @@
+// The module relief_pictures: pixels as stored, without any colour or alpha conversion.
+#include <algorithm>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "io/picture_library.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+const char* const kDamagedHint = "the file is damaged or incomplete: export or copy it again";
+
+[[noreturn]] void fail(const std::string& name, std::string message) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    throw Error(ErrorKind::bad_input, {message, name, kDamagedHint});
+}
+
+OIIO::ImageSpec make_raw_config() {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    config.attribute("oiio:RawColor", 1);
+    return config;
+}
+
+SampleType get_sample_type(const OIIO::TypeDesc& type) {
+    switch (type.basetype) {
+    case OIIO::TypeDesc::UINT8:
+    case OIIO::TypeDesc::INT8:
+        return SampleType::uint8;
+    case OIIO::TypeDesc::UINT16:
+    case OIIO::TypeDesc::INT16:
+        return SampleType::uint16;
+    case OIIO::TypeDesc::UINT32:
+    case OIIO::TypeDesc::INT32:
+        return SampleType::uint32;
+    case OIIO::TypeDesc::HALF:
+        return SampleType::float16;
+    default:
+        return SampleType::float32;
+    }
+}
+
+/// Header entries of other programs' making (compression, library hints) are not the picture's.
+bool is_own_metadata(const std::string& name) {
+    return name != "compression" && !name.starts_with("oiio:") && !name.starts_with("openexr:");
+}
+
+PixelHeader make_header(const OIIO::ImageSpec& spec) {
+    PixelHeader header;
+    header.x = spec.x, header.y = spec.y, header.width = spec.width, header.height = spec.height;
+    header.full_x = spec.full_x, header.full_y = spec.full_y;
+    header.full_width = spec.full_width, header.full_height = spec.full_height;
+    header.depth = spec.depth;
+    header.is_deep = spec.deep;
+    header.type = get_sample_type(spec.format);
+    header.pixel_bytes = spec.pixel_bytes();
+    header.channels = spec.channelnames;
+    for (const OIIO::ParamValue& entry : spec.extra_attribs) {
+        const std::string name = entry.name().string();
+        if (entry.type() == OIIO::TypeString && is_own_metadata(name))
+            header.metadata[name] = entry.get_string();
+    }
+    return header;
+}
+
+class OiioSource final : public PixelSource {
+  public:
+    explicit OiioSource(std::string name) : name_(std::move(name)) { open(); }
+    OiioSource(std::string name, std::string_view bytes)
+        : name_(std::move(name)),
+          proxy_(std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size())) {
+        open();
+    }
+
+    const PixelHeader& header() const override { return header_; }
+    void read_floats(int channel_count, size_t stride, float* values) override {
+        read(OIIO::TypeDesc::FLOAT, channel_count, stride * sizeof(float), values);
+    }
+    void read_halves(int channel_count, size_t stride, uint16_t* values) override {
+        read(OIIO::TypeDesc::HALF, channel_count, stride * sizeof(uint16_t), values);
+    }
+
+  private:
+    void open() {
+        const OIIO::ImageSpec config = make_raw_config();
+        input_ = OIIO::ImageInput::create(name_, false, &config, proxy_.get());
+        if (!input_) fail(name_, "cannot be opened: " + OIIO::geterror());
+        if (proxy_) input_->set_ioproxy(proxy_.get());
+        OIIO::ImageSpec spec;
+        if (!input_->open(name_, spec, config)) fail(name_, "cannot be opened: " + input_->geterror());
+        header_ = make_header(spec);
+    }
+
+    void read(const OIIO::TypeDesc& type, int channel_count, size_t stride_bytes, void* values) {
+        if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)))
+            fail(name_, "cannot be read: " + input_->geterror());
+    }
+
+    std::string name_;
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> proxy_; ///< of pictures in memory; outlives the input
+    std::unique_ptr<OIIO::ImageInput> input_;
+    PixelHeader header_;
+};
+
+class OiioLibrary final : public PictureLibrary {
+  public:
+    std::unique_ptr<PixelSource> open_file(const std::string& file) const override {
+        return std::make_unique<OiioSource>(file);
+    }
+    std::unique_ptr<PixelSource> open_bytes(std::string_view bytes, const std::string& name) const override {
+        return std::make_unique<OiioSource>(name, bytes);
+    }
+};
+
+} // namespace
+
+} // namespace relief
+
+extern "C" const relief::PictureLibrary* relief_picture_library() {
+    static const relief::OiioLibrary library;
+    return &library;
+}
