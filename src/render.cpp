@@ -57,14 +57,13 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     with_threads(settings.threads, [&] {
         // First, so that a picture that cannot be held is refused before the scene is prepared.
         Film film(settings.width, settings.height, settings.crop, settings.layers);
-        const std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
-        const std::unique_ptr<Engine> engine = make_engine(prepared, settings);
+        std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
+        std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 
         const Timer timer;
         result.is_complete = engine->render(film, observer);
         statistics.render_s = timer.seconds();
-        result.image = film.resolve();
 
         engine->add_statistics(statistics);
         statistics.threads = thread_count();
@@ -72,6 +71,9 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         statistics.ray_buffers_bytes += film.byte_count();
         statistics.warnings = prepared->warnings;
         count_scene(*prepared, statistics);
+        // The picture may lie where they lay.
+        engine.reset(), prepared.reset();
+        result.image = film.resolve();
     });
     add_metadata(settings, scene_hash, settings.first_sample + settings.spp, result.image);
     statistics.total_s = total.seconds();
