@@ -52,15 +52,14 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
                 const uint32_t i = tree->cell_x + std::min(column + v % 5, side),
                                j = tree->cell_y + std::min(row + v / 5, side);
                 const Vec3f expected = evaluate_vertex(surface, patch, levels, i, j);
-                const cpu::Block& block = tree->blocks()[b];
-                ASSERT_EQ(block.vertex[0][v], expected.x)
-                    << kernels.name << " patch " << patch << " vertex " << i << " " << j;
-                ASSERT_EQ(block.vertex[1][v], expected.y)
-                    << kernels.name << " patch " << patch << " vertex " << i << " " << j;
-                ASSERT_EQ(block.vertex[2][v], expected.z)
+                const uint32_t number = cpu::BottomTree::find_first_vertex(int(tree->level), b) +
+                                        v / 5 * cpu::BottomTree::column_count(int(tree->level)) + v % 5;
+                const Vec3f found{tree->vertices(0)[number], tree->vertices(1)[number],
+                                  tree->vertices(2)[number]};
+                ASSERT_EQ(found, expected)
                     << kernels.name << " patch " << patch << " vertex " << i << " " << j;
                 for (int axis = 0; axis < 3; ++axis) {
-                    const float value = block.vertex[axis][v];
+                    const float value = tree->vertices(axis)[number];
                     if (tree->level == 5) {
                         EXPECT_LE(tree->root().bounds[axis][b / 8], value);
                         EXPECT_GE(tree->root().bounds[3 + axis][b / 8], value);

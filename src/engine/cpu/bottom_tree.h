@@ -1,5 +1,6 @@
 // Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over
-// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis).
+// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
+// stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
 // A bottom tree covers one tile of at most 32 x 32 cells. A patch finer than that has a directory: a tree of
 // the same sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever
@@ -27,12 +28,6 @@ struct alignas(64) Node8 {
     float bounds[6][8];
 };
 
-/// 3 rows of 5 vertices, x then y then z; entry 15 repeats entry 14. Cell (c, r) has corners r*5+c, +1, +5,
-/// +6.
-struct alignas(64) Block {
-    float vertex[3][16];
-};
-
 /// What a cached object is of; equal keys mean equal bits.
 struct TreeKey {
     uint32_t surface = 0, patch = 0, tile = 0;
@@ -49,8 +44,8 @@ struct alignas(64) CachedTree {
     std::atomic<uint8_t> is_recent{0};
 };
 
-/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Arrays follow the
-/// head:
+/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Boxes and vertices
+/// follow the head:
 ///   level 5: root, 16 Node8, 128 blocks; group g = child of the root covers 8 x 8 cells, its block k 4 x 2
 ///   of them level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1 level 3: one Node8,
 ///   8 blocks;   levels 2, 1, 0: no boxes, 2, 1, 1 blocks
@@ -68,6 +63,14 @@ struct BottomTree : CachedTree {
                : level == 3 ? sizeof(Node8)
                             : 0;
     }
+    /// Vertices a row, and rows: those of a block at least. What a tile has less repeats its last column and
+    /// row, which makes triangles without area that no ray hits.
+    static constexpr uint32_t column_count(int level) { return level < 2 ? 5 : (1u << level) + 1; }
+    static constexpr uint32_t row_count(int level) { return level < 1 ? 3 : (1u << level) + 1; }
+    /// Loads of whole registers read one number past the last vertex.
+    static constexpr size_t vertex_bytes(int level) {
+        return (3 * size_t(column_count(level)) * row_count(level) + 1) * sizeof(float);
+    }
     static constexpr size_t size_bytes(int level);
 
     const char* data() const;
@@ -79,8 +82,20 @@ struct BottomTree : CachedTree {
         return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
     }
     Node8& group(int g) { return const_cast<Node8&>(const_cast<const BottomTree*>(this)->group(g)); }
-    const Block* blocks() const { return reinterpret_cast<const Block*>(data() + node_bytes(int(level))); }
-    Block* blocks() { return reinterpret_cast<Block*>(data() + node_bytes(int(level))); }
+    /// The vertices of one axis, row by row.
+    const float* vertices(int axis) const {
+        return reinterpret_cast<const float*>(data() + node_bytes(int(level))) +
+               uint32_t(axis) * column_count(int(level)) * row_count(int(level));
+    }
+    float* vertices(int axis) {
+        return const_cast<float*>(const_cast<const BottomTree*>(this)->vertices(axis));
+    }
+    /// Number of a block's first vertex: of its lowest row and column.
+    static uint32_t find_first_vertex(int level, uint32_t block) {
+        uint32_t column = 0, row = 0;
+        block_cell(level, block, column, row);
+        return row * column_count(level) + column;
+    }
 
     /// First cell (column, row) of a block within the tile.
     static void block_cell(int level, uint32_t block, uint32_t& column, uint32_t& row) {
@@ -99,7 +114,7 @@ struct BottomTree : CachedTree {
 };
 
 constexpr size_t BottomTree::size_bytes(int level) {
-    return (sizeof(BottomTree) + 63) / 64 * 64 + node_bytes(level) + block_count(level) * sizeof(Block);
+    return (sizeof(BottomTree) + 63) / 64 * 64 + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
 }
 inline const char* BottomTree::data() const {
     return reinterpret_cast<const char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;

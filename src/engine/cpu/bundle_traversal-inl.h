@@ -39,8 +39,10 @@ HWY_INLINE void load_relative(const float (&coordinate)[3][W], const RayBundle& 
 /// The triangles of a block, for each ray that may meet one.
 HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                      RayBundle& bundle) {
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+    const BlockPlace at_block(tree, block);
     Lanes16 v[3];
-    load_relative(tree.blocks()[block].vertex, bundle, v);
+    for (int k = 0; k < 3; ++k) v[k] = at_block.load(tree, k) - Lanes16(origin[k]);
     Window all;
     const PartWindows windows = find_quad_windows(v, bundle, all);
     const LaneTable table[3] = {LaneTable(v[0]), LaneTable(v[1]), LaneTable(v[2])};

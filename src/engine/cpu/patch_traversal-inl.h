@@ -80,13 +80,25 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
     hit.v = (float(hit.j) + (hit.is_upper ? weight_b + weight_c : weight_c)) * cell_size;
 }
 
+/// Where the vertices of a block are in the grid of its tile.
+struct BlockPlace {
+    uint32_t first, columns;
+
+    BlockPlace(const cpu::BottomTree& tree, uint32_t block)
+        : first(cpu::BottomTree::find_first_vertex(int(tree.level), block)),
+          columns(cpu::BottomTree::column_count(int(tree.level))) {}
+    HWY_INLINE Lanes16 load(const cpu::BottomTree& tree, int axis) const {
+        return load_block(tree.vertices(axis) + first, columns);
+    }
+};
+
 /// Exact leaf: sixteen triangles at once.
 template <Query kQuery>
 HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                     RayState& ray) {
-    const cpu::Block& leaf = tree.blocks()[block];
     Lanes16 x, y, z, cx[3], cy[3], cz[3];
-    shear_vertices(leaf.vertex, ray, x, y, z);
+    const BlockPlace at(tree, block);
+    shear_vertices([&](int axis) { return at.load(tree, axis); }, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
     gather_corners(y, cy[0], cy[1], cy[2]);
     TriangleTest<16> test;
@@ -106,13 +118,14 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
 template <Query kQuery>
 HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                   RayState& ray) {
-    const cpu::Block& leaf = tree.blocks()[block];
+    const BlockPlace at(tree, block);
     alignas(32) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
         for (uint32_t cell = 0; cell < 8; ++cell) {
-            const float* v = leaf.vertex[axis] + (cell >> 2) * 5 + (cell & 3);
-            bounds[axis][cell] = std::fmin(std::fmin(v[0], v[1]), std::fmin(v[5], v[6]));
-            bounds[3 + axis][cell] = std::fmax(std::fmax(v[0], v[1]), std::fmax(v[5], v[6]));
+            const float* v = tree.vertices(axis) + at.first + (cell >> 2) * at.columns + (cell & 3);
+            const float* w = v + at.columns;
+            bounds[axis][cell] = std::fmin(std::fmin(v[0], v[1]), std::fmin(w[0], w[1]));
+            bounds[3 + axis][cell] = std::fmax(std::fmax(v[0], v[1]), std::fmax(w[0], w[1]));
         }
     Lanes8 bound[6], entry;
     for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(bounds[k]);

@@ -177,6 +177,29 @@ HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RaySt
     return false;
 }
 
+/// One coordinate of the fifteen vertices of a block, row by row: `first` is its first vertex in a grid with
+/// `columns` vertices a row. Lane 15 is any number; reads up to one number past the last vertex.
+HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
+    alignas(64) static constexpr float kNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    constexpr size_t kRow = 5;
+    const Lanes16::D d;
+    // Where the lanes of each row would begin if they were the first of all.
+    const float* const second = first + columns - kRow;
+    const float* const third = second + columns - kRow;
+    Lanes16 r;
+    for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        const size_t begin = p * Lanes16::kLanes, end = begin + Lanes16::kLanes;
+        const auto number = hn::Load(d, kNumbers + begin);
+        auto v = hn::LoadU(d, (begin < kRow ? first : begin < 2 * kRow ? second : third) + begin);
+        if (begin < kRow && kRow < end)
+            v = hn::IfThenElse(hn::Lt(number, hn::Set(d, float(kRow))), v, hn::LoadU(d, second + begin));
+        if (begin < 2 * kRow && 2 * kRow < end)
+            v = hn::IfThenElse(hn::Lt(number, hn::Set(d, float(2 * kRow))), v, hn::LoadU(d, third + begin));
+        r.part[p] = v;
+    }
+    return r;
+}
+
 /// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00,
 /// 11, 01) of cells 0..3 of the first row, then of the second.
 HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, Lanes16& c) {
@@ -237,24 +260,12 @@ HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, Tria
     test_distances(z, Lanes<W>(ray.shear[2]), Lanes<W>(ray.t_min), Lanes<W>(ray.t_max), test);
 }
 
-/// Vertices in memory, an axis a row, relative to the ray: sheared x and y, and z along the major axis.
-template <size_t W>
-HWY_INLINE void shear_vertices(const float (&vertex)[3][W], const RayState& ray, Lanes<W>& x, Lanes<W>& y,
-                               Lanes<W>& z) {
-    z = Lanes<W>::load(vertex[ray.axis[2]]) - Lanes<W>(ray.origin[ray.axis[2]]);
-    x = (Lanes<W>::load(vertex[ray.axis[0]]) - Lanes<W>(ray.origin[ray.axis[0]])) -
-        Lanes<W>(ray.shear[0]) * z;
-    y = (Lanes<W>::load(vertex[ray.axis[1]]) - Lanes<W>(ray.origin[ray.axis[1]])) -
-        Lanes<W>(ray.shear[1]) * z;
-}
-
-/// The same for vertices in registers.
-template <size_t W>
-HWY_INLINE void shear_vertices(const Lanes<W> (&vertex)[3], const RayState& ray, Lanes<W>& x, Lanes<W>& y,
-                               Lanes<W>& z) {
-    z = vertex[ray.axis[2]] - Lanes<W>(ray.origin[ray.axis[2]]);
-    x = (vertex[ray.axis[0]] - Lanes<W>(ray.origin[ray.axis[0]])) - Lanes<W>(ray.shear[0]) * z;
-    y = (vertex[ray.axis[1]] - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
+/// Vertices relative to the ray: sheared x and y, and z along the major axis. load(axis) gives coordinates.
+template <size_t W, class Load>
+HWY_INLINE void shear_vertices(Load load, const RayState& ray, Lanes<W>& x, Lanes<W>& y, Lanes<W>& z) {
+    z = load(ray.axis[2]) - Lanes<W>(ray.origin[ray.axis[2]]);
+    x = (load(ray.axis[0]) - Lanes<W>(ray.origin[ray.axis[0]])) - Lanes<W>(ray.shear[0]) * z;
+    y = (load(ray.axis[1]) - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
 }
 
 /// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then

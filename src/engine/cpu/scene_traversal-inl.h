@@ -85,7 +85,7 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
         }
         const Lanes4 vertex[3] = {Lanes4::load(coordinate[0]), Lanes4::load(coordinate[1]),
                                   Lanes4::load(coordinate[2])};
-        shear_vertices(vertex, ray, x[corner], y[corner], z[corner]);
+        shear_vertices([&](int axis) { return vertex[axis]; }, ray, x[corner], y[corner], z[corner]);
     }
     TriangleTest<4> test;
     if (!(test_edges(x, y, test) & 3)) return false;
