@@ -169,7 +169,7 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     }
     for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
     }
-    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    void* memory = memory_.allocate(bytes);
     if (!memory) allocated_.fetch_sub(bytes);
     return memory;
 }
@@ -231,7 +231,7 @@ void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
 
 void BottomCache::free_tree(CachedTree* tree) {
     allocated_.fetch_sub(tree->byte_count);
-    std::free(static_cast<void*>(tree));
+    memory_.free(tree);
 }
 
 TraceCounters BottomCache::sum_counters() const {
