@@ -38,8 +38,6 @@ if(RELIEF_DCHECKS)
   target_compile_definitions(relief_options INTERFACE RELIEF_DCHECKS)
 endif()
 if(RELIEF_SANITIZE)
-  # Memory pools of other libraries would hide from the sanitizer what it looks for.
-  target_compile_definitions(relief_options INTERFACE RELIEF_SANITIZED)
   target_compile_options(relief_options INTERFACE -fsanitize=${RELIEF_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
   target_link_options(relief_options INTERFACE -fsanitize=${RELIEF_SANITIZE})

@@ -56,7 +56,7 @@ struct RenderSettings {
     float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, > 0
     LodRule lod = LodRule::field;
     LeafKind leaf = LeafKind::exact;
-    size_t bottom_cache_bytes = size_t(256) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
+    size_t bottom_cache_bytes = size_t(176) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
     Window crop;                                   ///< part of the picture to render
     int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel
     std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost

@@ -96,9 +96,19 @@ TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
     }
 }
 
-TEST_P(Traversals, find_them_in_trees_of_the_costs_asked_for) {
-    const bool is_default = GetParam().traversal == TraversalKind::wide;
-    if (is_default || GetParam().structure == StructureKind::lbvh) GTEST_SKIP() << "no costs to ask for";
+/// The choices whose trees are built by costs that can be asked for.
+class TraversalsWithCosts : public Traversals {
+  public:
+    static std::vector<Choice> list() {
+        std::vector<Choice> choices = test::list_choices(EngineKind::cpu);
+        std::erase_if(choices, [](const Choice& choice) {
+            return choice.traversal == TraversalKind::wide || choice.structure == StructureKind::lbvh;
+        });
+        return choices;
+    }
+};
+
+TEST_P(TraversalsWithCosts, find_them_in_trees_of_the_costs_asked_for) {
     Scene scene = test::make_crowd();
     for (Object& object : scene.objects) object.displacement = kNoIndex;
     RenderSettings settings;
@@ -111,6 +121,8 @@ TEST_P(Traversals, find_them_in_trees_of_the_costs_asked_for) {
     EXPECT_LT(bytes, make_walk_trees(*prepared, settings, EngineKind::cpu).byte_count());
 }
 
+INSTANTIATE_TEST_SUITE_P(All, TraversalsWithCosts, testing::ValuesIn(TraversalsWithCosts::list()),
+                         [](const auto& info) { return test::name_choice(info.param); });
 INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(test::list_choices(EngineKind::cpu)),
                          [](const auto& info) { return test::name_choice(info.param); });
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/large_pages.h"
 #include "base/timer.h"
 
 namespace relief::cpu {
@@ -169,8 +170,11 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     }
     for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
     }
-    void* memory = memory_.allocate(bytes);
-    if (!memory) allocated_.fetch_sub(bytes);
+    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (memory)
+        advise_large_pages(memory, bytes);
+    else
+        allocated_.fetch_sub(bytes);
     return memory;
 }
 
@@ -231,7 +235,7 @@ void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
 
 void BottomCache::free_tree(CachedTree* tree) {
     allocated_.fetch_sub(tree->byte_count);
-    memory_.free(tree);
+    std::free(static_cast<void*>(tree));
 }
 
 TraceCounters BottomCache::sum_counters() const {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "engine/cpu/bottom_tree.h"
-#include "engine/cpu/tree_memory.h"
 #include "relief/render.h"
 
 namespace relief::cpu {
@@ -148,7 +147,6 @@ class BottomCache {
     void free_tree(CachedTree* tree);
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
-    TreeMemory memory_;
     size_t cap_bytes_;
     size_t slot_count_ = 0; ///< power of two, or 0
     std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
