@@ -36,7 +36,6 @@ struct CameraTile {
 
 std::vector<CameraTile> make_tiles(int width, int height) {
     std::vector<CameraTile> tiles;
-    std::vector<Vec2f> centres; ///< of pixels, tile after tile
     size_t first = 0;
     for (int y = 0; y < height; y += kTileEdge)
         for (int x = 0; x < width; x += kTileEdge) {

@@ -39,8 +39,7 @@ struct SuccinctHeap {
     }
 };
 
-/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth
-/// helps.
+/// Throws Error for trees deeper than scalar::kTrailLevels64; limit_depth helps.
 SuccinctHeap make_succinct_heap(const AxisBvh& tree);
 
 /// Whether there is a node of that key. Of a succinct heap the directory alone is read.

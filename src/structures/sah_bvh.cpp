@@ -108,10 +108,10 @@ class SahBuild {
         const SplitInput input{std::span(members_).subspan(tree.begin, count), bounds.centroids};
         const bool is_swept = config_.method == SahBvhBuilder::Method::sweep || count <= kSmallCount;
         std::array<SweepEntry, kSmallCount> small_entries;
-        std::array<NumberedBox, kSmallCount> small_refs;
+        std::array<NumberedBox, kSmallCount> small_members;
         SweepScratch scratch;
         if (count <= kSmallCount)
-            scratch = {std::span(small_entries).first(count), small_refs};
+            scratch = {std::span(small_entries).first(count), small_members};
         else if (is_swept)
             scratch = {std::span(sweep_entries_).subspan(tree.begin, count),
                        std::span(sweep_members_).subspan(tree.begin, count)};

@@ -160,6 +160,42 @@ TEST(Bundle, finds_it_in_every_space) {
     }
 }
 
+/// Eight strips side by side, a hundred to thousands of times as long as they are far away, turned; and rays
+/// that go close to where two of them join.
+TEST(Bundle, finds_it_between_triangles_that_reach_far_aside) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (const float reach : {30.0f, 100.0f, 1000.0f, 4000.0f, 9000.0f})
+        for (int turn = 0; turn < 12; ++turn) {
+            const Vec3f forward = normalize(Vec3f{unit(random), unit(random), unit(random)});
+            const Vec3f right = normalize(cross(forward, Vec3f{unit(random), unit(random), unit(random)}));
+            const Vec3f up = cross(right, forward);
+            Mesh strips;
+            strips.name = "strips";
+            for (int k = 0; k <= 8; ++k)
+                for (const float y : {-reach, reach})
+                    strips.positions.push_back(forward + right * (0.1f * float(k - 4)) + up * y);
+            for (uint32_t k = 0; k < 8; ++k) {
+                strips.face_sizes.push_back(4);
+                for (const uint32_t corner : {2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1})
+                    strips.position_indices.push_back(corner);
+            }
+            Scene scene;
+            scene.materials.emplace_back();
+            scene.meshes.push_back(strips);
+            Object object;
+            object.name = strips.name;
+            scene.objects.push_back(object);
+            Rays rays(256);
+            for (size_t k = 0; k < rays.size(); ++k) {
+                const float x = 0.1f * float(int(k % 7) - 3) + 2e-5f * unit(random);
+                rays[k].direction = forward + right * x + up * (0.3f * unit(random));
+            }
+            const cpu::Tracer tracer = make_tracer(scene, 0, Isa::best);
+            EXPECT_GT(expect_same(tracer, rays, "reach " + std::to_string(reach)), rays.size() / 2);
+        }
+}
+
 TEST(Bundle, finds_the_same_triangles_on_a_tessellated_surface) {
     for (const Isa isa : test::machine_isas()) {
         const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 4);

@@ -100,6 +100,42 @@ TEST(SurfacePoints, are_the_same_where_a_tile_has_no_map) {
     expect_same_points(displacement);
 }
 
+TEST(CameraRays, are_the_same_many_at_once_and_one_by_one) {
+    const scalar::CameraFrame camera =
+        scalar::make_camera_frame({1, 2, 3}, {-4, 0.5f, 0.25f}, {0.1f, 1, 0}, 0.7f, {640, 360});
+    scalar::CameraFrame nowhere = camera; // a direction of length 0 at pixel (0, 0)
+    nowhere.corner = {0, 0, 0};
+    std::vector<Vec2f> positions = {{0, 0}};
+    for (uint32_t k = 0; k < 40; ++k)
+        positions.push_back(
+            {float(scalar::hash_uint(k) % 6400) * 0.1f, float(scalar::hash_uint(~k) % 3600) * 0.1f});
+    for (const Isa isa : test::machine_isas()) {
+        RenderSettings settings;
+        settings.isa = isa, settings.level = 0;
+        const auto map = test::make_random_map(4, 4, 0.1f, 1);
+        const cpu::Tracer tracer(
+            prepare_scene(make_scene(test::make_displacement(map, DisplacementSpace::object)), settings),
+            settings);
+        for (const scalar::CameraFrame& frame : {camera, nowhere})
+            for (const size_t count : {size_t(1), size_t(15), size_t(16), size_t(17), positions.size()}) {
+                cpu::TraceRay used;
+                used.t_min = 7, used.t_max = 8, used.bias = 9;
+                std::vector<cpu::TraceRay> rays(count + 1, used);
+                tracer.shading_kernels().aim_rays(frame, positions.data(), count, rays.data());
+                for (size_t k = 0; k < count; ++k) {
+                    const scalar::CameraRay expected = scalar::make_pinhole_ray(frame, positions[k]);
+                    ASSERT_EQ(rays[k].origin, expected.origin) << tracer.shading_kernels().name << " " << k;
+                    ASSERT_EQ(rays[k].direction, expected.direction)
+                        << tracer.shading_kernels().name << " " << k;
+                    ASSERT_EQ(rays[k].t_min, 0.0f);
+                    ASSERT_EQ(rays[k].t_max, cpu::TraceRay().t_max);
+                    ASSERT_EQ(rays[k].bias, 0u);
+                }
+                EXPECT_EQ(rays[count].bias, used.bias) << "one ray too many";
+            }
+    }
+}
+
 TEST(RandomPairs, are_the_same_many_at_once_and_one_by_one) {
     std::vector<uint32_t> seeds;
     for (uint32_t k = 0; k < 53; ++k) seeds.push_back(scalar::hash_uint(k));

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/large_pages.h"
 #include "base/timer.h"
 
 namespace relief::cpu {
@@ -171,10 +170,7 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
     }
     void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (memory)
-        advise_large_pages(memory, bytes);
-    else
-        allocated_.fetch_sub(bytes);
+    if (!memory) allocated_.fetch_sub(bytes);
     return memory;
 }
 

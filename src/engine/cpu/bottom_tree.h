@@ -46,9 +46,10 @@ struct alignas(64) CachedTree {
 
 /// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Boxes and vertices
 /// follow the head:
-///   level 5: root, 16 Node8, 128 blocks; group g = child of the root covers 8 x 8 cells, its block k 4 x 2
-///   of them level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1 level 3: one Node8,
-///   8 blocks;   levels 2, 1, 0: no boxes, 2, 1, 1 blocks
+/// - level 5: root, 16 Node8, 128 blocks; child g of the root covers 8 x 8 cells, its block k 4 x 2 of them;
+/// - level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1;
+/// - level 3: one Node8, 8 blocks;
+/// - levels 2, 1, 0: no boxes; 2, 1, 1 blocks.
 struct BottomTree : CachedTree {
     uint32_t level = 0;
     uint32_t cell_x = 0, cell_y = 0; ///< first cell of the tile on the patch

@@ -19,8 +19,11 @@ namespace relief::HWY_NAMESPACE {
 
 inline constexpr uint32_t kBundleSize = 256, kGroupSize = 16, kGroupCount = kBundleSize / kGroupSize;
 
-/// Places on the plane at distance 1 are of the order of 1; this is some sixty roundings of such a number.
+/// Some sixty roundings of a place on the plane at distance 1, for rays that lie within 1 of the middle; what
+/// lies farther aside than that is rounded in proportion.
 inline constexpr float kWindowMargin = 4e-6f;
+/// The same for the place of a box beside a plane, of the greatest distance of the box along an axis.
+inline constexpr float kBoxMargin = 2e-6f;
 inline constexpr float kDepthSlack = 1 - 2e-5f;
 /// Beyond this, on the plane, a point is so far aside that its depth may have lost its sign to rounding.
 inline constexpr float kWidestWindow = 1e4f;
@@ -168,25 +171,29 @@ HWY_INLINE bool enter_space(const Affine& object_from_world, RayBundle& bundle) 
     return true;
 }
 
-/// The greatest value of dot(p - origin, n) over W boxes (lower x y z, upper x y z).
-template <size_t W>
-HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& origin, const Vec3f& n) {
-    const float o[3] = {origin.x, origin.y, origin.z}, factor[3] = {n.x, n.y, n.z};
+/// The greatest value of dot(p, n) over W boxes (lower x y z, upper x y z).
+template <size_t W> HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& n) {
+    const float factor[3] = {n.x, n.y, n.z};
     Lanes<W> sum(0.0f);
-    for (int k = 0; k < 3; ++k)
-        sum = sum + (bound[factor[k] < 0 ? k : 3 + k] - Lanes<W>(o[k])) * Lanes<W>(factor[k]);
+    for (int k = 0; k < 3; ++k) sum = sum + bound[factor[k] < 0 ? k : 3 + k] * Lanes<W>(factor[k]);
     return sum;
 }
 
 /// The boxes that reach into the pyramid, and the least depth of each.
 template <size_t W>
 HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayBundle& bundle, Lanes<W>& nearest) {
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
     const Lanes<W> zero(0.0f);
-    nearest = zero - find_greatest(bound, bundle.origin, -bundle.forward);
+    Lanes<W> relative[6], reach = zero;
+    for (int k = 0; k < 6; ++k) {
+        relative[k] = bound[k] - Lanes<W>(origin[k % 3]);
+        reach = max(reach, max(relative[k], zero - relative[k]));
+    }
+    const Lanes<W> margin = reach * Lanes<W>(kBoxMargin), least = zero - margin;
+    nearest = least - find_greatest(relative, -bundle.forward);
     LaneMask mask = less_equal(nearest * Lanes<W>(kDepthSlack), Lanes<W>(bundle.farthest)) &
-                    less_equal(zero, find_greatest(bound, bundle.origin, bundle.forward));
-    for (const Vec3f& side : bundle.plane)
-        mask &= less_equal(zero, find_greatest(bound, bundle.origin, side));
+                    less_equal(least, find_greatest(relative, bundle.forward));
+    for (const Vec3f& side : bundle.plane) mask &= less_equal(least, find_greatest(relative, side));
     return mask;
 }
 
@@ -195,14 +202,18 @@ template <size_t W> HWY_INLINE Window find_window(const Lanes<W> (&v)[3], const 
     const Lanes<W> depth = dot_lanes(v, bundle.forward), inverse = Lanes<W>(1.0f) / depth;
     const Lanes<W> x = dot_lanes(v, bundle.right) * inverse, y = dot_lanes(v, bundle.up) * inverse;
     const float least = reduce_min(depth);
-    Window window = {reduce_min(x) - kWindowMargin, reduce_max(x) + kWindowMargin,
-                     reduce_min(y) - kWindowMargin, reduce_max(y) + kWindowMargin, least * kDepthSlack};
+    Window window = {reduce_min(x), reduce_max(x), reduce_min(y), reduce_max(y), least};
     const bool is_in_front = least > 0 && window.lower_x > -kWidestWindow && window.upper_x < kWidestWindow &&
                              window.lower_y > -kWidestWindow && window.upper_y < kWidestWindow;
     if (!is_in_front) {
         constexpr float kEnd = std::numeric_limits<float>::infinity();
-        window = {-kEnd, kEnd, -kEnd, kEnd, -kEnd};
+        return {-kEnd, kEnd, -kEnd, kEnd, -kEnd};
     }
+    const float aside =
+        HWY_MAX(HWY_MAX(-window.lower_x, window.upper_x), HWY_MAX(-window.lower_y, window.upper_y));
+    const float margin = kWindowMargin * HWY_MAX(1.0f, aside);
+    window.lower_x -= margin, window.upper_x += margin, window.lower_y -= margin, window.upper_y += margin;
+    window.depth *= kDepthSlack - margin;
     return window;
 }
 

@@ -8,6 +8,8 @@
 #define RELIEF_RAY_PAIRS_INL_H
 #endif
 
+#include <cstring>
+
 #include "engine/cpu/ray_bundle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,7 +21,8 @@ struct PartWindows {
 };
 
 /// Makes room for rounding. All windows are open where a part is not in front of the rays, or far aside: what
-/// is seen of it cannot be said. Parts that are not numbers are not there, and no ray lies in their windows.
+/// is seen of it cannot be said. Parts that are not numbers are not there; a ray that is tested against one
+/// nevertheless misses it.
 HWY_INLINE void widen_windows(PartWindows& part) {
     const LaneMask is_there = less_equal(part.depth, part.depth);
     const LaneMask is_in_front = less(Lanes8(0.0f), part.depth) & less(Lanes8(-kWidestWindow), part.lower_x) &
@@ -31,10 +34,12 @@ HWY_INLINE void widen_windows(PartWindows& part) {
         part = {Lanes8(-kEnd), Lanes8(kEnd), Lanes8(-kEnd), Lanes8(kEnd), Lanes8(-kEnd)};
         return;
     }
-    const Lanes8 margin(kWindowMargin);
+    const Lanes8 zero(0.0f);
+    const Lanes8 aside = max(max(zero - part.lower_x, part.upper_x), max(zero - part.lower_y, part.upper_y));
+    const Lanes8 margin = Lanes8(kWindowMargin) * max(Lanes8(1.0f), aside);
     part.lower_x = part.lower_x - margin, part.upper_x = part.upper_x + margin;
     part.lower_y = part.lower_y - margin, part.upper_y = part.upper_y + margin;
-    part.depth = part.depth * Lanes8(kDepthSlack);
+    part.depth = part.depth * (Lanes8(kDepthSlack) - margin);
 }
 
 /// Least and greatest value over the corners of each quad.
@@ -78,8 +83,11 @@ HWY_INLINE PartWindows find_triangle_windows(const Lanes8 (&v)[3][3], const RayB
 /// Up to all pairs of a group of rays and eight parts, and what a step left over.
 struct PairList {
     static constexpr uint32_t kCapacity = 8 * kGroupSize + 16;
-    alignas(64) uint32_t code[kCapacity + 16] = {}; ///< ray * 8 + part; a little more, for whole registers
+    alignas(64) uint32_t code[kCapacity + 16]; ///< ray * 8 + part; a little more, for whole registers
     uint32_t count = 0;
+
+    /// The first sixteen are always codes: a step with fewer pairs than lanes loads what lies behind them.
+    PairList() { std::memset(code, 0, 16 * sizeof(uint32_t)); }
 
     /// Appends first + step * lane for the lanes of `mask`.
     template <size_t W, uint32_t kStep> HWY_INLINE void append(LaneMask mask, uint32_t first) {
