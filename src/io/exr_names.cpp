@@ -18,6 +18,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = 
     {{"owner", "Copyright"}, {"comments", "ImageDescription"}, {"capDate", "DateTime"}}};
 constexpr std::array<std::string_view, 3> kOfTheFile = {"name", "type", "view"};
 
+bool is_of_the_file(std::string_view attribute) {
+    return std::find(kOfTheFile.begin(), kOfTheFile.end(), attribute) != kOfTheFile.end();
+}
+
 /// OpenEXR is not instrumented: the thread sanitizer takes what its pool orders for races. Then the caller's
 /// thread does all.
 #if defined(__has_feature)
@@ -32,7 +36,7 @@ constexpr std::array<std::string_view, 3> kOfTheFile = {"name", "type", "view"};
 } // namespace
 
 std::string get_metadata_name(const std::string& attribute) {
-    if (std::find(kOfTheFile.begin(), kOfTheFile.end(), attribute) != kOfTheFile.end()) return {};
+    if (is_of_the_file(attribute)) return {};
     for (const auto& [standard, name] : kNames)
         if (attribute == standard) return std::string(name);
     return attribute;
@@ -41,7 +45,7 @@ std::string get_metadata_name(const std::string& attribute) {
 std::string get_attribute_name(const std::string& metadata) {
     for (const auto& [standard, name] : kNames)
         if (metadata == name) return std::string(standard);
-    return metadata;
+    return is_of_the_file(metadata) ? std::string() : metadata;
 }
 
 void use_threads_of_exr() {

@@ -31,8 +31,13 @@ Imf::Header make_header(const Image& image) {
     const int full_height = image.full_height > 0 ? image.full_height : image.y0 + image.height;
     Imf::Header header(Imath::Box2i(Imath::V2i(0), Imath::V2i(full_width - 1, full_height - 1)),
                        Imath::Box2i(first, first + Imath::V2i(image.width - 1, image.height - 1)));
-    for (const auto& [name, value] : image.metadata)
-        header.insert(get_attribute_name(name), Imf::StringAttribute(value));
+    for (const auto& [name, value] : image.metadata) {
+        // What the header already says of the pixels wins; OpenEXR refuses an empty name, and text for a
+        // value of another type.
+        const std::string attribute = get_attribute_name(name);
+        const bool is_free = attribute.c_str()[0] != '\0' && header.find(attribute) == header.end();
+        if (is_free) header.insert(attribute, Imf::StringAttribute(value));
+    }
     return header;
 }
 
