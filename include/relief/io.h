@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,9 @@ void write_image(const Image& image, const std::filesystem::path& file);
 
 /// Throws now if write_image to this file would fail for its name, folder or rights.
 void check_writable(const std::filesystem::path& file);
+
+/// Calls `body`, in which all of the above takes at most `threads` threads; 0: all cores, as outside.
+void with_io_threads(int threads, const std::function<void()>& body);
 
 /// Writes any text; the file appears whole or not at all. Throws Error{failed}.
 void write_text_file(const std::filesystem::path& file, std::string_view text);

@@ -1,4 +1,4 @@
-// What readers and writers of EXR files share.
+// Names of texts in EXR files.
 #pragma once
 
 #include <string>
@@ -9,8 +9,5 @@ namespace relief {
 std::string get_metadata_name(const std::string& attribute);
 /// And back; empty for those that describe the file.
 std::string get_attribute_name(const std::string& metadata);
-
-/// Lets OpenEXR code with all cores; it has one pool for the process. For any thread.
-void use_threads_of_exr();
 
 } // namespace relief

@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include "io/exr_names.h"
+#include "io/exr_threads.h"
 #include "io/image_coders.h"
 
 namespace relief {
@@ -50,7 +51,6 @@ struct Samples {
 
 void write_samples(Imf::Header header, const std::vector<std::string>& channels, const Samples& samples,
                    CheckedFile& file) {
-    use_threads_of_exr();
     header.compression() = Imf::ZIP_COMPRESSION;
     const size_t value_bytes = samples.type == Imf::HALF ? 2 : 4, stride_bytes = samples.stride * value_bytes;
     const Imath::Box2i window = header.dataWindow();
@@ -64,7 +64,7 @@ void write_samples(Imf::Header header, const std::vector<std::string>& channels,
                                        stride_bytes, stride_bytes * width));
     }
     ExrStream stream(file);
-    Imf::OutputFile output(stream, header);
+    Imf::OutputFile output(stream, header, prepare_exr_threads());
     output.setFrameBuffer(buffer);
     output.writePixels(window.max.y - window.min.y + 1);
 }
