@@ -6,6 +6,7 @@
 
 #include "io/image_output.h"
 #include "io/test_files.h"
+#include "math/scalar.h"
 #include "relief/io.h"
 
 namespace relief {
@@ -85,6 +86,46 @@ TEST_F(PictureWriters, radiance_beyond_rgbe_is_stored_as_the_nearest_that_it_hol
     for (size_t i = 0; i < cases.size(); ++i)
         for (size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(read.pixels[3 * i + c], cases[i][3 + c], cases[i][3 + c] / 127) << i << ", " << c;
+}
+
+TEST_F(PictureWriters, png_of_several_chunks_is_whole) {
+    Image image;
+    image.width = 300, image.height = 200, image.channels = {"R", "G", "B"};
+    for (unsigned i = 0; i < 300 * 200 * 3; ++i) // noise, which no coding makes shorter
+        image.pixels.push_back(float(((i * 2654435761u) ^ (i * i * 40503u)) >> 8 & 0xffff) / 0xffff);
+    write_image(image, folder_ / "a.png");
+    EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), size_t(2) << 16);
+    const Image read = read_image(folder_ / "a.png");
+    ASSERT_EQ(read.pixels.size(), image.pixels.size());
+    for (size_t i = 0; i < image.pixels.size(); i += 3) {
+        const Vec3f shown =
+            scalar::tone_map_filmic({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
+        ASSERT_NEAR(read.pixels[i], scalar::encode_srgb(shown.x), 0.6f / 255);
+        ASSERT_NEAR(read.pixels[i + 1], scalar::encode_srgb(shown.y), 0.6f / 255);
+        ASSERT_NEAR(read.pixels[i + 2], scalar::encode_srgb(shown.z), 0.6f / 255);
+    }
+}
+
+TEST_F(PictureWriters, hdr_rows_of_any_runs_are_whole) {
+    for (const int width : {7, 8, 127, 128, 129, 131, 254, 255, 259, 700}) {
+        Image image;
+        image.width = width, image.height = 4, image.channels = {"R", "G", "B"};
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < width; ++x) { // a run of all; none; short ones; a run after others
+                const int value = y == 0    ? 100
+                                  : y == 1  ? 128 + x % 2
+                                  : y == 2  ? 130 + x / 3 % 90
+                                  : x < 130 ? x
+                                            : 9;
+                const float red = float(value) / 256;
+                image.pixels.insert(image.pixels.end(), {red, 0.5f, 0.5f});
+            }
+        write_image(image, folder_ / "a.hdr");
+        const Image read = read_image(folder_ / "a.hdr");
+        ASSERT_EQ(read.pixels.size(), image.pixels.size());
+        for (size_t i = 0; i < image.pixels.size(); ++i)
+            ASSERT_NEAR(read.pixels[i], image.pixels[i], 1.01f / 256) << width << ", " << i;
+    }
 }
 
 } // namespace relief
