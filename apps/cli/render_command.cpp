@@ -82,9 +82,7 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     return get_exit_code(options, result, saved);
 }
 
-int run_render(RenderOptions& options) {
-    const double start = get_seconds();
-    complete_render_options(options);
+int render_input(const RenderOptions& options, double start) {
     Scene scene = load_input(options);
     const double load_s = get_seconds() - start;
     const RenderSettings settings = make_settings(options, scene.picture);
@@ -92,6 +90,14 @@ int run_render(RenderOptions& options) {
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
     if (!options.is_quiet) print_warnings(scene.warnings);
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
+}
+
+int run_render(RenderOptions& options) {
+    const double start = get_seconds();
+    complete_render_options(options);
+    int exit_code = kExitDone;
+    with_io_threads(options.settings.threads, [&] { exit_code = render_input(options, start); });
+    return exit_code;
 }
 
 } // namespace

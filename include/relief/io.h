@@ -1,8 +1,10 @@
 // Files: scenes, meshes, maps in; scenes and pictures out. Links against relief_io; the core works without
-// it.
+// it. Plain EXR is read by relief_io itself; PNG, JPEG, TIFF, HDR and other EXR by the module
+// relief_pictures, which lies beside the program and is loaded when the first such picture is opened.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,7 +15,7 @@
 namespace relief {
 
 /// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file.
-/// Throws Error{bad_input} with file, line and column, object and hint.
+/// Throws Error{bad_input} with file, line and column, object and hint; for its pictures as read_image.
 Scene load_scene(const std::filesystem::path& file);
 
 /// What the command line says of a mesh that comes without a scene file. Unset values come from the preset.
@@ -40,18 +42,25 @@ Mesh load_mesh(const std::filesystem::path& file);
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder, so that load_scene gives the same scene.
 void save_scene(const Scene& scene, const std::filesystem::path& folder);
 
-/// Reads all channels of the first part as floats, data window and metadata included.
+/// Reads all channels of the first part as floats, data window and metadata included. Throws
+/// Error{bad_input} for a file that is missing, damaged, too large or of an unknown kind, Error{failed} where
+/// it takes the module relief_pictures and that is missing or of another version, Error{out_of_memory} where
+/// its pixels do not fit.
 Image read_image(const std::filesystem::path& file);
 
-/// Texels as stored: no colour conversion, no flip.
+/// Texels as stored: no colour conversion, no flip. Throws as read_image.
 Texture read_texture(const std::filesystem::path& file);
 
 /// Writes by extension: .exr (all channels, ZIP, float), .hdr (R, G, B), .png (tone mapped, 8 bit sRGB).
-/// The file appears whole or not at all: it is written beside its place and renamed.
+/// The file appears whole or not at all: it is written beside its place and renamed. Throws Error{usage} for
+/// another extension, Error{failed} where it cannot be written, std::bad_alloc.
 void write_image(const Image& image, const std::filesystem::path& file);
 
 /// Throws now if write_image to this file would fail for its name, folder or rights.
 void check_writable(const std::filesystem::path& file);
+
+/// Calls `body`, in which all of the above takes at most `threads` threads; 0: all cores, as outside.
+void with_io_threads(int threads, const std::function<void()>& body);
 
 /// Writes any text; the file appears whole or not at all. Throws Error{failed}.
 void write_text_file(const std::filesystem::path& file, std::string_view text);

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <string_view>
-#include <thread>
 #include <utility>
-
-#include <OpenEXR/ImfThreading.h>
 
 namespace relief {
 
@@ -18,21 +14,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = 
     {{"owner", "Copyright"}, {"comments", "ImageDescription"}, {"capDate", "DateTime"}}};
 constexpr std::array<std::string_view, 3> kOfTheFile = {"name", "type", "view"};
 
-/// OpenEXR is not instrumented: the thread sanitizer takes what its pool orders for races. Then the caller's
-/// thread does all.
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define RELIEF_EXR_THREADS 0
-#endif
-#endif
-#ifndef RELIEF_EXR_THREADS
-#define RELIEF_EXR_THREADS int(std::thread::hardware_concurrency())
-#endif
+bool is_of_the_file(std::string_view attribute) {
+    return std::find(kOfTheFile.begin(), kOfTheFile.end(), attribute) != kOfTheFile.end();
+}
 
 } // namespace
 
 std::string get_metadata_name(const std::string& attribute) {
-    if (std::find(kOfTheFile.begin(), kOfTheFile.end(), attribute) != kOfTheFile.end()) return {};
+    if (is_of_the_file(attribute)) return {};
     for (const auto& [standard, name] : kNames)
         if (attribute == standard) return std::string(name);
     return attribute;
@@ -41,12 +30,7 @@ std::string get_metadata_name(const std::string& attribute) {
 std::string get_attribute_name(const std::string& metadata) {
     for (const auto& [standard, name] : kNames)
         if (metadata == name) return std::string(standard);
-    return metadata;
-}
-
-void use_threads_of_exr() {
-    static std::once_flag once;
-    std::call_once(once, [] { Imf::setGlobalThreadCount(RELIEF_EXR_THREADS); });
+    return is_of_the_file(metadata) ? std::string() : metadata;
 }
 
 } // namespace relief

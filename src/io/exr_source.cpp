@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "io/exr_names.h"
+#include "io/exr_threads.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -112,7 +113,7 @@ PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channel
 class ExrSource final : public PixelSource {
   public:
     ExrSource(std::unique_ptr<std::istream> stream, const std::string& name)
-        : name_(name), stream_(std::move(stream), name), file_(stream_) {
+        : name_(name), stream_(std::move(stream), name), file_(stream_, prepare_exr_threads()) {
         if (auto channels = order_channels(file_.header().channels())) {
             header_ = make_header(file_.header(), std::move(*channels));
             is_plain_ = true;
@@ -157,7 +158,6 @@ class ExrSource final : public PixelSource {
 
 std::unique_ptr<PixelSource> open_plain_exr(std::unique_ptr<std::istream> stream, const std::string& name) {
     if (!is_flat_exr(*stream)) return nullptr;
-    use_threads_of_exr();
     try {
         auto source = std::make_unique<ExrSource>(std::move(stream), name);
         if (source->is_plain()) return source;

@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include "io/exr_names.h"
+#include "io/exr_threads.h"
 #include "io/image_coders.h"
 
 namespace relief {
@@ -31,8 +32,13 @@ Imf::Header make_header(const Image& image) {
     const int full_height = image.full_height > 0 ? image.full_height : image.y0 + image.height;
     Imf::Header header(Imath::Box2i(Imath::V2i(0), Imath::V2i(full_width - 1, full_height - 1)),
                        Imath::Box2i(first, first + Imath::V2i(image.width - 1, image.height - 1)));
-    for (const auto& [name, value] : image.metadata)
-        header.insert(get_attribute_name(name), Imf::StringAttribute(value));
+    for (const auto& [name, value] : image.metadata) {
+        // What the header already says of the pixels wins; OpenEXR refuses an empty name, and text for a
+        // value of another type.
+        const std::string attribute = get_attribute_name(name);
+        const bool is_free = attribute.c_str()[0] != '\0' && header.find(attribute) == header.end();
+        if (is_free) header.insert(attribute, Imf::StringAttribute(value));
+    }
     return header;
 }
 
@@ -45,7 +51,6 @@ struct Samples {
 
 void write_samples(Imf::Header header, const std::vector<std::string>& channels, const Samples& samples,
                    CheckedFile& file) {
-    use_threads_of_exr();
     header.compression() = Imf::ZIP_COMPRESSION;
     const size_t value_bytes = samples.type == Imf::HALF ? 2 : 4, stride_bytes = samples.stride * value_bytes;
     const Imath::Box2i window = header.dataWindow();
@@ -59,7 +64,7 @@ void write_samples(Imf::Header header, const std::vector<std::string>& channels,
                                        stride_bytes, stride_bytes * width));
     }
     ExrStream stream(file);
-    Imf::OutputFile output(stream, header);
+    Imf::OutputFile output(stream, header, prepare_exr_threads());
     output.setFrameBuffer(buffer);
     output.writePixels(window.max.y - window.min.y + 1);
 }

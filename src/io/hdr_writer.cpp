@@ -13,14 +13,21 @@ namespace {
 
 using Rgbe = std::array<uint8_t, 4>;
 
+/// What RGBE can hold: no NaN, nothing negative, and no more than the largest mantissa and exponent.
+float clamp_to_rgbe(float value) {
+    constexpr float kLargest = 0x1.fep126f;           // 255 / 256 * 2^127
+    return value > 0 ? std::min(value, kLargest) : 0; // false for NaN
+}
+
 Rgbe encode_colour(const Vec3f& colour) {
     constexpr float kLeast = 1e-32f;
-    const float brightest = std::max({colour.x, colour.y, colour.z});
-    if (!(brightest >= kLeast)) return {};
+    const Vec3f held{clamp_to_rgbe(colour.x), clamp_to_rgbe(colour.y), clamp_to_rgbe(colour.z)};
+    const float brightest = std::max({held.x, held.y, held.z});
+    if (brightest < kLeast) return {};
     int exponent = 0;
     const float scale = std::frexp(brightest, &exponent) * 256 / brightest;
-    const auto encode = [&](float value) { return uint8_t(std::clamp(value * scale, 0.0f, 255.0f)); };
-    return {encode(colour.x), encode(colour.y), encode(colour.z), uint8_t(std::min(exponent + 128, 255))};
+    const auto encode = [&](float value) { return uint8_t(std::min(value * scale, 255.0f)); };
+    return {encode(held.x), encode(held.y), encode(held.z), uint8_t(exponent + 128)};
 }
 
 /// One component of a row: runs of equal bytes, and of others.

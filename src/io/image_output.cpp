@@ -38,6 +38,8 @@ void write_checked(const std::filesystem::path& file, const std::function<void(C
     std::string message;
     try {
         encode(stream);
+    } catch (const std::bad_alloc&) {
+        throw; // told apart from the disk's faults; the file closes and disappears on the way
     } catch (const std::exception& error) {
         message = error.what();
     }

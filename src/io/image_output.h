@@ -30,7 +30,7 @@ class CheckedFile {
 };
 
 /// The file appears whole or not at all. `encode` writes it, and may throw std::exception. Throws
-/// Error{failed}; nothing is left behind then.
+/// Error{failed}, or the std::bad_alloc of `encode`; nothing is left behind then.
 void write_checked(const std::filesystem::path& file, const std::function<void(CheckedFile&)>& encode);
 
 } // namespace relief

@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// What the module offers. For any thread.
+/// What the module offers. For any thread; may throw std::bad_alloc.
 class PictureLibrary {
   public:
     virtual ~PictureLibrary() = default;
@@ -23,11 +23,17 @@ class PictureLibrary {
                                                     const std::string& name) const = 0;
 };
 
-/// Of the module: `const PictureLibrary* relief_picture_library()`, C linkage.
-inline constexpr const char* kPictureLibraryEntry = "relief_picture_library";
+/// The module's function that returns its library. The number counts the layouts of PictureLibrary,
+/// PixelSource and PixelHeader: raise it with every change of theirs, so that a module of another build is
+/// refused in place of being called wrongly.
+#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_1
 
-/// Loads the module when first called. It lies beside the program, or where the build put it. Throws
-/// Error{failed}, with `name`, the picture, as the place, where it is missing.
+/// Loads a module, for good. Throws Error{failed}, with `name`, the picture, as the place, where it is
+/// missing or was built for another layout.
+const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);
+
+/// Loads relief_pictures when first called. It lies beside the program, or where the build put it. Throws as
+/// load_picture_library.
 const PictureLibrary& get_picture_library(const std::string& name);
 
 } // namespace relief

@@ -1,6 +1,7 @@
 // PNG, W3C recommendation of 2003: all rows with one filter.
 #include <array>
 #include <cstdlib>
+#include <new>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -33,7 +34,9 @@ void write_chunk(CheckedFile& file, std::string_view kind, std::span<const uint8
 class DataStream {
   public:
     explicit DataStream(CheckedFile& file) : file_(file), packed_(kChunkBytes) {
-        if (deflateInit(&stream_, Z_DEFAULT_COMPRESSION) != Z_OK) throw std::runtime_error("zlib failed");
+        const int status = deflateInit(&stream_, Z_DEFAULT_COMPRESSION);
+        if (status == Z_MEM_ERROR) throw std::bad_alloc();
+        if (status != Z_OK) throw std::runtime_error("zlib failed");
         stream_.next_out = packed_.data(), stream_.avail_out = kChunkBytes;
     }
     ~DataStream() { deflateEnd(&stream_); }

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <csignal>
 #include <limits>
-#include <tuple>
 
 #include <sys/resource.h>
 
 #include "io/image_input.h"
-#include "io/picture_library.h"
+#include "io/same_pictures.h"
 #include "io/test_files.h"
 #include "math/scalar.h"
 #include "relief/io.h"
@@ -88,40 +87,22 @@ TEST_F(ImageFiles, written_rows_are_those_of_the_picture) {
 }
 
 TEST_F(ImageFiles, plain_exr_is_read_as_the_library_of_pictures_reads_it) {
-    const auto expect_same = [&](const std::filesystem::path& file) {
-        const auto own = open_image(file), other = get_picture_library("test").open_file(file.string());
-        const PixelHeader &a = own->header(), &b = other->header();
-        EXPECT_EQ(std::tie(a.x, a.y, a.width, a.height, a.full_x, a.full_y, a.full_width, a.full_height),
-                  std::tie(b.x, b.y, b.width, b.height, b.full_x, b.full_y, b.full_width, b.full_height));
-        EXPECT_EQ(a.type, b.type);
-        EXPECT_EQ(a.pixel_bytes, b.pixel_bytes);
-        EXPECT_EQ(a.channels, b.channels);
-        for (const auto& [name, value] : a.metadata) EXPECT_EQ(b.metadata.at(name), value) << name;
-        const size_t count = a.channels.size(), size = size_t(a.width) * size_t(a.height) * count;
-        std::vector<float> floats(size), other_floats(size);
-        own->read_floats(int(count), count, floats.data());
-        other->read_floats(int(count), count, other_floats.data());
-        EXPECT_EQ(floats, other_floats);
-        if (a.type != SampleType::float16) return;
-        std::vector<uint16_t> halves(size), other_halves(size);
-        own->read_halves(int(count), count, halves.data());
-        other->read_halves(int(count), count, other_halves.data());
-        EXPECT_EQ(halves, other_halves);
-    };
     Image image = make_image();
     image.metadata["Copyright"] = "nobody";
     write_image(image, folder_ / "layers.exr");
-    expect_same(folder_ / "layers.exr");
+    expect_read_as_by_the_module(folder_ / "layers.exr");
     image.channels = {"X", "Z", "Y", "A", "shape.B", "shape.R", "shape.G"};
     write_image(image, folder_ / "axes.exr");
-    expect_same(folder_ / "axes.exr"); // mixed names: left to the library
+    expect_read_as_by_the_module(folder_ / "axes.exr"); // mixed names: left to the library
     for (int channels = 1; channels <= 4; ++channels) {
         const std::vector<uint16_t> halves(size_t(channels) * 6, 0x3c01);
-        expect_same(write_pixels<uint16_t>("h.exr", 3, 2, channels, OIIO::TypeDesc::HALF, halves));
+        expect_read_as_by_the_module(
+            write_pixels<uint16_t>("h.exr", 3, 2, channels, OIIO::TypeDesc::HALF, halves));
         const std::vector<float> floats(size_t(channels) * 6, 0.3f);
-        expect_same(write_pixels<float>("f.exr", 3, 2, channels, OIIO::TypeDesc::FLOAT, floats));
+        expect_read_as_by_the_module(
+            write_pixels<float>("f.exr", 3, 2, channels, OIIO::TypeDesc::FLOAT, floats));
     }
-    expect_same(write_pixels<uint32_t>("u.exr", 1, 1, 1, OIIO::TypeDesc::UINT32, {7}));
+    expect_read_as_by_the_module(write_pixels<uint32_t>("u.exr", 1, 1, 1, OIIO::TypeDesc::UINT32, {7}));
 }
 
 TEST_F(ImageFiles, texels_come_as_stored) {

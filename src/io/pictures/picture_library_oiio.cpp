@@ -119,7 +119,7 @@ class OiioLibrary final : public PictureLibrary {
 
 } // namespace relief
 
-extern "C" const relief::PictureLibrary* relief_picture_library() {
+extern "C" const relief::PictureLibrary* RELIEF_PICTURE_LIBRARY_ENTRY() {
     static const relief::OiioLibrary library;
     return &library;
 }
