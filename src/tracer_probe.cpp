@@ -23,10 +23,6 @@ using cpu::kTileEdge;
 constexpr int kPacketEdge = 4;
 constexpr size_t kBatchSize = 1024; ///< rays that a worker takes at once, as cpu_engine does
 
-/// Displaced patches alone see a ray's bias, and packets are of one bias: with two in turn, rays of a scene
-/// without displacement go alone and meet the same surface.
-constexpr uint32_t kBiasesOfSingleRays = 2;
-
 /// Pixels [x0, x1) x [y0, y1), and the number of its first ray.
 struct CameraTile {
     int x0, y0, x1, y1;
@@ -151,11 +147,16 @@ struct TracerProbe::Implementation {
     void trace_batch(std::span<const Ray> rays, size_t begin, RayGrouping grouping, HitKind kind,
                      ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        buffer.rays.clear();
-        for (const Ray& ray : rays) {
-            const uint32_t bias =
-                grouping == RayGrouping::single ? uint32_t(buffer.rays.size()) % kBiasesOfSingleRays : 0;
-            buffer.rays.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, bias});
+        // Displaced patches alone see a ray's bias, and packets are of one bias: with two in turn, rays of a
+        // scene without displacement go alone and meet the same surface.
+        const uint32_t largest_bias = grouping == RayGrouping::single ? 1 : 0;
+        buffer.rays.resize(rays.size());
+        // Field by field into place: a ray that is put together elsewhere first waits for its own stores.
+        for (size_t k = 0; k < rays.size(); ++k) {
+            cpu::TraceRay& ray = buffer.rays[k];
+            ray.origin = rays[k].origin, ray.t_min = rays[k].t_min;
+            ray.direction = rays[k].direction, ray.t_max = rays[k].t_max;
+            ray.bias = uint32_t(k) & largest_bias;
         }
         if (kind == HitKind::any) {
             tracer->any_hits(buffer.rays, std::span(result.occluded).subspan(begin, rays.size()));

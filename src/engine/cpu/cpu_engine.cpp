@@ -146,9 +146,12 @@ class CpuEngine final : public Engine {
     }
 
     static std::vector<TraceRay> make_batch(std::span<const Ray> rays) {
-        std::vector<TraceRay> batch;
-        batch.reserve(rays.size());
-        for (const Ray& ray : rays) batch.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, 0});
+        std::vector<TraceRay> batch(rays.size());
+        // Field by field into place: a ray that is put together elsewhere first waits for its own stores.
+        for (size_t k = 0; k < rays.size(); ++k) {
+            batch[k].origin = rays[k].origin, batch[k].t_min = rays[k].t_min;
+            batch[k].direction = rays[k].direction, batch[k].t_max = rays[k].t_max;
+        }
         return batch;
     }
 
