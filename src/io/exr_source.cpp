@@ -15,18 +15,11 @@
 
 #include "io/exr_names.h"
 #include "io/exr_threads.h"
-#include "relief/error.h"
+#include "io/picture_error.h"
 
 namespace relief {
 
 namespace {
-
-const char* const kDamagedHint = "the file is damaged or incomplete: export or copy it again";
-
-[[noreturn]] void fail(const std::string& name, std::string message) {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    throw Error(ErrorKind::bad_input, {message, name, kDamagedHint});
-}
 
 /// A stream of ours as OpenEXR wants it.
 class ExrStream final : public Imf::IStream {
@@ -143,7 +136,7 @@ class ExrSource final : public PixelSource {
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& error) {
-            fail(name_, fmt::format("cannot be read: {}", error.what()));
+            fail_damaged(name_, fmt::format("cannot be read: {}", error.what()));
         }
     }
 
@@ -164,7 +157,7 @@ std::unique_ptr<PixelSource> open_plain_exr(std::unique_ptr<std::istream> stream
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
-        fail(name, fmt::format("cannot be opened: {}", error.what()));
+        fail_damaged(name, fmt::format("cannot be opened: {}", error.what()));
     }
     return nullptr;
 }

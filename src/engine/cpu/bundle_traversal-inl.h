@@ -29,13 +29,6 @@ struct BundleVisit {
     }
 };
 
-/// Coordinates relative to the origin of the rays.
-template <size_t W>
-HWY_INLINE void load_relative(const float (&coordinate)[3][W], const RayBundle& bundle, Lanes<W> (&v)[3]) {
-    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
-    for (int k = 0; k < 3; ++k) v[k] = Lanes<W>::load(coordinate[k]) - Lanes<W>(origin[k]);
-}
-
 /// The triangles of a block, for each ray that may meet one.
 HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                      RayBundle& bundle) {
@@ -225,11 +218,14 @@ HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const RayBundle& bundle, Vis
 /// Eight triangles of a surface without displacement; lanes without one are NaN, and no ray meets them.
 HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Window& window,
                                      RayBundle& bundle) {
+    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
     Lanes8 v[3][3];
     alignas(64) float stored[3][3][8];
     for (int c = 0; c < 3; ++c) {
-        load_relative(block.corner[c], bundle, v[c]);
-        for (int axis = 0; axis < 3; ++axis) v[c][axis].store(stored[c][axis]);
+        for (int axis = 0; axis < 3; ++axis) {
+            v[c][axis] = Lanes8::load(block.corner[c][axis]) - Lanes8(origin[axis]);
+            v[c][axis].store(stored[c][axis]);
+        }
     }
     LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {}, dirty = 0;
     uint64_t count = 0;

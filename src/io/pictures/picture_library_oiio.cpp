@@ -4,19 +4,12 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "io/picture_error.h"
 #include "io/picture_library.h"
-#include "relief/error.h"
 
 namespace relief {
 
 namespace {
-
-const char* const kDamagedHint = "the file is damaged or incomplete: export or copy it again";
-
-[[noreturn]] void fail(const std::string& name, std::string message) {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    throw Error(ErrorKind::bad_input, {message, name, kDamagedHint});
-}
 
 OIIO::ImageSpec make_raw_config() {
     OIIO::ImageSpec config;
@@ -87,16 +80,17 @@ class OiioSource final : public PixelSource {
     void open() {
         const OIIO::ImageSpec config = make_raw_config();
         input_ = OIIO::ImageInput::create(name_, false, &config, proxy_.get());
-        if (!input_) fail(name_, "cannot be opened: " + OIIO::geterror());
+        if (!input_) fail_damaged(name_, "cannot be opened: " + OIIO::geterror());
         if (proxy_) input_->set_ioproxy(proxy_.get());
         OIIO::ImageSpec spec;
-        if (!input_->open(name_, spec, config)) fail(name_, "cannot be opened: " + input_->geterror());
+        if (!input_->open(name_, spec, config))
+            fail_damaged(name_, "cannot be opened: " + input_->geterror());
         header_ = make_header(spec);
     }
 
     void read(const OIIO::TypeDesc& type, int channel_count, size_t stride_bytes, void* values) {
         if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)))
-            fail(name_, "cannot be read: " + input_->geterror());
+            fail_damaged(name_, "cannot be read: " + input_->geterror());
     }
 
     std::string name_;
