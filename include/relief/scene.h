@@ -21,6 +21,13 @@ inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 
+/// Semi-sharp edge of a subdivided mesh (DeRose, Kass and Truong 1998), between two positions; a sharp point
+/// where `first` and `second` are the same.
+struct Crease {
+    uint32_t first = 0, second = 0;
+    float sharpness = 0; ///< >= 0; 10 and above stays sharp for ever
+};
+
 /// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
 struct Mesh {
     std::string name;
@@ -32,6 +39,9 @@ struct Mesh {
     std::vector<uint32_t> position_indices; ///< one a corner, faces one after another, counter-clockwise
     std::vector<uint32_t> uv_indices;       ///< one a corner, or empty
     std::vector<uint32_t> normal_indices;   ///< one a corner, or empty
+    std::vector<std::array<float, 4>>
+        tangents;                ///< one a corner: unit x, y, z, and the bitangent's sign; or empty
+    std::vector<Crease> creases; ///< used where the mesh is subdivided
 };
 
 enum class DisplacementType { vector, height };
