@@ -1,9 +1,6 @@
 // The whole path: scene -> surfaces and levels -> trees -> rays -> film -> image.
 #include "relief/render.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <utility>
 
 #include "base/machine.h"
@@ -11,41 +8,10 @@
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
 #include "engine/engine.h"
+#include "picture_report.h"
 #include "validate_settings.h"
 
 namespace relief {
-
-namespace {
-
-void count_scene(const PreparedScene& scene, Statistics& statistics) {
-    statistics.meshes = scene.mesh_count;
-    statistics.instances = scene.instances.size();
-    std::vector<const Texture*> seen;
-    for (const Surface& surface : scene.surfaces) {
-        for (const Quad& quad : surface.quads) {
-            if (surface.has_displacement)
-                ++statistics.patches;
-            else
-                statistics.triangles += quad.is_triangle() ? 1 : 2;
-        }
-        for (const DisplacementMap::Tile& tile : surface.map.tiles) {
-            if (std::find(seen.begin(), seen.end(), tile.texture.get()) != seen.end()) continue;
-            seen.push_back(tile.texture.get());
-            statistics.displacement_texels += uint64_t(tile.texture->width) * tile.texture->height;
-            statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
-        }
-    }
-}
-
-void add_metadata(const RenderSettings& settings, uint64_t scene_hash, int samples_end, Image& image) {
-    image.metadata["Software"] = "Relief " RELIEF_VERSION;
-    image.metadata["relief:version"] = RELIEF_VERSION;
-    image.metadata["relief:seed"] = std::to_string(settings.seed);
-    image.metadata["relief:samples"] = fmt::format("{}:{}", settings.first_sample, samples_end);
-    image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
-}
-
-} // namespace
 
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer) {
     validate_settings(settings);
@@ -75,7 +41,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         engine.reset(), prepared.reset();
         result.image = film.resolve();
     });
-    add_metadata(settings, scene_hash, settings.first_sample + settings.spp, result.image);
+    add_metadata(settings, scene_hash, result.image);
     statistics.total_s = total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;

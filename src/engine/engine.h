@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "engine/prepared_scene.h"
 #include "film/film.h"
@@ -11,9 +12,19 @@
 
 namespace relief {
 
+/// Patches of a surface whose displacement has changed, a byte each.
+struct SurfaceChange {
+    uint32_t surface = 0;
+    std::vector<uint8_t> is_changed;
+};
+
 class Engine {
   public:
     virtual ~Engine() = default;
+
+    /// The prepared scene has changed in place: texels, bounds and levels of these patches. Not while rays
+    /// are traced. False: the engine cannot follow, a new one has to be made.
+    virtual bool follow(std::span<const SurfaceChange> changes) = 0;
 
     /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when
     /// the observer cancelled; the film then holds what was done.

@@ -77,7 +77,7 @@ void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_o
 
 } // namespace
 
-std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
+std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
     validate_scene(scene);
     auto prepared = std::make_shared<PreparedScene>();
     prepared->materials = std::move(scene.materials);
@@ -100,12 +100,12 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSett
     }
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
 
-    const LevelFieldConfig config = make_level_config(scene, settings);
+    prepared->levels = make_level_config(scene, settings);
     parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             Instance& instance = prepared->instances[k];
             instance.levels = std::make_shared<const LevelField>(LevelField::compute(
-                prepared->surfaces[instance.surface], instance.world_from_object, config));
+                prepared->surfaces[instance.surface], instance.world_from_object, prepared->levels));
         }
     });
     if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());

@@ -33,11 +33,12 @@ struct PreparedScene {
     Camera camera;
     uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture
+    LevelFieldConfig levels;   ///< what the instances' levels were computed with
     std::vector<std::string> warnings;
 };
 
 /// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are
 /// used.
-std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
+std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
 
 } // namespace relief

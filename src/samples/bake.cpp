@@ -1,10 +1,10 @@
 #include "samples/bake.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/half.h"
 #include "math/vec.h"
 
 namespace relief::samples {
@@ -36,20 +36,6 @@ void store(Texture& texture, uint32_t x, uint32_t y, const Vec3f& value) {
 }
 
 } // namespace
-
-uint16_t float_to_half(float value) {
-    const uint32_t bits = std::bit_cast<uint32_t>(value), sign = (bits >> 16) & 0x8000u;
-    const uint32_t magnitude = bits & 0x7fffffffu;
-    if (magnitude >= 0x477fe000u) return uint16_t(sign | 0x7bffu);
-    if (magnitude < 0x38800000u) {
-        // Below the normal halves the sum with 0.5 rounds to multiples of 2^-24, the spacing of the
-        // denormals.
-        const float shifted = std::bit_cast<float>(magnitude) + 0.5f;
-        return uint16_t(sign | (std::bit_cast<uint32_t>(shifted) - 0x3f000000u));
-    }
-    const uint32_t rounded = magnitude - 0x38000000u + 0xfffu + ((magnitude >> 13) & 1u);
-    return uint16_t(sign | (rounded >> 13));
-}
 
 Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
                const std::function<MapSample(Vec2f uv)>& sample) {

@@ -26,7 +26,4 @@ enum class Texels { halves, floats };
 Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
                const std::function<MapSample(Vec2f uv)>& sample);
 
-/// IEEE 754 binary16 nearest to a finite value, ties to even; beyond the range the largest finite half.
-uint16_t float_to_half(float value);
-
 } // namespace relief::samples

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "relief/error.h"
 #include "surface/texels.h"
+#include "surface/wrapped_range.h"
 
 namespace relief {
 
@@ -39,26 +40,12 @@ void check_size(const Texture& texture) {
                                            texture.file, "write the image again"});
 }
 
-[[noreturn]] void refuse_texel(const Texture& texture, const TexelRectangle& rectangle) {
-    for (uint32_t y = rectangle.y0; y <= rectangle.y1; ++y)
-        for (uint32_t x = rectangle.x0; x <= rectangle.x1; ++x) {
-            const std::array<float, 3> texel = read_texel(texture, x, y);
-            for (int c = 0; c < 3; ++c)
-                if (!std::isfinite(texel[c]))
-                    throw Error(ErrorKind::bad_input,
-                                {fmt::format("map holds {} in channel {}",
-                                             std::isnan(texel[c]) ? "NaN" : "infinity", c),
-                                 fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
-        }
-    throw Error(ErrorKind::bad_input, {"map holds NaN or infinity", texture.file, "repair the map"});
-}
-
 ChannelRange compute_block(const Texture& texture, uint32_t block_x, uint32_t block_y) {
     const TexelRectangle block{block_x * kBlock, block_y * kBlock,
                                std::min((block_x + 1) * kBlock, texture.width) - 1,
                                std::min((block_y + 1) * kBlock, texture.height) - 1};
     const std::optional<ChannelRange> range = find_texel_range(texture, block);
-    if (!range) refuse_texel(texture, block);
+    if (!range) refuse_bad_texel(texture, block);
     return *range;
 }
 
@@ -84,70 +71,38 @@ BoundsPyramid BoundsPyramid::build(const Texture& texture) {
         Level coarse;
         coarse.width = (fine.width + 1) / 2;
         coarse.height = (fine.height + 1) / 2;
-        coarse.ranges.assign(size_t(coarse.width) * coarse.height, make_empty_range());
-        for (uint32_t y = 0; y < fine.height; ++y)
-            for (uint32_t x = 0; x < fine.width; ++x) {
-                const ChannelRange& range = fine.ranges[size_t(y) * fine.width + x];
-                extend(coarse.ranges[size_t(y / 2) * coarse.width + x / 2], range.low, range.high);
-            }
+        coarse.ranges.resize(size_t(coarse.width) * coarse.height);
+        join_ranges(fine, coarse, {0, 0, coarse.width - 1, coarse.height - 1});
         pyramid.levels_.push_back(std::move(coarse));
     }
     return pyramid;
 }
 
-namespace {
-
-/// Indices of one axis that a wrapped range reads: at most two ranges inside of the map, and perhaps the
-/// outside.
-struct WrappedRange {
-    std::array<std::array<int64_t, 2>, 2> parts{};
-    int count = 0;
-    bool is_outside_read = false;
-
-    void add(int64_t first, int64_t last) { parts[count++] = {first, last}; }
-};
-
-WrappedRange wrap_range(int64_t first, int64_t last, int64_t size, WrapMode wrap) {
-    WrappedRange result;
-    if (wrap == WrapMode::clamp) {
-        result.add(std::clamp<int64_t>(first, 0, size - 1), std::clamp<int64_t>(last, 0, size - 1));
-        return result;
-    }
-    if (wrap == WrapMode::black) {
-        result.is_outside_read = first < 0 || last >= size;
-        if (last >= 0 && first < size) result.add(std::max<int64_t>(first, 0), std::min(last, size - 1));
-        return result;
-    }
-    if (last - first >= size - 1) {
-        result.add(0, size - 1);
-        return result;
-    }
-    const int64_t a = wrap_index(first, size, wrap), b = wrap_index(last, size, wrap);
-    if (wrap == WrapMode::repeat) {
-        if (a <= b) {
-            result.add(a, b);
-        } else {
-            result.add(a, size - 1);
-            result.add(0, b);
+void BoundsPyramid::join_ranges(const Level& fine, Level& coarse, const TexelRectangle& nodes) {
+    for (uint32_t y = nodes.y0; y <= nodes.y1; ++y)
+        for (uint32_t x = nodes.x0; x <= nodes.x1; ++x) {
+            ChannelRange& joined = coarse.ranges[size_t(y) * coarse.width + x];
+            joined = make_empty_range();
+            for (uint32_t row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row)
+                for (uint32_t column = 2 * x; column < std::min(2 * x + 2, fine.width); ++column) {
+                    const ChannelRange& range = fine.ranges[size_t(row) * fine.width + column];
+                    extend(joined, range.low, range.high);
+                }
         }
-        return result;
-    }
-    // Mirrored: the range runs up, down, or turns once at either end.
-    const auto find_period = [&](int64_t index) {
-        return index >= 0 ? index / size : -((size - 1 - index) / size);
-    };
-    const int64_t period = find_period(first);
-    if (period == find_period(last)) {
-        result.add(std::min(a, b), std::max(a, b));
-    } else if (period % 2 == 0) {
-        result.add(std::min(a, b), size - 1);
-    } else {
-        result.add(0, std::max(a, b));
-    }
-    return result;
 }
 
-} // namespace
+void BoundsPyramid::update(const Texture& texture, const TexelRectangle& changed) {
+    TexelRectangle nodes{changed.x0 / kBlock, changed.y0 / kBlock, changed.x1 / kBlock, changed.y1 / kBlock};
+    parallel_for("bounds of an edit", nodes.y1 - nodes.y0 + 1, 4, [&](size_t begin, size_t end) {
+        for (size_t row = nodes.y0 + begin; row < nodes.y0 + end; ++row)
+            for (uint32_t x = nodes.x0; x <= nodes.x1; ++x)
+                levels_[0].ranges[row * levels_[0].width + x] = compute_block(texture, x, uint32_t(row));
+    });
+    for (size_t level = 1; level < levels_.size(); ++level) {
+        nodes = {nodes.x0 / 2, nodes.y0 / 2, nodes.x1 / 2, nodes.y1 / 2};
+        join_ranges(levels_[level - 1], levels_[level], nodes);
+    }
+}
 
 ChannelRange BoundsPyramid::query(int64_t x0, int64_t y0, int64_t x1, int64_t y1, WrapMode wrap,
                                   const std::array<float, 3>& black) const {

@@ -41,23 +41,6 @@ std::array<Vec3f, 3> make_matrix(const Displacement& displacement, const Affine&
     return turned;
 }
 
-void check_reach(const Displacement& displacement, const DisplacementMap& map,
-                 const DisplacementMap::Tile& tile) {
-    const int64_t width = tile.texture->width, height = tile.texture->height;
-    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const ChannelRange range = tile.pyramid->query(0, 0, width - 1, height - 1, WrapMode::clamp, middle);
-    for (const Vec3f& row : map.matrix) {
-        double reach = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double low = double(range.low[c]) - middle[c], high = double(range.high[c]) - middle[c];
-            reach += std::fmax(std::fabs(low), std::fabs(high)) * std::fabs(get_component(row, c));
-        }
-        if (!(reach <= kLargestDisplacement))
-            throw_bad_map(displacement, fmt::format("map '{}' displaces by {:g}", tile.texture->file, reach),
-                          "lower the scale or repair the map");
-    }
-}
-
 } // namespace
 
 std::shared_ptr<const BoundsPyramid>
@@ -71,6 +54,22 @@ PyramidCache::get_or_build(const std::shared_ptr<const Texture>& texture) {
     auto pyramid = std::make_shared<const BoundsPyramid>(BoundsPyramid::build(*texture));
     const std::lock_guard<std::mutex> lock(mutex_);
     return entries_.try_emplace(texture.get(), Entry{texture, std::move(pyramid)}).first->second.pyramid;
+}
+
+void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
+                 const ChannelRange& range) {
+    for (const Vec3f& row : map.matrix) {
+        double reach = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double middle = get_component(map.midlevel, c);
+            const double low = double(range.low[c]) - middle, high = double(range.high[c]) - middle;
+            reach += std::fmax(std::fabs(low), std::fabs(high)) * std::fabs(get_component(row, c));
+        }
+        if (!(reach <= kLargestDisplacement))
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("map '{}' displaces by {:g}", file, reach),
+                         fmt::format("displacement '{}'", name), "lower the scale or repair the map"});
+    }
 }
 
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,
@@ -91,7 +90,11 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
         map.tiles.push_back({tile.udim, tile.texture, pyramids.get_or_build(tile.texture)});
-        check_reach(displacement, map, map.tiles.back());
+        const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
+        check_reach(displacement.name, map, tile.texture->file,
+                    map.tiles.back().pyramid->query(0, 0, int64_t(tile.texture->width) - 1,
+                                                    int64_t(tile.texture->height) - 1, WrapMode::clamp,
+                                                    middle));
     }
     return map;
 }

@@ -26,6 +26,11 @@ class PyramidCache {
     std::map<const Texture*, Entry> entries_;
 };
 
+/// Throws bad_input with the displacement's `name` for texels (raw, of `file`) that displace by more than
+/// 1e18.
+void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
+                 const ChannelRange& range);
+
 /// Throws bad_input with the displacement's name for a map without tiles, an axis out of range, a factor that
 /// is not finite, a displacement above 1e18, and whatever BoundsPyramid::build refuses.
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,

@@ -110,9 +110,24 @@ LevelField LevelField::compute(const Surface& surface, const Affine& world_from_
         for (size_t patch = begin; patch < end; ++patch)
             field.packed_[patch] = pack(choose_levels(surface, uint32_t(patch), world_from_object, config));
     });
-    for (const uint32_t levels : field.packed_)
-        field.max_level_ = std::max(field.max_level_, int(levels >> 16));
+    field.find_max_level();
     return field;
+}
+
+void LevelField::update(const Surface& surface, const Affine& world_from_object,
+                        const LevelFieldConfig& config, std::span<const uint8_t> is_changed) {
+    if (packed_.empty()) return;
+    parallel_for("level field of an edit", packed_.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            if (is_changed[patch])
+                packed_[patch] = pack(choose_levels(surface, uint32_t(patch), world_from_object, config));
+    });
+    find_max_level();
+}
+
+void LevelField::find_max_level() {
+    max_level_ = 0;
+    for (const uint32_t levels : packed_) max_level_ = std::max(max_level_, int(levels >> 16));
 }
 
 } // namespace relief

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "math/affine.h"
@@ -16,7 +17,7 @@ struct LevelFieldConfig {
     float pixel_angle = 1e-3f; ///< size of a pixel at distance 1, scene units
 };
 
-/// Levels of all patches of one object, packed into one word a patch. Immutable, thread safe.
+/// Levels of all patches of one object, packed into one word a patch. Thread safe but for `update`.
 class LevelField {
   public:
     /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the
@@ -25,6 +26,11 @@ class LevelField {
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 
+    /// Makes the levels of some patches anew (a byte a patch): theirs were computed from a surface whose
+    /// displacement has changed there since. The rest as for `compute`.
+    void update(const Surface& surface, const Affine& world_from_object, const LevelFieldConfig& config,
+                std::span<const uint8_t> is_changed);
+
     PatchLevels at(uint32_t patch) const;
     /// All patches have the same levels.
     bool is_uniform() const { return packed_.empty(); }
@@ -32,6 +38,8 @@ class LevelField {
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
 
   private:
+    void find_max_level();
+
     std::vector<uint32_t> packed_; ///< 4 bits an edge, then the patch's own; empty: `fixed_` everywhere
     PatchLevels fixed_;
     int max_level_ = 0;

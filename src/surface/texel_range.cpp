@@ -1,9 +1,14 @@
 #include "surface/texel_range.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "math/half.h"
+#include "relief/error.h"
+#include "surface/texels.h"
 
 namespace relief {
 
@@ -89,6 +94,20 @@ std::optional<ChannelRange> find_range(const typename Range::Value* values, uint
 std::optional<ChannelRange> find_texel_range(const Texture& texture, const TexelRectangle& rectangle) {
     return texture.halves.empty() ? find_range<FloatRange>(texture.floats.data(), texture.width, rectangle)
                                   : find_range<HalfRange>(texture.halves.data(), texture.width, rectangle);
+}
+
+void refuse_bad_texel(const Texture& texture, const TexelRectangle& rectangle) {
+    for (uint32_t y = rectangle.y0; y <= rectangle.y1; ++y)
+        for (uint32_t x = rectangle.x0; x <= rectangle.x1; ++x) {
+            const std::array<float, 3> texel = read_texel(texture, x, y);
+            for (int c = 0; c < 3; ++c)
+                if (!std::isfinite(texel[c]))
+                    throw Error(ErrorKind::bad_input,
+                                {fmt::format("map holds {} in channel {}",
+                                             std::isnan(texel[c]) ? "NaN" : "infinity", c),
+                                 fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
+        }
+    throw Error(ErrorKind::bad_input, {"map holds NaN or infinity", texture.file, "repair the map"});
 }
 
 } // namespace relief

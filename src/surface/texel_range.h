@@ -22,4 +22,7 @@ struct TexelRectangle {
 /// infinite.
 std::optional<ChannelRange> find_texel_range(const Texture& texture, const TexelRectangle& rectangle);
 
+/// Throws bad_input that names the first texel of a rectangle that is not finite.
+[[noreturn]] void refuse_bad_texel(const Texture& texture, const TexelRectangle& rectangle);
+
 } // namespace relief

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "box_sets.h"
 #include "structures/sah_bvh.h"
+#include "structures/wide_refit.h"
 
 namespace relief {
 namespace {
@@ -122,6 +125,42 @@ TEST(WideBvh, fills_its_nodes) {
     for (const WideNode& node : bvh.nodes) children += node.child_count;
     EXPECT_GT(double(children) / double(bvh.nodes.size()), 5.0);
     EXPECT_EQ(bvh.byte_count(), bvh.nodes.size() * 96);
+}
+
+TEST(WideBvh, holds_moved_boxes_after_a_refit_and_does_not_grow) {
+    std::vector<Box> boxes = test::make_random_boxes(74, 3000, 10, 0.2f);
+    WideBvh bvh = build_wide(boxes, 1);
+    std::mt19937 random(5);
+    const std::vector<Box> home = boxes;
+    Box first_bounds;
+    for (int round = 0; round < 40; ++round) {
+        // Away in even rounds and home again in odd ones.
+        std::vector<uint8_t> is_moved(boxes.size());
+        for (size_t k = 0; k < boxes.size(); ++k) {
+            if (k % 97 != 5) continue;
+            is_moved[k] = 1;
+            const Vec3f by = round % 2 == 0 ? test::make_point(random, 4) : Vec3f{};
+            boxes[k] = {home[k].lower + by, home[k].upper + by};
+        }
+        refit_wide_bvh(bvh, is_moved, [&](uint32_t k) { return boxes[k]; });
+        std::vector<int> seen(boxes.size());
+        size_t nodes = 0;
+        const Box all = visit(bvh, 0, boxes, seen, nodes);
+        EXPECT_TRUE(bvh.bounds.contains(all));
+        if (round == 1) first_bounds = bvh.bounds;
+        if (round % 2 == 1) {
+            EXPECT_EQ(bvh.bounds.lower, first_bounds.lower);
+            EXPECT_EQ(bvh.bounds.upper, first_bounds.upper);
+        }
+    }
+}
+
+TEST(WideBvh, refit_touches_nothing_where_nothing_moved) {
+    const std::vector<Box> boxes = test::make_random_boxes(75, 500, 10, 0.2f);
+    WideBvh bvh = build_wide(boxes, 1);
+    const WideBvh before = bvh;
+    refit_wide_bvh(bvh, std::vector<uint8_t>(boxes.size()), [](uint32_t) -> Box { throw 1; });
+    EXPECT_EQ(std::memcmp(bvh.nodes.data(), before.nodes.data(), bvh.byte_count()), 0);
 }
 
 TEST(WideBvh, is_empty_without_primitives) {

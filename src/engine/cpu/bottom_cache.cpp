@@ -88,6 +88,17 @@ void BottomCache::release(TraceContext& context) {
     context.is_taken.store(false);
 }
 
+void BottomCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
+    for (size_t slot = 0; slot < slot_count_; ++slot) {
+        CachedTree* tree = slots_[slot].load();
+        if (!tree || !is_stale(tree->key)) continue;
+        slots_[slot].store(nullptr);
+        free_tree(tree);
+    }
+    // What workers found last is found anew.
+    epoch_.fetch_add(1);
+}
+
 CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
     if (slot_count_ == 0) return nullptr;
     const size_t home = hash_key(key);

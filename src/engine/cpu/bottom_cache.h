@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -88,6 +89,9 @@ class BottomCache {
 
     TraceContext& acquire();
     void release(TraceContext& context);
+
+    /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.
+    void remove(const std::function<bool(const TreeKey&)>& is_stale);
 
     /// To be called between rays: trees returned before may be freed afterwards.
     void refresh(TraceContext& context) const {

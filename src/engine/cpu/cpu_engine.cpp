@@ -77,6 +77,12 @@ class CpuEngine final : public Engine {
     CpuEngine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
         : settings_(settings), tracer_(std::move(scene), settings), lights_(tracer_) {}
 
+    bool follow(std::span<const SurfaceChange> changes) override {
+        if (!tracer_.follow(changes)) return false;
+        lights_.follow_surfaces();
+        return true;
+    }
+
     bool render(Film& film, RenderObserver* observer) override {
         const Timer timer;
         const std::vector<Window> tiles = make_tiles(film.window());

@@ -11,10 +11,20 @@ constexpr size_t kBlock = 32; ///< points that lights are drawn for together
 
 } // namespace
 
-LightSet::LightSet(const Tracer& tracer) : tracer_(tracer), emitters_(make_emitter_table(tracer.scene())) {
+LightSet::LightSet(const Tracer& tracer) : tracer_(tracer) {
     const PreparedScene& scene = tracer.scene();
     if (scene.environment) environment_.emplace(*scene.environment);
-    sources_ = make_light_sources(scene, environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
+    find_sources();
+}
+
+void LightSet::follow_surfaces() {
+    if (has_emitters()) find_sources();
+}
+
+void LightSet::find_sources() {
+    emitters_ = make_emitter_table(tracer_.scene());
+    sources_ =
+        make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
 }
 
 float LightSet::total_irradiance(const Vec3f& position) const {

@@ -19,12 +19,14 @@ struct LightSample : scalar::LightDraw {
     std::optional<SurfacePoint> emitter;
 };
 
-/// Suns and point lights are seen by bounce rays but not by camera rays, and they block nothing. Immutable
-/// once made.
+/// Suns and point lights are seen by bounce rays but not by camera rays, and they block nothing.
 class LightSet {
   public:
     /// The tracer must outlive the set.
     explicit LightSet(const Tracer& tracer);
+
+    /// Surfaces that glow may have changed their shape. Not while lights are drawn.
+    void follow_surfaces();
 
     /// What is lit: a point, and the normal of the side that matters.
     struct Receiver {
@@ -69,6 +71,7 @@ class LightSet {
     size_t byte_count() const;
 
   private:
+    void find_sources();
     float total_irradiance(const Vec3f& position) const;
     /// One light, and the probability of having picked it.
     struct Pick {

@@ -13,6 +13,7 @@
 #include "engine/scene_trees.h"
 #include "math/scalar.h"
 #include "relief/error.h"
+#include "structures/wide_refit.h"
 
 namespace relief::cpu {
 
@@ -43,17 +44,22 @@ struct Tracer::Implementation {
             walk = find_walk(traversal, walk_trees.depth);
             return;
         }
-        std::vector<Box> boxes;
         for (const Surface& surface : scene.surfaces) {
             surface_trees.emplace_back(), polygon_trees.emplace_back();
             if (surface.has_displacement)
                 surface_trees.back() = make_wide_bvh(build_surface_bvh(surface));
             else
                 polygon_trees.back() = build_polygon_tree(surface);
-            boxes.push_back(surface.has_displacement ? surface_trees.back().bounds
-                                                     : polygon_trees.back().bounds);
         }
         for (const WideBvh& tree : surface_trees) surface_nodes.push_back(open_nodes(tree));
+        make_instance_tree(scene);
+    }
+
+    void make_instance_tree(const PreparedScene& scene) {
+        std::vector<Box> boxes;
+        for (size_t k = 0; k < scene.surfaces.size(); ++k)
+            boxes.push_back(scene.surfaces[k].has_displacement ? surface_trees[k].bounds
+                                                               : polygon_trees[k].bounds);
         instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
     }
 
@@ -123,6 +129,24 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
 }
 
 Tracer::~Tracer() = default;
+
+bool Tracer::follow(std::span<const SurfaceChange> changes) {
+    Implementation& self = *implementation_;
+    if (self.walk.closest_hits) return false;
+    for (const SurfaceChange& change : changes) {
+        const Surface& surface = scene_->surfaces[change.surface];
+        refit_wide_bvh(self.surface_trees[change.surface], change.is_changed,
+                       [&](uint32_t patch) { return compute_patch_box(surface, patch); });
+        self.surface_nodes[change.surface] = open_nodes(self.surface_trees[change.surface]);
+    }
+    self.make_instance_tree(*scene_);
+    self.cache->remove([&](const TreeKey& key) {
+        return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
+            return key.surface == change.surface && change.is_changed[key.patch];
+        });
+    });
+    return true;
+}
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
     implementation_->trace_batch(2 * size_t(depth), rays.size(), [&](TraceContext& context) {

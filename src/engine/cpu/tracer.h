@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/engine.h"
 #include "engine/prepared_scene.h"
 #include "relief/render.h"
 #include "surface/patch_samples.h"
@@ -57,11 +58,15 @@ struct PointScratch {
     std::vector<uint32_t> order;
 };
 
-/// Immutable after construction apart from the bottom-tree cache, which takes care of itself. Thread safe.
+/// Immutable after construction apart from the bottom-tree cache, which takes care of itself, and from
+/// `follow`. Thread safe but for that.
 class Tracer {
   public:
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
     ~Tracer();
+
+    /// As Engine::follow.
+    bool follow(std::span<const SurfaceChange> changes);
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in
     /// packets: give neighbours in runs of 16. `depth` says where the statistics count them: bounces behind

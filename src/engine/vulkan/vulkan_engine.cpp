@@ -35,6 +35,8 @@ class VulkanEngine final : public Engine {
           device_(std::move(device)),
           device_scene_(*device_, *scene_, settings_) {}
 
+    /// Texels and trees lie on the device, as they were uploaded.
+    bool follow(std::span<const SurfaceChange>) override { return false; }
     bool render(Film& film, RenderObserver* observer) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override;

@@ -1,0 +1,233 @@
+#include "relief/session.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "engine/engine.h"
+#include "picture_report.h"
+#include "relief/error.h"
+#include "surface/displacement_map.h"
+#include "surface/map_edit.h"
+#include "validate_settings.h"
+
+namespace relief {
+
+namespace {
+
+struct EditableTile {
+    std::string displacement;
+    int udim;
+    const Texture* texture; ///< before the session has made its copy: the scene's
+};
+
+/// A map as the session holds it.
+struct EditableMap {
+    std::shared_ptr<Texture> texture;
+    std::shared_ptr<BoundsPyramid> pyramid;
+};
+
+std::vector<EditableTile> list_tiles(const Scene& scene) {
+    std::vector<EditableTile> tiles;
+    for (const Displacement& displacement : scene.displacements)
+        for (const MapTile& tile : displacement.tiles)
+            tiles.push_back({displacement.name, tile.udim, tile.texture.get()});
+    return tiles;
+}
+
+[[noreturn]] void refuse(const MapEdit& edit, std::string message, std::string hint) {
+    throw Error(ErrorKind::bad_input,
+                {std::move(message),
+                 fmt::format("edit of displacement '{}', tile {}", edit.displacement, edit.udim),
+                 std::move(hint)});
+}
+
+void check_rectangle(const MapEdit& edit, const Texture& map) {
+    const Texture& texels = edit.texels;
+    const size_t count = size_t(4) * texels.width * texels.height;
+    if (count == 0 || texels.floats.size() + texels.halves.size() != count)
+        refuse(edit, "the rectangle holds no texels, or not as many as its size says",
+               "give 4 x width x height values");
+    if (uint64_t(edit.x) + texels.width > map.width || uint64_t(edit.y) + texels.height > map.height)
+        refuse(edit,
+               fmt::format("{} x {} texels at ({}, {}) leave the map of {} x {}", texels.width, texels.height,
+                           edit.x, edit.y, map.width, map.height),
+               "columns and rows count from 0 at the top left");
+}
+
+uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
+    const auto add = [&](uint64_t word) { // FNV-1a (Fowler, Noll, Vo 1991), a word a step
+        hash = (hash ^ word) * 0x100000001b3ull;
+        hash ^= hash >> 29;
+    };
+    for (const char letter : edit.displacement) add(uint8_t(letter));
+    add(uint64_t(uint32_t(edit.udim))), add(edit.x), add(edit.y), add(edit.texels.width);
+    for (const float value : edit.texels.floats) add(std::bit_cast<uint32_t>(value));
+    for (const uint16_t value : edit.texels.halves) add(value);
+    return hash;
+}
+
+} // namespace
+
+struct Session::Implementation {
+    RenderSettings settings;
+    uint64_t scene_hash = 0;
+    double prepare_s = 0;
+    std::shared_ptr<PreparedScene> prepared;
+    std::unique_ptr<Engine> engine;
+    std::vector<EditableTile> tiles;
+    std::map<const Texture*, EditableMap> maps; ///< by the texture itself
+
+    Implementation(Scene scene, const RenderSettings& given) : settings(given), scene_hash(scene.hash) {
+        validate_settings(settings);
+        validate_method(settings, scene.camera);
+        if (settings.surface == SurfaceMode::tessellated)
+            throw Error(ErrorKind::usage, {"a tessellated surface does not follow edits of its map",
+                                           "session", "render it directly"});
+        const Timer timer;
+        with_threads(settings.threads, [&] {
+            tiles = list_tiles(scene);
+            prepared = prepare_scene(std::move(scene), settings);
+            own_maps();
+            engine = make_engine(prepared, settings);
+        });
+        prepare_s = timer.seconds();
+    }
+
+    /// The scene's textures may be shared with whoever made it, so each is copied; one after another, since
+    /// the last user of the old one is often here.
+    void own_maps() {
+        std::map<const Texture*, const Texture*> copy_of;
+        for (Surface& surface : prepared->surfaces)
+            for (DisplacementMap::Tile& tile : surface.map.tiles) {
+                const auto [place, is_new] = copy_of.try_emplace(tile.texture.get());
+                if (is_new) {
+                    EditableMap map{std::make_shared<Texture>(*tile.texture),
+                                    std::make_shared<BoundsPyramid>(*tile.pyramid)};
+                    place->second = map.texture.get();
+                    maps[map.texture.get()] = std::move(map);
+                }
+                tile.texture = maps[place->second].texture, tile.pyramid = maps[place->second].pyramid;
+            }
+        for (EditableTile& tile : tiles) {
+            const auto found = copy_of.find(tile.texture);
+            tile.texture = found == copy_of.end() ? nullptr : found->second;
+        }
+    }
+
+    EditableMap& find_map(const MapEdit& edit) {
+        const auto has_name = [&](const EditableTile& tile) {
+            return tile.displacement == edit.displacement;
+        };
+        const auto is_meant = [&](const EditableTile& tile) {
+            return has_name(tile) && tile.udim == edit.udim;
+        };
+        const auto found = std::find_if(tiles.begin(), tiles.end(), is_meant);
+        if (found == tiles.end() && std::none_of(tiles.begin(), tiles.end(), has_name))
+            refuse(edit, "there is no such displacement", "name one of the scene's displacements");
+        if (found == tiles.end())
+            refuse(edit, "there is no such tile", "only tiles that have a file can change");
+        if (!found->texture) refuse(edit, "no object uses it", "name the displacement of an object");
+        return maps.at(found->texture);
+    }
+
+    template <class Visit> void visit_users(const Texture& texture, const Visit& visit) {
+        for (uint32_t index = 0; index < prepared->surfaces.size(); ++index) {
+            Surface& surface = prepared->surfaces[index];
+            for (size_t tile = 0; tile < surface.map.tiles.size(); ++tile)
+                if (surface.map.tiles[tile].texture.get() == &texture) visit(index, surface, uint8_t(tile));
+        }
+    }
+
+    void check_values(const MapEdit& edit, const Texture& map) {
+        const TexelRectangle all{0, 0, edit.texels.width - 1, edit.texels.height - 1};
+        const auto range = find_texel_range(edit.texels, all);
+        if (!range) refuse_bad_texel(edit.texels, all);
+        visit_users(map, [&](uint32_t, const Surface& surface, uint8_t) {
+            check_reach(edit.displacement, surface.map, edit.texels.file, *range);
+        });
+    }
+
+    EditReport apply(const MapEdit& edit) {
+        const Timer timer;
+        EditableMap& map = find_map(edit);
+        check_rectangle(edit, *map.texture);
+        check_values(edit, *map.texture);
+        copy_texels(edit.texels, *map.texture, edit.x, edit.y);
+        const TexelRectangle changed{edit.x, edit.y, edit.x + edit.texels.width - 1,
+                                     edit.y + edit.texels.height - 1};
+        map.pyramid->update(*map.texture, changed);
+        std::vector<SurfaceChange> changes;
+        visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
+            changes.push_back({index, find_touched_patches(surface, tile, changed)});
+        });
+        update_levels(changes);
+        if (!engine->follow(changes)) {
+            engine.reset(); // a device need not hold both
+            engine = make_engine(prepared, settings);
+        }
+        scene_hash = hash_edit(scene_hash, edit);
+        EditReport report;
+        for (const SurfaceChange& change : changes)
+            report.patches += uint64_t(std::count(change.is_changed.begin(), change.is_changed.end(), 1));
+        report.seconds = timer.seconds();
+        return report;
+    }
+
+    void update_levels(const std::vector<SurfaceChange>& changes) {
+        for (Instance& instance : prepared->instances)
+            for (const SurfaceChange& change : changes) {
+                if (instance.surface != change.surface || instance.levels->is_uniform()) continue;
+                LevelField field = *instance.levels;
+                field.update(prepared->surfaces[change.surface], instance.world_from_object, prepared->levels,
+                             change.is_changed);
+                instance.levels = std::make_shared<const LevelField>(std::move(field));
+            }
+    }
+};
+
+Session::Session(Scene scene, const RenderSettings& settings)
+    : implementation_(std::make_unique<Implementation>(std::move(scene), settings)) {}
+
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+RenderResult Session::render(RenderObserver* observer) {
+    Implementation& self = *implementation_;
+    RenderResult result;
+    Statistics& statistics = result.statistics;
+    const Timer total;
+    with_threads(self.settings.threads, [&] {
+        Film film(self.settings.width, self.settings.height, self.settings.crop, self.settings.layers);
+        const Timer timer;
+        result.is_complete = self.engine->render(film, observer);
+        statistics.render_s = timer.seconds();
+        statistics.prepare_s = self.prepare_s;
+        self.engine->add_statistics(statistics);
+        statistics.threads = thread_count();
+        statistics.ray_buffers_bytes += film.byte_count();
+        statistics.warnings = self.prepared->warnings;
+        count_scene(*self.prepared, statistics);
+        result.image = film.resolve();
+    });
+    add_metadata(self.settings, self.scene_hash, result.image);
+    statistics.total_s = total.seconds();
+    statistics.peak_resident_bytes = peak_resident_bytes();
+    return result;
+}
+
+EditReport Session::edit(const MapEdit& edit) {
+    EditReport report;
+    with_threads(implementation_->settings.threads, [&] { report = implementation_->apply(edit); });
+    return report;
+}
+
+} // namespace relief

@@ -1,0 +1,101 @@
+#include "surface/map_edit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "surface/texels.h"
+#include "surface/wrapped_range.h"
+
+namespace relief {
+
+namespace {
+
+/// Beyond what bilinear fetches reach, whatever they round to.
+constexpr int64_t kSlackTexels = 2;
+
+bool overlaps(const WrappedRange& range, int64_t first, int64_t last) {
+    for (int part = 0; part < range.count; ++part)
+        if (range.parts[part][0] <= last && range.parts[part][1] >= first) return true;
+    return false;
+}
+
+/// Tells whether what lies between some vertices of one tile reads from a rectangle.
+class Footprint {
+  public:
+    Footprint(const DisplacementMap& map, uint8_t tile, const TexelRectangle& changed)
+        : map_(map), tile_(tile), changed_(changed) {}
+
+    bool is_touched(const Surface& surface, std::span<const uint32_t> vertices) const {
+        if (surface.tile(vertices[0]) != tile_) return false;
+        const Texture& texture = *map_.tiles[tile_].texture;
+        double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
+        for (const uint32_t vertex : vertices) {
+            const Vec2f& uv = surface.uvs[vertex];
+            const double x = double(uv.x) * texture.width;
+            const double y = (map_.flip_v ? double(uv.y) : 1 - double(uv.y)) * texture.height;
+            low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+            low_y = std::min(low_y, y), high_y = std::max(high_y, y);
+        }
+        return reads(low_x, high_x, texture.width, changed_.x0, changed_.x1) &&
+               reads(low_y, high_y, texture.height, changed_.y0, changed_.y1);
+    }
+
+  private:
+    bool reads(double low, double high, int64_t size, int64_t first, int64_t last) const {
+        const WrappedRange range = wrap_range(int64_t(std::floor(low)) - kSlackTexels,
+                                              int64_t(std::ceil(high)) + kSlackTexels, size, map_.wrap);
+        return overlaps(range, first, last);
+    }
+
+    const DisplacementMap& map_;
+    uint8_t tile_;
+    TexelRectangle changed_;
+};
+
+/// The patch itself, and where its edges and corners belong to other vertices, those.
+bool is_patch_touched(const Surface& surface, const Footprint& footprint, uint32_t patch) {
+    const Quad& quad = surface.quads[patch];
+    if (footprint.is_touched(surface, quad.vertex)) return true;
+    for (int k = 0; k < 4; ++k) {
+        const uint32_t dominant = surface.dominant(quad.vertex[k]);
+        if (dominant != quad.vertex[k] && footprint.is_touched(surface, {&dominant, 1})) return true;
+        if (!surface.is_seam(patch, k)) continue;
+        const Surface::EdgeLine line = surface.edge_line(patch, k);
+        const uint32_t ends[] = {line.first, line.second};
+        if (footprint.is_touched(surface, ends)) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y) {
+    DCHECK(x + source.width <= target.width && y + source.height <= target.height);
+    for (uint32_t row = 0; row < source.height; ++row)
+        for (uint32_t column = 0; column < source.width; ++column) {
+            const std::array<float, 4> texel = read_channels(source, column, row);
+            const size_t at = 4 * (size_t(y + row) * target.width + x + column);
+            for (size_t c = 0; c < 4; ++c) {
+                if (target.halves.empty())
+                    target.floats[at + c] = texel[c];
+                else
+                    target.halves[at + c] = float_to_half(texel[c]);
+            }
+        }
+}
+
+std::vector<uint8_t> find_touched_patches(const Surface& surface, uint8_t tile,
+                                          const TexelRectangle& changed) {
+    std::vector<uint8_t> touched(surface.patch_count());
+    const Footprint footprint(surface.map, tile, changed);
+    parallel_for("patches of an edit", touched.size(), 1024, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            touched[patch] = is_patch_touched(surface, footprint, uint32_t(patch));
+    });
+    return touched;
+}
+
+} // namespace relief

@@ -1,0 +1,186 @@
+// Pictures after edits of a map: those of a fresh scene with the edited map, bit for bit.
+#include <gtest/gtest.h>
+
+#include "relief/error.h"
+#include "relief/samples.h"
+#include "relief/session.h"
+#include "support/bodies.h"
+
+namespace relief {
+
+namespace {
+
+Scene make_torus_scene(DisplacementSpace space) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(8, 16), test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), space));
+    scene.displacements[0].wrap = WrapMode::repeat;
+    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
+    scene.environment = Environment{};
+    return scene;
+}
+
+RenderSettings make_settings() {
+    RenderSettings settings;
+    settings.width = 96, settings.height = 72, settings.spp = 2, settings.bounces = 2;
+    settings.layers = {"depth", "N", "id"};
+    return settings;
+}
+
+MapEdit make_edit(uint32_t x, uint32_t y, uint32_t width, uint32_t height, float value) {
+    MapEdit edit;
+    edit.displacement = "map";
+    edit.x = x, edit.y = y;
+    edit.texels.width = width, edit.texels.height = height, edit.texels.channel_count = 3;
+    edit.texels.file = "edit.exr";
+    for (uint32_t k = 0; k < width * height; ++k)
+        edit.texels.floats.insert(edit.texels.floats.end(),
+                                  {0.3f * value, 0.2f * value * float(k % 3), value, 1.0f});
+    return edit;
+}
+
+/// The scene with the edit worked into its map before anything was prepared.
+void bake(Scene& scene, const MapEdit& edit) {
+    MapTile& tile = scene.displacements[0].tiles[0];
+    auto map = std::make_shared<Texture>(*tile.texture);
+    for (uint32_t y = 0; y < edit.texels.height; ++y)
+        std::copy_n(edit.texels.floats.begin() + 4 * y * edit.texels.width, 4 * edit.texels.width,
+                    map->floats.begin() + 4 * ((edit.y + y) * map->width + edit.x));
+    tile.texture = map;
+}
+
+void expect_same(const Image& a, const Image& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (size_t k = 0; k < a.pixels.size(); ++k) ASSERT_EQ(a.pixels[k], b.pixels[k]) << "number " << k;
+}
+
+size_t count_differing(const Image& a, const Image& b) {
+    size_t count = 0;
+    for (size_t k = 0; k < a.pixels.size(); ++k) count += a.pixels[k] != b.pixels[k];
+    return count;
+}
+
+} // namespace
+
+TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
+    const MapEdit edits[] = {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f),
+                             make_edit(0, 63, 40, 1, 0.2f), make_edit(30, 20, 20, 12, 0.0f)};
+    for (const DisplacementSpace space : {DisplacementSpace::tangent, DisplacementSpace::object})
+        for (const int level : {4, kAutoLevel}) {
+            RenderSettings settings = make_settings();
+            settings.level = level;
+            Scene fresh = make_torus_scene(space);
+            Session session(fresh, settings);
+            Image before = session.render().image;
+            expect_same(before, render(fresh, settings).image);
+            for (const MapEdit& edit : edits) {
+                EXPECT_GT(session.edit(edit).patches, 0u);
+                bake(fresh, edit);
+                Image after = session.render().image;
+                expect_same(after, render(fresh, settings).image);
+                EXPECT_GT(count_differing(before, after), 100u);
+                before = after;
+            }
+        }
+}
+
+TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
+    const auto expect_follows = [](const RenderSettings& settings) {
+        Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+        Session session(fresh, settings);
+        session.render();
+        const MapEdit edit = make_edit(10, 10, 50, 30, 0.1f);
+        session.edit(edit);
+        bake(fresh, edit);
+        expect_same(session.render().image, render(fresh, settings).image);
+    };
+    RenderSettings settings = make_settings();
+    settings.bottom_cache_bytes = 0;
+    expect_follows(settings);
+    settings.bottom_cache_bytes = 300000;
+    expect_follows(settings);
+    settings.traversal = TraversalKind::stack;
+    expect_follows(settings);
+    settings = make_settings();
+    settings.lod = LodRule::ray, settings.leaf = LeafKind::box;
+    expect_follows(settings);
+    settings = make_settings();
+    settings.level = 7; // tiles and their directories
+    expect_follows(settings);
+}
+
+TEST(Session, makes_only_the_patches_anew_that_read_the_rectangle) {
+    Session session(make_torus_scene(DisplacementSpace::tangent), make_settings());
+    // 8 x 16 patches of 6 x 8 texels: one texel in the middle of a patch, then the whole map.
+    EXPECT_EQ(session.edit(make_edit(3, 4, 1, 1, 0.1f)).patches, 1u);
+    EXPECT_EQ(session.edit(make_edit(0, 0, 96, 64, 0.1f)).patches, 128u);
+}
+
+TEST(Session, keeps_trees_that_an_edit_does_not_reach) {
+    Session session(make_torus_scene(DisplacementSpace::tangent), make_settings());
+    const uint64_t first = session.render().statistics.bottom_built;
+    const uint64_t again = session.render().statistics.bottom_built - first;
+    EXPECT_EQ(again, 0u);
+    session.edit(make_edit(40, 30, 4, 4, 0.1f));
+    const uint64_t after = session.render().statistics.bottom_built - first;
+    EXPECT_LT(after, first / 2);
+}
+
+TEST(Session, leaves_the_scene_of_its_maker_alone) {
+    const Scene scene = make_torus_scene(DisplacementSpace::tangent);
+    const std::vector<float> before = scene.displacements[0].tiles[0].texture->floats;
+    Session session(scene, make_settings());
+    session.edit(make_edit(0, 0, 96, 64, 0.1f));
+    EXPECT_EQ(scene.displacements[0].tiles[0].texture->floats, before);
+}
+
+TEST(Session, follows_a_surface_that_glows) {
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    fresh.environment.reset();
+    Material glow;
+    glow.emission = {3, 2, 1};
+    fresh.materials.push_back(glow);
+    fresh.objects[0].material = 0;
+    fresh.meshes.push_back(test::make_cube_sphere(2));
+    Object ball;
+    ball.mesh = 1, ball.world_from_object.translation = {0, 1.5f, 0};
+    fresh.objects.push_back(ball);
+    Session session(fresh, make_settings());
+    const MapEdit edit = make_edit(20, 10, 50, 40, 0.2f);
+    session.edit(edit);
+    bake(fresh, edit);
+    expect_same(session.render().image, render(fresh, make_settings()).image);
+}
+
+TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
+    const Scene scene = make_torus_scene(DisplacementSpace::tangent);
+    Session session(scene, make_settings());
+    const auto expect_refused = [&](const MapEdit& edit, const std::string& reason) {
+        try {
+            session.edit(edit);
+            ADD_FAILURE() << "accepted: " << reason;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+            EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+        }
+    };
+    MapEdit edit = make_edit(90, 0, 7, 1, 0.1f);
+    expect_refused(edit, "leave the map of 96 x 64");
+    edit = make_edit(0, 0, 4, 4, 0.1f);
+    edit.displacement = "mapp";
+    expect_refused(edit, "there is no such displacement");
+    edit.displacement = "map", edit.udim = 1002;
+    expect_refused(edit, "there is no such tile");
+    edit.udim = 1001, edit.texels.floats[17] = NAN;
+    expect_refused(edit, "pixel (0, 1)");
+    edit.texels.floats[17] = 3e38f;
+    expect_refused(edit, "displaces by");
+    edit.texels.floats.pop_back();
+    expect_refused(edit, "holds no texels");
+    expect_same(session.render().image, render(scene, make_settings()).image);
+
+    RenderSettings tessellated = make_settings();
+    tessellated.surface = SurfaceMode::tessellated;
+    EXPECT_THROW(Session(scene, tessellated), Error);
+}
+
+} // namespace relief
