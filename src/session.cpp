@@ -79,7 +79,7 @@ uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
 struct Session::Implementation {
     RenderSettings settings;
     uint64_t scene_hash = 0;
-    double prepare_s = 0;
+    double prepare_s = 0; ///< since the last picture
     std::shared_ptr<PreparedScene> prepared;
     std::unique_ptr<Engine> engine;
     std::vector<EditableTile> tiles;
@@ -178,6 +178,7 @@ struct Session::Implementation {
         for (const SurfaceChange& change : changes)
             report.patches += uint64_t(std::count(change.is_changed.begin(), change.is_changed.end(), 1));
         report.seconds = timer.seconds();
+        prepare_s += report.seconds;
         return report;
     }
 
@@ -210,8 +211,9 @@ RenderResult Session::render(RenderObserver* observer) {
         const Timer timer;
         result.is_complete = self.engine->render(film, observer);
         statistics.render_s = timer.seconds();
-        statistics.prepare_s = self.prepare_s;
+        statistics.prepare_s = std::exchange(self.prepare_s, 0);
         self.engine->add_statistics(statistics);
+        statistics.first_image_s += statistics.prepare_s;
         statistics.threads = thread_count();
         statistics.ray_buffers_bytes += film.byte_count();
         statistics.warnings = self.prepared->warnings;
@@ -219,7 +221,7 @@ RenderResult Session::render(RenderObserver* observer) {
         result.image = film.resolve();
     });
     add_metadata(self.settings, self.scene_hash, result.image);
-    statistics.total_s = total.seconds();
+    statistics.total_s = statistics.prepare_s + total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;
 }

@@ -1,13 +1,17 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "edit_stream.h"
 #include "exit_codes.h"
 #include "interrupt.h"
 #include "output.h"
@@ -16,6 +20,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
+#include "relief/session.h"
 #include "render_options.h"
 #include "statistics_json.h"
 
@@ -59,34 +64,85 @@ int get_exit_code(const RenderOptions& options, const RenderResult& result, cons
     return kExitDone;
 }
 
-int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene, double start,
-                   double load_s) {
-    catch_interrupts();
-    RenderResult result;
-    {
-        ProgressPrinter progress(options.is_quiet ? ProgressStyle::none : options.progress);
-        result = render(std::move(scene), settings, &progress);
-    }
+/// Since when a picture has been waited for, and what of that was reading.
+struct Waiting {
+    double start, load_s;
+};
+
+int finish_picture(const RenderOptions& options, const RenderSettings& settings,
+                   const std::filesystem::path& output, const Waiting& waiting, RenderResult& result) {
     Statistics& statistics = result.statistics;
-    if (!options.is_quiet) print_warnings(statistics.warnings);
     const double write_start = get_seconds();
-    const Saved saved = save_with_fallback(result.image, options.output, get_fallback_folders(), write_image);
-    statistics.load_s = load_s;
-    statistics.first_image_s += load_s; // from the start of the command, as a person waits for it
+    const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
+    statistics.load_s = waiting.load_s;
+    statistics.first_image_s += waiting.load_s; // from the start of the command, as a person waits for it
     statistics.write_s = get_seconds() - write_start;
-    statistics.total_s = get_seconds() - start;
+    statistics.total_s = get_seconds() - waiting.start;
     if (options.is_verbose) print_summary(statistics, settings);
     fmt::print("wrote {}\n", saved.file.string());
+    std::fflush(stdout); // whoever sends edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, statistics, settings);
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
     return get_exit_code(options, result, saved);
+}
+
+/// Calls `make` with a progress bar on stderr.
+template <class Make> RenderResult make_picture(const RenderOptions& options, const Make& make) {
+    ProgressPrinter progress(options.is_quiet ? ProgressStyle::none : options.progress);
+    return make(&progress);
+}
+
+int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
+                   const Waiting& waiting) {
+    catch_interrupts();
+    RenderResult result = make_picture(
+        options, [&](RenderObserver* observer) { return render(std::move(scene), settings, observer); });
+    if (!options.is_quiet) print_warnings(result.statistics.warnings);
+    return finish_picture(options, settings, options.output, waiting, result);
+}
+
+void print_edit(const EditReport& report) {
+    fmt::print(stderr, "edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
+}
+
+/// One picture as ever, then one after each edit that asks for it.
+int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene, Waiting waiting) {
+    catch_interrupts();
+    std::ifstream file;
+    if (options.edits != "-") file.open(options.edits);
+    EditStream edits(options.edits == "-" ? std::cin : file,
+                     options.edits == "-" ? "standard input" : options.edits,
+                     scene.displacements.size() == 1 ? scene.displacements[0].name : "");
+    Session session(std::move(scene), settings);
+    const auto show = [&](const std::filesystem::path& output) {
+        RenderResult result =
+            make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });
+        if (!options.is_quiet && waiting.load_s > 0) print_warnings(result.statistics.warnings);
+        return finish_picture(options, settings, output, waiting, result);
+    };
+    int exit_code = show(options.output);
+    bool is_pending = false; // edits that no picture shows yet
+    while (exit_code == kExitDone || exit_code == kExitWarnings) {
+        const std::optional<EditLine> line = edits.next();
+        if (!line) break;
+        if (!is_pending) waiting = {get_seconds() - line->read_s, 0};
+        edits.with_place([&] {
+            const EditReport report = session.edit(line->edit);
+            if (options.is_verbose) print_edit(report);
+        });
+        is_pending = line->output.empty();
+        if (!is_pending) exit_code = show(line->output);
+    }
+    return exit_code;
 }
 
 int render_input(const RenderOptions& options, double start) {
     Scene scene = load_input(options);
     const double load_s = get_seconds() - start;
     const RenderSettings settings = make_settings(options, scene.picture);
-    if (!options.pixel) return render_picture(options, settings, std::move(scene), start, load_s);
+    const Waiting waiting{start, load_s};
+    if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
+    if (!options.pixel) return render_picture(options, settings, std::move(scene), waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
     if (!options.is_quiet) print_warnings(scene.warnings);
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;

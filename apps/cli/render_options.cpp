@@ -68,6 +68,9 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
         if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
         o.samples = {int(range[0]), int(range[1])};
     });
+    add(verb, "--edits", "FILE",
+        "then a picture after each edit of a map in FILE; -: as they come on standard input",
+        [&o](const std::string& text) { o.edits = text; });
     add(verb, "--pixel", "x,y", "trace one pixel and explain it; no picture is written",
         [&o](const std::string& text) {
             const std::vector<int64_t> pixel =
@@ -204,9 +207,10 @@ void complete_render_options(RenderOptions& o) {
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
                      o.input.string(), "the scene file says this under 'displacements' and 'environment'"});
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
-                    o.settings.crop != Window{} || !o.settings.layers.empty()))
-        throw Error(ErrorKind::usage, {"--pixel explains one pixel and makes no picture", "--pixel",
-                                       "leave out -o, --stats, --crop, --tile, --samples and --layers"});
+                    o.settings.crop != Window{} || !o.settings.layers.empty() || !o.edits.empty()))
+        throw Error(ErrorKind::usage,
+                    {"--pixel explains one pixel and makes no picture", "--pixel",
+                     "leave out -o, --stats, --crop, --tile, --samples, --layers and --edits"});
     if (o.pixel) return;
     if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
     if (get_lower_extension(o.output) == ".exr") {
@@ -215,6 +219,8 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
+    if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
+        throw Error(ErrorKind::usage, {"there is no such file", "--edits " + o.edits, "-: standard input"});
     check_writable(o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }

@@ -22,6 +22,7 @@ struct Tile {
 
 struct RenderOptions {
     std::filesystem::path input, output, statistics_file;
+    std::string edits; ///< file of edits to follow, "-": standard input; empty: none
     MeshSceneOptions mesh;
     std::vector<std::string> mesh_only; ///< options given that only a mesh takes
     EngineOptions engine;

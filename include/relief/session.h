@@ -37,7 +37,8 @@ class Session {
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
 
-    /// The next picture. Rays, times and trees in its statistics are counted from the session's start.
+    /// The next picture. Its `prepare_s` is what came since the last one: making the session, or edits. Rays,
+    /// trees and times of stages are counted from the session's start.
     RenderResult render(RenderObserver* observer = nullptr);
 
     /// Every displacement that uses the same image follows. Throws Error{bad_input} for a name or tile that

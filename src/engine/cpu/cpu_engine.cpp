@@ -89,6 +89,7 @@ class CpuEngine final : public Engine {
         const uint64_t pixels =
             uint64_t(film.window().x1 - film.window().x0) * uint64_t(film.window().y1 - film.window().y0);
         Reporter reporter(observer, std::max<uint64_t>(1, pixels * uint64_t(settings_.spp)), settings_.spp);
+        first_image_s_ = 0;
         int done = 0, length = 1;
         while (done < settings_.spp && !reporter.is_cancelled()) {
             const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};

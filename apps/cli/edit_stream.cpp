@@ -1,0 +1,92 @@
+#include "edit_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "relief/error.h"
+#include "relief/io.h"
+#include "relief/suggest.h"
+
+namespace relief::cli {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 5> kKeys = {"displacement", "tile", "at", "texels", "output"};
+constexpr const char* kForm = R"(write {"at": [column, row], "texels": "part.exr", "output": "next.exr"})";
+
+[[noreturn]] void refuse(std::string message, std::string hint) {
+    throw Error(ErrorKind::bad_input, {std::move(message), "", std::move(hint)});
+}
+
+void check_keys(const Json& json) {
+    if (!json.is_object()) refuse("an edit is one JSON object a line", kForm);
+    for (const auto& [key, value] : json.items())
+        if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+            refuse(fmt::format("unknown key '{}'", key), suggest_word(key, kKeys));
+}
+
+uint32_t get_whole_number(const Json& value, const char* key) {
+    if (!value.is_number_unsigned() || value.get<uint64_t>() > std::numeric_limits<int32_t>::max())
+        refuse(fmt::format("'{}' must be whole and not negative", key), kForm);
+    return value.get<uint32_t>();
+}
+
+std::string get_text(const Json& json, const char* key) {
+    if (!json.contains(key) || !json[key].is_string()) refuse(fmt::format("'{}' must be a text", key), kForm);
+    return json[key];
+}
+
+} // namespace
+
+EditStream::EditStream(std::istream& lines, std::string source, std::string only_displacement)
+    : lines_(lines), source_(std::move(source)), only_displacement_(std::move(only_displacement)) {}
+
+std::optional<EditLine> EditStream::next() {
+    std::string text;
+    do {
+        if (!std::getline(lines_, text)) return std::nullopt;
+        ++line_;
+    } while (text.find_first_not_of(" \t\r") == std::string::npos);
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    std::optional<EditLine> line;
+    with_place([&] { line = parse(text); });
+    line->read_s = std::chrono::duration<double>(Clock::now() - start).count();
+    return line;
+}
+
+EditLine EditStream::parse(const std::string& text) const {
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) refuse("this is no JSON", kForm);
+    check_keys(json);
+    EditLine line;
+    line.edit.displacement =
+        json.contains("displacement") ? get_text(json, "displacement") : only_displacement_;
+    if (line.edit.displacement.empty())
+        refuse("'displacement' is missing", "the scene has none or several: name one");
+    if (json.contains("tile")) line.edit.udim = int(get_whole_number(json["tile"], "tile"));
+    if (!json.contains("at") || !json["at"].is_array() || json["at"].size() != 2)
+        refuse("'at' must be two numbers, column and row", kForm);
+    line.edit.x = get_whole_number(json["at"][0], "at"), line.edit.y = get_whole_number(json["at"][1], "at");
+    line.edit.texels = read_texture(get_text(json, "texels"));
+    if (json.contains("output")) {
+        line.output = get_text(json, "output");
+        check_writable(line.output);
+    }
+    return line;
+}
+
+std::string EditStream::get_place(const std::string& detail) const {
+    return fmt::format("{}, line {}{}{}", source_, line_, detail.empty() ? "" : ": ", detail);
+}
+
+} // namespace relief::cli

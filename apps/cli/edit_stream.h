@@ -1,0 +1,50 @@
+// Edits of displacement maps as lines of text, one JSON object a line:
+//   {"displacement": "skin", "tile": 1001, "at": [column, row], "texels": "part.exr", "output": "next.exr"}
+// `displacement` may be left out where the scene has one, `tile` where it is 1001, `output` where no picture
+// is wanted yet.
+#pragma once
+
+#include <filesystem>
+#include <istream>
+#include <optional>
+#include <string>
+
+#include "relief/error.h"
+#include "relief/session.h"
+
+namespace relief::cli {
+
+struct EditLine {
+    MapEdit edit;
+    std::filesystem::path output; ///< empty: none yet
+    double read_s = 0;            ///< from the arrival of the line
+};
+
+/// Reads edits as they come. Errors name `source` and the line.
+class EditStream {
+  public:
+    /// `only_displacement`: name of the scene's displacement, where it has one; the stream must outlive this.
+    EditStream(std::istream& lines, std::string source, std::string only_displacement);
+
+    /// The next one, its texels read; nothing at the end. Throws Error{bad_input}, and as read_texture.
+    std::optional<EditLine> next();
+
+    /// Calls `body`; an Error from it gets the place of the line read last.
+    template <class Body> void with_place(const Body& body) const {
+        try {
+            body();
+        } catch (const Error& error) {
+            throw Error(error.kind(), {error.message(), get_place(error.where()), error.hint()});
+        }
+    }
+
+  private:
+    EditLine parse(const std::string& text) const;
+    std::string get_place(const std::string& detail) const;
+
+    std::istream& lines_;
+    std::string source_, only_displacement_;
+    size_t line_ = 0;
+};
+
+} // namespace relief::cli
