@@ -22,25 +22,11 @@ namespace relief {
 
 namespace {
 
-struct EditableTile {
-    std::string displacement;
-    int udim;
-    const Texture* texture; ///< before the session has made its copy: the scene's
-};
-
 /// A map as the session holds it.
 struct EditableMap {
     std::shared_ptr<Texture> texture;
     std::shared_ptr<BoundsPyramid> pyramid;
 };
-
-std::vector<EditableTile> list_tiles(const Scene& scene) {
-    std::vector<EditableTile> tiles;
-    for (const Displacement& displacement : scene.displacements)
-        for (const MapTile& tile : displacement.tiles)
-            tiles.push_back({displacement.name, tile.udim, tile.texture.get()});
-    return tiles;
-}
 
 [[noreturn]] void refuse(const MapEdit& edit, std::string message, std::string hint) {
     throw Error(ErrorKind::bad_input,
@@ -82,7 +68,6 @@ struct Session::Implementation {
     double prepare_s = 0; ///< since the last picture
     std::shared_ptr<PreparedScene> prepared;
     std::unique_ptr<Engine> engine;
-    std::vector<EditableTile> tiles;
     std::map<const Texture*, EditableMap> maps; ///< by the texture itself
 
     Implementation(Scene scene, const RenderSettings& given) : settings(given), scene_hash(scene.hash) {
@@ -93,7 +78,6 @@ struct Session::Implementation {
                                            "session", "render it directly"});
         const Timer timer;
         with_threads(settings.threads, [&] {
-            tiles = list_tiles(scene);
             prepared = prepare_scene(std::move(scene), settings);
             own_maps();
             engine = make_engine(prepared, settings);
@@ -116,26 +100,23 @@ struct Session::Implementation {
                 }
                 tile.texture = maps[place->second].texture, tile.pyramid = maps[place->second].pyramid;
             }
-        for (EditableTile& tile : tiles) {
-            const auto found = copy_of.find(tile.texture);
-            tile.texture = found == copy_of.end() ? nullptr : found->second;
+        for (PreparedMap& map : prepared->maps) {
+            const auto found = copy_of.find(map.texture.get());
+            map.texture = found == copy_of.end() ? nullptr : maps[found->second].texture;
         }
     }
 
-    EditableMap& find_map(const MapEdit& edit) {
-        const auto has_name = [&](const EditableTile& tile) {
-            return tile.displacement == edit.displacement;
-        };
-        const auto is_meant = [&](const EditableTile& tile) {
-            return has_name(tile) && tile.udim == edit.udim;
-        };
-        const auto found = std::find_if(tiles.begin(), tiles.end(), is_meant);
-        if (found == tiles.end() && std::none_of(tiles.begin(), tiles.end(), has_name))
-            refuse(edit, "there is no such displacement", "name one of the scene's displacements");
-        if (found == tiles.end())
+    PreparedMap& find_map(const MapEdit& edit) {
+        const auto has_name = [&](const PreparedMap& map) { return map.displacement == edit.displacement; };
+        const auto is_meant = [&](const PreparedMap& map) { return has_name(map) && map.udim == edit.udim; };
+        const auto found = std::find_if(prepared->maps.begin(), prepared->maps.end(), is_meant);
+        if (found == prepared->maps.end()) {
+            if (std::none_of(prepared->maps.begin(), prepared->maps.end(), has_name))
+                refuse(edit, "there is no such displacement", "name one of the scene's displacements");
             refuse(edit, "there is no such tile", "only tiles that have a file can change");
+        }
         if (!found->texture) refuse(edit, "no object uses it", "name the displacement of an object");
-        return maps.at(found->texture);
+        return *found;
     }
 
     template <class Visit> void visit_users(const Texture& texture, const Visit& visit) {
@@ -155,19 +136,37 @@ struct Session::Implementation {
         });
     }
 
-    EditReport apply(const MapEdit& edit) {
-        const Timer timer;
-        EditableMap& map = find_map(edit);
-        check_rectangle(edit, *map.texture);
-        check_values(edit, *map.texture);
+    /// Those that show the named image, each texture once.
+    std::vector<PreparedMap*> find_copies(const MapEdit& edit) {
+        const void* source = find_map(edit).source;
+        std::map<const Texture*, PreparedMap*> copies;
+        for (PreparedMap& map : prepared->maps)
+            if (map.source == source && map.texture) copies.try_emplace(map.texture.get(), &map);
+        std::vector<PreparedMap*> list;
+        for (const auto& [texture, map] : copies) list.push_back(map);
+        return list;
+    }
+
+    void paint(const MapEdit& edit, PreparedMap& named, std::vector<SurfaceChange>& changes) {
+        EditableMap& map = maps.at(named.texture.get());
         copy_texels(edit.texels, *map.texture, edit.x, edit.y);
-        const TexelRectangle changed{edit.x, edit.y, edit.x + edit.texels.width - 1,
-                                     edit.y + edit.texels.height - 1};
+        const TexelRectangle changed = named.gutter.follow(
+            *map.texture, {edit.x, edit.y, edit.x + edit.texels.width - 1, edit.y + edit.texels.height - 1});
         map.pyramid->update(*map.texture, changed);
-        std::vector<SurfaceChange> changes;
         visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
             changes.push_back({index, find_touched_patches(surface, tile, changed)});
         });
+    }
+
+    EditReport apply(const MapEdit& edit) {
+        const Timer timer;
+        const std::vector<PreparedMap*> copies = find_copies(edit);
+        for (const PreparedMap* map : copies) {
+            check_rectangle(edit, *map->texture);
+            check_values(edit, *map->texture);
+        }
+        std::vector<SurfaceChange> changes;
+        for (PreparedMap* map : copies) paint(edit, *map, changes);
         update_levels(changes);
         if (!engine->follow(changes)) {
             engine.reset(); // a device need not hold both

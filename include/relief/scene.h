@@ -73,6 +73,8 @@ struct Displacement {
     bool flip_v = false;
     bool is_udim = false; ///< tiles are addressed by floor(u), floor(v); a missing tile displaces by 0
     WrapMode wrap = WrapMode::clamp;
+    /// Texels between uv islands that hold the background's value take that of their neighbours inside.
+    bool dilate = true;
     std::vector<MapTile> tiles;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -44,6 +45,36 @@ LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& set
     config.pixel_angle =
         float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
     return config;
+}
+
+std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
+    std::set<uint32_t> meshes;
+    for (const Object& object : scene.objects)
+        if (object.displacement == displacement) meshes.insert(object.mesh);
+    std::vector<const Mesh*> list;
+    for (const uint32_t mesh : meshes) list.push_back(&scene.meshes[mesh]);
+    return list;
+}
+
+/// Lists the maps, gutters filled: in copies, since the scene's textures may be shared with whoever made it.
+std::vector<PreparedMap> prepare_maps(Scene& scene) {
+    std::vector<PreparedMap> maps;
+    for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
+        Displacement& displacement = scene.displacements[k];
+        const std::vector<const Mesh*> meshes = list_meshes(scene, k);
+        for (MapTile& tile : displacement.tiles) {
+            const void* source = tile.texture.get();
+            GutterFill gutter;
+            if (displacement.dilate && !meshes.empty()) gutter = find_gutter(displacement, tile, meshes);
+            if (!gutter.copies.empty()) {
+                auto filled = std::make_shared<Texture>(*tile.texture);
+                gutter.apply(*filled);
+                tile.texture = std::move(filled);
+            }
+            maps.push_back({displacement.name, tile.udim, tile.texture, std::move(gutter), source});
+        }
+    }
+    return maps;
 }
 
 /// Frees the polygons of meshes that no later surface needs.
@@ -98,6 +129,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
         if (is_new) first_object.push_back(k);
         prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
     }
+    prepared->maps = prepare_maps(scene);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
 
     prepared->levels = make_level_config(scene, settings);

@@ -9,6 +9,7 @@
 #include "math/affine.h"
 #include "relief/render.h"
 #include "relief/scene.h"
+#include "surface/gutter.h"
 #include "surface/level_field.h"
 #include "surface/surface.h"
 
@@ -23,10 +24,20 @@ struct Instance {
     std::shared_ptr<const LevelField> levels;
 };
 
+/// One image of a displacement, as the surfaces that use it read it.
+struct PreparedMap {
+    std::string displacement;
+    int udim = 1001;
+    std::shared_ptr<const Texture> texture;
+    GutterFill gutter;            ///< worked into the texture already
+    const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
+};
+
 struct PreparedScene {
     std::vector<Surface>
         surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
     std::vector<Instance> instances; ///< in the order of Scene::objects
+    std::vector<PreparedMap> maps;   ///< of all displacements
     std::vector<Material> materials; ///< the last one is the default material
     std::vector<Light> lights;
     std::optional<Environment> environment;

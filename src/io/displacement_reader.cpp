@@ -197,6 +197,7 @@ Displacement make_displacement(const DisplacementRequest& request, AssetCache& a
     if (request.wrap) map.wrap = parse_wrap_mode(*request.wrap);
     map.scale = request.scale.value_or(Vec3f{1, 1, 1});
     map.flip_v = request.flip_v;
+    map.dilate = request.dilate;
     map.is_udim = has_udim_token(request.file);
     map.tiles = assets.load_displacement(request.file);
     map.type = decide_type(request, map, assets);

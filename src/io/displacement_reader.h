@@ -36,7 +36,7 @@ struct DisplacementRequest {
     std::string name, file, preset;
     std::optional<std::string> type, space, axes, wrap;
     std::optional<Vec3f> midlevel, scale;
-    bool flip_v = false;
+    bool flip_v = false, dilate = true;
 };
 
 /// Reads the tiles and settles every value; what it had to assume goes to the warnings of `assets`.

@@ -168,7 +168,9 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     read_optional(node, "wrap", request.wrap, as_text);
     read_optional(node, "midlevel", request.midlevel, as_factors);
     read_optional(node, "scale", request.scale, as_factors);
-    read_optional(node, "flip_v", request.flip_v, [](const JsonNode& n) { return n.as_bool(); });
+    const auto as_bool = [](const JsonNode& n) { return n.as_bool(); };
+    read_optional(node, "flip_v", request.flip_v, as_bool);
+    read_optional(node, "dilate", request.dilate, as_bool);
     return node.with_place([&] { return make_displacement(request, assets); });
 }
 

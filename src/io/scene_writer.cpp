@@ -171,6 +171,7 @@ class SceneWriter {
             node["midlevel"] = to_json(map.midlevel);
             node["scale"] = to_json(map.scale);
             node["flip_v"] = map.flip_v;
+            node["dilate"] = map.dilate;
             node["wrap"] = std::string(get_name(map.wrap));
         }
     }

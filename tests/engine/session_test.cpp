@@ -125,6 +125,28 @@ TEST(Session, keeps_trees_that_an_edit_does_not_reach) {
     EXPECT_LT(after, first / 2);
 }
 
+TEST(Session, edits_reach_the_gutter_between_islands) {
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Mesh& mesh = fresh.meshes[0];
+    for (Vec2f& uv : mesh.uvs) uv = {0.1f + 0.8f * uv.x, 0.1f + 0.8f * uv.y};
+    auto map = std::make_shared<Texture>(*fresh.displacements[0].tiles[0].texture);
+    for (uint32_t y = 0; y < 64; ++y)
+        for (uint32_t x = 0; x < 96; ++x)
+            if (x < 9 || x >= 86 || y < 6 || y >= 58)
+                for (uint32_t c = 0; c < 3; ++c) map->floats[4 * (y * 96 + x) + c] = 0;
+    fresh.displacements[0].tiles[0].texture = map;
+    const Image dilated = render(fresh, make_settings()).image;
+    fresh.displacements[0].dilate = false;
+    EXPECT_GT(count_differing(dilated, render(fresh, make_settings()).image), 20u);
+    fresh.displacements[0].dilate = true;
+    Session session(fresh, make_settings());
+    expect_same(session.render().image, dilated);
+    const MapEdit edit = make_edit(4, 4, 30, 20, 0.1f);
+    session.edit(edit);
+    bake(fresh, edit);
+    expect_same(session.render().image, render(fresh, make_settings()).image);
+}
+
 TEST(Session, leaves_the_scene_of_its_maker_alone) {
     const Scene scene = make_torus_scene(DisplacementSpace::tangent);
     const std::vector<float> before = scene.displacements[0].tiles[0].texture->floats;
