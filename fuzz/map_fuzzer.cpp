@@ -1,5 +1,5 @@
-// Bytes of an image must end in texels or in an Error. The first bytes tell the kind, as in a file of that
-// name.
+// Bytes of an image must end in texels that can be inspected or in an Error. The first bytes tell the kind,
+// as in a file of that name.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,16 +7,27 @@
 
 #include "io/image_input.h"
 #include "relief/error.h"
+#include "relief/inspect.h"
+
+namespace {
+
+const char* get_name(std::string_view bytes) {
+    if (bytes.starts_with("#?")) return "fuzz.hdr";
+    if (bytes.starts_with("\x89PNG")) return "fuzz.png";
+    if (bytes.starts_with("\xff\xd8")) return "fuzz.jpg";
+    if (bytes.starts_with("II") || bytes.starts_with("MM")) return "fuzz.tif";
+    return "fuzz.exr";
+}
+
+} // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    const char* name = bytes.starts_with("#?")        ? "fuzz.hdr"
-                       : bytes.starts_with("\x89PNG") ? "fuzz.png"
-                                                      : "fuzz.exr";
     try {
-        const relief::Texture texture = relief::parse_texture(bytes, name);
+        const relief::Texture texture = relief::parse_texture(bytes, get_name(bytes));
         const size_t samples = 4 * size_t(texture.width) * texture.height;
         if (texture.floats.size() + texture.halves.size() != samples) std::abort();
+        inspect_texture(texture);
     } catch (const relief::Error&) {
         // refused with a message: what is wanted
     }
