@@ -1,5 +1,6 @@
 #include "io/mesh_gltf.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -191,40 +192,57 @@ class GltfBuilder {
                  fmt::format("it has {}, counted from 0", most_uv_sets_));
     }
 
+    /// What a vertex of a part has become in the mesh.
+    struct Corner {
+        uint32_t position = kNoIndex, uv = kNoIndex, normal = kNoIndex;
+        std::array<float, 4> tangent{};
+    };
+
     void add_part(const GltfPrimitive& part, const Affine& world_from_node) {
         const VectorTransform vectors(world_from_node);
         if (mesh_.position_indices.size() + part.corners.size() >= kNoIndex)
             fail("has more than 2^32 corners with all its copies", "split the file");
+        std::vector<Corner> corners(part.positions.size() / 3);
         size_t begin = 0;
         for (const uint32_t size : part.face_sizes) {
             // A mirror turns the winding round; the corners are walked backwards to keep the outside outside.
-            for (uint32_t k = 0; k < size; ++k)
-                add_corner(part, part.corners[begin + (vectors.is_mirrored() ? size - 1 - k : k)],
-                           world_from_node, vectors);
+            for (uint32_t k = 0; k < size; ++k) {
+                const uint32_t vertex = part.corners[begin + (vectors.is_mirrored() ? size - 1 - k : k)];
+                Corner& corner = corners[vertex];
+                if (corner.position == kNoIndex) corner = weld(part, vertex, world_from_node, vectors);
+                add_corner(corner);
+            }
             mesh_.face_sizes.push_back(size);
             begin += size;
         }
     }
 
-    void add_corner(const GltfPrimitive& part, uint32_t vertex, const Affine& world_from_node,
-                    const VectorTransform& vectors) {
+    void add_corner(const Corner& corner) {
+        mesh_.position_indices.push_back(corner.position);
+        if (with_uv_ > 0) mesh_.uv_indices.push_back(corner.uv);
+        if (has_normals_) mesh_.normal_indices.push_back(corner.normal);
+        if (has_tangents_) mesh_.tangents.push_back(corner.tangent);
+    }
+
+    Corner weld(const GltfPrimitive& part, uint32_t vertex, const Affine& world_from_node,
+                const VectorTransform& vectors) {
         const auto load = [vertex](const std::vector<float>& values, size_t width) {
             const float* at = values.data() + vertex * width;
             return Vec3f{at[0], at[1], at[2]};
         };
-        const Vec3f position = transform_point(world_from_node, load(part.positions, 3));
-        mesh_.position_indices.push_back(positions_.add(position));
-        if (!part.uvs.empty())
-            mesh_.uv_indices.push_back(uvs_.add({part.uvs[2 * vertex], part.uvs[2 * vertex + 1]}));
+        Corner corner;
+        corner.position = positions_.add(transform_point(world_from_node, load(part.positions, 3)));
+        if (with_uv_ > 0) corner.uv = uvs_.add({part.uvs[2 * vertex], part.uvs[2 * vertex + 1]});
         Vec3f normal{};
         if (!part.normals.empty()) normal = vectors.carry_normal(load(part.normals, 3));
-        if (has_normals_) mesh_.normal_indices.push_back(normals_.add(normal));
-        if (!has_tangents_) return;
+        if (has_normals_) corner.normal = normals_.add(normal);
+        if (!has_tangents_) return corner;
         Vec3f tangent = vectors.carry_tangent(load(part.tangents, 4));
         // Where the uvs have no direction writers store zeros or NaN: no tangent is more right than another.
         if (tangent == Vec3f{}) tangent = normal == Vec3f{} ? Vec3f{1, 0, 0} : scalar::make_basis(normal).t;
         const bool is_left_handed = (part.tangents[4 * vertex + 3] < 0) != vectors.is_mirrored();
-        mesh_.tangents.push_back({tangent.x, tangent.y, tangent.z, is_left_handed ? -1.0f : 1.0f});
+        corner.tangent = {tangent.x, tangent.y, tangent.z, is_left_handed ? -1.0f : 1.0f};
+        return corner;
     }
 
     GltfFile& file_;

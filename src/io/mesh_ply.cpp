@@ -249,19 +249,25 @@ class PlyBuilder {
             cursor_.fail("some faces have texture coordinates and some have none");
     }
 
-    Mesh weld() {
-        PointWelder positions(mesh_.positions), normals(mesh_.normals);
-        UvWelder uvs(mesh_.uvs);
+    /// Welds the values of the vertices; the corners get the index of theirs.
+    template <class Value, size_t N>
+    void weld(const std::vector<Value>& of_vertices, std::vector<Value>& values,
+              std::vector<uint32_t>& indices) {
+        if (of_vertices.empty()) return;
+        Welder<Value, N> welder(values);
         std::vector<uint32_t> welded;
-        for (const Vec3f& position : positions_) welded.push_back(positions.add(position));
-        for (size_t k = 0; k < corners_.size(); ++k) {
-            const uint32_t vertex = corners_[k];
-            mesh_.position_indices.push_back(welded[vertex]);
-            if (!normals_.empty()) mesh_.normal_indices.push_back(normals.add(normals_[vertex]));
-            if (!corner_uvs_.empty())
-                mesh_.uv_indices.push_back(uvs.add(corner_uvs_[k]));
-            else if (!uvs_.empty())
-                mesh_.uv_indices.push_back(uvs.add(uvs_[vertex]));
+        for (const Value& value : of_vertices) welded.push_back(welder.add(value));
+        for (const uint32_t vertex : corners_) indices.push_back(welded[vertex]);
+    }
+
+    Mesh weld() {
+        weld<Vec3f, 3>(positions_, mesh_.positions, mesh_.position_indices);
+        weld<Vec3f, 3>(normals_, mesh_.normals, mesh_.normal_indices);
+        if (corner_uvs_.empty()) {
+            weld<Vec2f, 2>(uvs_, mesh_.uvs, mesh_.uv_indices);
+        } else {
+            UvWelder uvs(mesh_.uvs);
+            for (const Vec2f& uv : corner_uvs_) mesh_.uv_indices.push_back(uvs.add(uv));
         }
         return std::move(mesh_);
     }
