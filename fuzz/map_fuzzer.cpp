@@ -8,13 +8,22 @@
 #include "io/image_input.h"
 #include "relief/error.h"
 
+namespace {
+
+const char* get_name(std::string_view bytes) {
+    if (bytes.starts_with("#?")) return "fuzz.hdr";
+    if (bytes.starts_with("\x89PNG")) return "fuzz.png";
+    if (bytes.starts_with("\xff\xd8")) return "fuzz.jpg";
+    if (bytes.starts_with("II") || bytes.starts_with("MM")) return "fuzz.tif";
+    return "fuzz.exr";
+}
+
+} // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    const char* name = bytes.starts_with("#?")        ? "fuzz.hdr"
-                       : bytes.starts_with("\x89PNG") ? "fuzz.png"
-                                                      : "fuzz.exr";
     try {
-        const relief::Texture texture = relief::parse_texture(bytes, name);
+        const relief::Texture texture = relief::parse_texture(bytes, get_name(bytes));
         const size_t samples = 4 * size_t(texture.width) * texture.height;
         if (texture.floats.size() + texture.halves.size() != samples) std::abort();
     } catch (const relief::Error&) {

@@ -36,8 +36,12 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
 /// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).
 bool is_mesh_file(const std::filesystem::path& file);
 
-/// Polygons of a file, quads and n-gons kept.
-Mesh load_mesh(const std::filesystem::path& file);
+struct MeshReadOptions {
+    int uv_set = 0; ///< of glTF and FBX, counted from 0; OBJ and PLY have the first one only
+};
+
+/// Polygons of a file, quads and n-gons kept. Throws Error{bad_input} with file, place and hint.
+Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options = {});
 
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder, so that load_scene gives the same scene.
 void save_scene(const Scene& scene, const std::filesystem::path& folder);

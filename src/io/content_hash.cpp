@@ -9,6 +9,7 @@ void add_scene_content(ContentHash& hash, const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
         hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
+        hash.add(mesh.tangents), hash.add(mesh.creases);
     }
     std::set<const Texture*> seen;
     const auto add_texture = [&](const std::shared_ptr<const Texture>& texture) {

@@ -1,50 +1,23 @@
 #include "io/mesh_assimp.h"
 
-#include <array>
-#include <bit>
-#include <unordered_map>
-
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "io/welder.h"
 #include "relief/error.h"
 
 namespace relief {
 
 namespace {
 
-/// Gives equal values one index: closed meshes that were stored corner by corner become closed again.
-template <class Value, size_t N> class Welder {
-  public:
-    explicit Welder(std::vector<Value>& values) : values_(values) {}
-
-    uint32_t add(const Value& value, const std::array<float, N>& components) {
-        std::array<uint32_t, N> key;
-        for (size_t i = 0; i < N; ++i) key[i] = std::bit_cast<uint32_t>(components[i] + 0.0f); // -0 is 0
-        const auto [found, is_new] = indices_.try_emplace(key, uint32_t(values_.size()));
-        if (is_new) values_.push_back(value);
-        return found->second;
-    }
-
-  private:
-    struct Hash {
-        size_t operator()(const std::array<uint32_t, N>& key) const {
-            uint64_t hash = 0xcbf29ce484222325u;
-            for (const uint32_t word : key) hash = (hash ^ word) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
-            return size_t(hash);
-        }
-    };
-    std::vector<Value>& values_;
-    std::unordered_map<std::array<uint32_t, N>, uint32_t, Hash> indices_;
-};
-
 class AssimpBuilder {
   public:
-    AssimpBuilder(const aiScene& scene, std::string file)
+    AssimpBuilder(const aiScene& scene, std::string file, const MeshReadOptions& options)
         : scene_(scene),
           file_(std::move(file)),
+          uv_set_(unsigned(options.uv_set)),
           positions_(mesh_.positions),
           uvs_(mesh_.uvs),
           normals_(mesh_.normals) {}
@@ -53,14 +26,17 @@ class AssimpBuilder {
         for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
             const aiMesh& mesh = *scene_.mMeshes[m];
             if (!(mesh.mPrimitiveTypes & (aiPrimitiveType_TRIANGLE | aiPrimitiveType_POLYGON))) continue;
-            if (mesh.HasTextureCoords(0))
+            if (mesh.HasTextureCoords(uv_set_))
                 ++with_uv_;
             else
                 ++without_uv_;
             if (!mesh.HasNormals()) has_normals_ = false;
         }
         if (with_uv_ > 0 && without_uv_ > 0)
-            fail("some parts have uvs and some have none", "give every part uvs, or none");
+            fail(fmt::format("some parts have uv set {} and some have not", uv_set_),
+                 "give every part uvs, or none");
+        if (uv_set_ > 0 && with_uv_ == 0)
+            fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
         add_node(*scene_.mRootNode, aiMatrix4x4());
         return std::move(mesh_);
     }
@@ -101,36 +77,37 @@ class AssimpBuilder {
     void add_corner(const aiMesh& mesh, unsigned corner, const aiMatrix4x4& world_from_node,
                     const aiMatrix3x3& normal_matrix) {
         const aiVector3D p = world_from_node * mesh.mVertices[corner];
-        mesh_.position_indices.push_back(positions_.add({p.x, p.y, p.z}, {p.x, p.y, p.z}));
-        if (mesh.HasTextureCoords(0)) {
-            const aiVector3D& uv = mesh.mTextureCoords[0][corner];
-            mesh_.uv_indices.push_back(uvs_.add({uv.x, uv.y}, {uv.x, uv.y}));
+        mesh_.position_indices.push_back(positions_.add({p.x, p.y, p.z}));
+        if (mesh.HasTextureCoords(uv_set_)) {
+            const aiVector3D& uv = mesh.mTextureCoords[uv_set_][corner];
+            mesh_.uv_indices.push_back(uvs_.add({uv.x, uv.y}));
         }
         if (has_normals_) {
             const aiVector3D n = normal_matrix * mesh.mNormals[corner];
-            mesh_.normal_indices.push_back(normals_.add({n.x, n.y, n.z}, {n.x, n.y, n.z}));
+            mesh_.normal_indices.push_back(normals_.add({n.x, n.y, n.z}));
         }
     }
 
     const aiScene& scene_;
     std::string file_;
+    unsigned uv_set_;
     Mesh mesh_;
-    Welder<Vec3f, 3> positions_;
-    Welder<Vec2f, 2> uvs_;
-    Welder<Vec3f, 3> normals_;
+    PointWelder positions_;
+    UvWelder uvs_;
+    PointWelder normals_;
     int with_uv_ = 0, without_uv_ = 0;
     bool has_normals_ = true;
 };
 
 } // namespace
 
-Mesh read_assimp_mesh(const std::filesystem::path& file) {
+Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
     if (!scene || !scene->mRootNode)
         throw Error(ErrorKind::bad_input, {fmt::format("cannot be read: {}", importer.GetErrorString()),
                                            file.string(), "the file is damaged: export it again"});
-    return AssimpBuilder(*scene, file.string()).build();
+    return AssimpBuilder(*scene, file.string(), options).build();
 }
 
 } // namespace relief

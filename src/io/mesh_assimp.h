@@ -1,13 +1,14 @@
-// PLY, glTF, GLB and FBX through Assimp: polygons kept, node transforms applied, positions welded.
+// FBX through Assimp: polygons kept, node transforms applied, positions welded.
 #pragma once
 
 #include <filesystem>
 
+#include "relief/io.h"
 #include "relief/scene.h"
 
 namespace relief {
 
 /// All meshes of the file as one. Throws bad_input with file and reason.
-Mesh read_assimp_mesh(const std::filesystem::path& file);
+Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options);
 
 } // namespace relief

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include "io/obj_tags.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -121,7 +122,9 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
     std::string warning, message;
     if (!tinyobj::LoadObjWithCallback(stream, callback, &builder, nullptr, &warning, &message))
         throw Error(ErrorKind::bad_input, {message, fmt::format("{}, line {}", name, buffer.line()), ""});
-    return builder.finish();
+    Mesh mesh = builder.finish();
+    mesh.creases = parse_obj_creases(text, mesh.positions.size(), name);
+    return mesh;
 }
 
 } // namespace relief

@@ -6,7 +6,9 @@
 
 #include "io/file_system.h"
 #include "io/mesh_assimp.h"
+#include "io/mesh_gltf.h"
 #include "io/mesh_obj.h"
+#include "io/mesh_ply.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/suggest.h"
@@ -17,6 +19,24 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kMeshExtensions = {".obj", ".ply", ".gltf", ".glb", ".fbx"};
 
+Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+    const std::string extension = get_extension(file), name = file.string();
+    if (extension == ".fbx") return read_assimp_mesh(file, options);
+    if (extension == ".gltf" || extension == ".glb") {
+        const auto read_beside = [&file](const std::string& path) {
+            const std::filesystem::path other = file.parent_path() / path;
+            require_file(other);
+            return read_file_bytes(other);
+        };
+        return parse_gltf(read_file_bytes(file), name, read_beside, options);
+    }
+    if (options.uv_set != 0)
+        throw Error(ErrorKind::bad_input, {fmt::format("has no uv set {}", options.uv_set), name,
+                                           fmt::format("a file '{}' has one set, number 0", extension)});
+    return extension == ".obj" ? parse_obj(read_file_bytes(file), name)
+                               : parse_ply(read_file_bytes(file), name);
+}
+
 } // namespace
 
 bool is_mesh_file(const std::filesystem::path& file) {
@@ -24,15 +44,14 @@ bool is_mesh_file(const std::filesystem::path& file) {
     return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) != kMeshExtensions.end();
 }
 
-Mesh load_mesh(const std::filesystem::path& file) {
+Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     require_file(file);
     if (!is_mesh_file(file)) {
         const std::string extension = get_extension(file);
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of mesh '{}'", extension), file.string(),
                                            suggest_word(extension, kMeshExtensions)});
     }
-    Mesh mesh = get_extension(file) == ".obj" ? parse_obj(read_file_bytes(file), file.string())
-                                              : read_assimp_mesh(file);
+    Mesh mesh = read_mesh(file, options);
     mesh.name = file.stem().string();
     mesh.source = file.string();
     if (mesh.face_sizes.empty())

@@ -49,7 +49,10 @@ Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& 
     node.check_keys(scene_keys::kMesh);
     const JsonNode file = node.get("file");
     const std::filesystem::path path = assets.resolve(file.as_string());
-    Mesh mesh = file.with_place([&] { return load_mesh(path); });
+    constexpr int kLastUvSet = 255;
+    MeshReadOptions options;
+    if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
     mesh.name = name;
     return mesh;
 }

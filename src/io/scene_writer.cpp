@@ -10,6 +10,7 @@
 #include "io/file_system.h"
 #include "io/image_coders.h"
 #include "io/json_node.h"
+#include "io/obj_tags.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -64,7 +65,7 @@ std::string format_obj(const Mesh& mesh) {
         }
         text += '\n';
     }
-    return text;
+    return text + format_obj_creases(mesh.creases);
 }
 
 void write_map(const Texture& texture, const std::filesystem::path& file) {

@@ -66,6 +66,11 @@ void validate_mesh(const Mesh& mesh, size_t index) {
     if (!mesh.uv_indices.empty()) check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
     if (!mesh.normal_indices.empty())
         check_indices(where, "normal", mesh.normal_indices, corners, mesh.normals.size());
+    if (!mesh.tangents.empty() && mesh.tangents.size() != corners)
+        fail(where, fmt::format("has {} tangents for {} corners", mesh.tangents.size(), corners));
+    for (size_t i = 0; i < mesh.tangents.size(); ++i)
+        for (const float component : mesh.tangents[i])
+            if (!std::isfinite(component)) fail(where, fmt::format("tangent {} is not finite", i));
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         if (!is_finite(mesh.positions[i])) fail(where, fmt::format("position {} is not finite", i));
         if (largest_component(mesh.positions[i]) > kFarthest)

@@ -1,4 +1,8 @@
+#include <assimp/Exporter.hpp>
+#include <assimp/scene.h>
+
 #include "io/mesh_obj.h"
+#include "io/scene_reader.h"
 #include "io/test_files.h"
 #include "relief/io.h"
 
@@ -39,30 +43,116 @@ TEST_F(MeshFiles, obj_uvs_on_some_faces_only_are_refused) {
         "line 6, face 2");
 }
 
-TEST_F(MeshFiles, ply_keeps_quads) {
-    const auto file =
-        write("q.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-                       "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-                       "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
-    const Mesh mesh = load_mesh(file);
-    EXPECT_EQ(mesh.face_sizes, std::vector<uint32_t>{4});
-    EXPECT_EQ(mesh.positions.size(), 4u);
-    EXPECT_EQ(mesh.name, "q");
+TEST_F(MeshFiles, obj_tags_become_creases) {
+    const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    const Mesh mesh = parse_obj(points + "t crease 2/1/0 0 1 2.5\n\tt crease 4/2/0  1 2 2 3  1 -3 \r\n"
+                                         "t corner 2/1/0 3 0 10\nt interpolateboundary 1/0/0 2\n",
+                                "m.obj");
+    ASSERT_EQ(mesh.creases.size(), 5u);
+    const auto expect = [&](size_t k, uint32_t first, uint32_t second, float sharpness) {
+        EXPECT_EQ(mesh.creases[k].first, first) << k;
+        EXPECT_EQ(mesh.creases[k].second, second) << k;
+        EXPECT_EQ(mesh.creases[k].sharpness, sharpness) << k;
+    };
+    expect(0, 0, 1, 2.5f);
+    expect(1, 1, 2, 1.0f);
+    expect(2, 2, 3, 0.0f); // below 0 means smooth
+    expect(3, 3, 3, 10.0f);
+    expect(4, 0, 0, 10.0f);
+    EXPECT_TRUE(parse_obj(points, "m.obj").creases.empty());
 }
 
-TEST_F(MeshFiles, gltf_positions_are_welded_and_node_transforms_applied) {
-    // Two triangles of a square, six corners stored one by one; 6 x 3 floats.
-    const float corners[18] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
-    std::ofstream(folder_ / "s.bin", std::ios::binary)
-        .write(reinterpret_cast<const char*>(corners), sizeof corners);
-    const auto file = write("s.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-        "nodes":[{"mesh":0,"translation":[0,0,5]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-        "buffers":[{"uri":"s.bin","byteLength":72}],"bufferViews":[{"buffer":0,"byteLength":72}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]})");
-    const Mesh mesh = load_mesh(file);
-    EXPECT_EQ(mesh.face_sizes, (std::vector<uint32_t>{3, 3}));
-    EXPECT_EQ(mesh.positions.size(), 4u);
-    EXPECT_EQ(mesh.positions.at(0).z, 5.0f);
+TEST_F(MeshFiles, damaged_obj_tags_name_their_line) {
+    const auto complain = [](const std::string& tag) {
+        return message_of([&] { parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n" + tag, "m.obj"); });
+    };
+    EXPECT_HAS(complain("t crease 2/1/0 0 3 1\n"), "m.obj, line 5: position 3 is out of range: there are 3");
+    EXPECT_HAS(complain("t crease 2/1/0 0 -1 1\n"), "'-1' stands where a number must be");
+    EXPECT_HAS(complain("t crease 2/1/0 0 1\n"), "'' stands where a number must be");
+    EXPECT_HAS(complain("t crease 2/1/0 1 1 1\n"), "two positions");
+    EXPECT_HAS(complain("t crease 3/1/0 0 1 2 1\n"), "3 positions with 1 sharpnesses");
+    EXPECT_HAS(complain("t crease 4/3/0 0 1 1 2 1 1 1\n"), "4 positions with 3 sharpnesses");
+    EXPECT_HAS(complain("t crease 99999999999/1/0 0 1 1\n"), "more than its line holds");
+    EXPECT_HAS(complain("t corner 1\n"), "counts");
+    EXPECT_HAS(complain("t corner 1/1/0 0 nan\n"), "must be finite");
+}
+
+TEST_F(MeshFiles, files_with_one_uv_set_refuse_another) {
+    const auto obj = write("plane.obj", kQuadObj);
+    EXPECT_EQ(load_mesh(obj, {.uv_set = 0}).uvs.size(), 4u);
+    const std::string message = message_of([&] { load_mesh(obj, {.uv_set = 1}); });
+    EXPECT_HAS(message, "plane.obj: has no uv set 1");
+    EXPECT_HAS(message, "one set, number 0");
+    EXPECT_HAS(message_of([&] { load_mesh(write("a.ply", "ply\n"), {.uv_set = 2}); }), "has no uv set 2");
+}
+
+TEST_F(MeshFiles, a_scene_file_chooses_the_uv_set) {
+    write("plane.obj", kQuadObj);
+    const auto parse = [&](const std::string& uv_set) {
+        return parse_scene(R"({"meshes": {"p": {"file": "plane.obj", "uv_set": )" + uv_set + "}}}", folder_);
+    };
+    EXPECT_EQ(parse("0").meshes.at(0).uvs.size(), 4u);
+    EXPECT_HAS(message_of([&] { parse("1"); }), "meshes.p.file: ");
+    EXPECT_HAS(message_of([&] { parse("1"); }), "plane.obj: has no uv set 1");
+    EXPECT_HAS(message_of([&] { parse("-1"); }), "meshes.p.uv_set: must be in [0, 255], not -1");
+    EXPECT_HAS(message_of([&] { parse("\"a\""); }), "meshes.p.uv_set: must be a whole number");
+}
+
+TEST_F(MeshFiles, a_saved_scene_keeps_creases) {
+    write("plane.obj", kQuadObj + std::string("t crease 2/1/0 0 1 0.1\nt corner 1/1/0 2 12\n"));
+    const Scene scene = parse_scene(R"({"meshes": {"p": {"file": "plane.obj"}}})", folder_);
+    save_scene(scene, folder_ / "out");
+    const Scene again = load_scene(folder_ / "out/scene.json");
+    ASSERT_EQ(again.meshes.at(0).creases.size(), 2u);
+    for (size_t k = 0; k < 2; ++k) {
+        const Crease &a = scene.meshes[0].creases[k], &b = again.meshes[0].creases[k];
+        EXPECT_TRUE(a.first == b.first && a.second == b.second && a.sharpness == b.sharpness) << k;
+    }
+    write("plane.obj", kQuadObj);
+    EXPECT_NE(parse_scene(R"({"meshes": {"p": {"file": "plane.obj"}}})", folder_).hash, scene.hash);
+}
+
+/// Writes a square with normals and two sets of uvs, the second of half the size, through Assimp.
+void write_fbx(const std::filesystem::path& file) {
+    aiScene scene;
+    scene.mRootNode = new aiNode("root");
+    scene.mRootNode->mMeshes = new unsigned[1]{0};
+    scene.mRootNode->mNumMeshes = 1;
+    scene.mMaterials = new aiMaterial* [1] { new aiMaterial };
+    scene.mNumMaterials = 1;
+    auto* mesh = new aiMesh;
+    scene.mMeshes = new aiMesh* [1] { mesh };
+    scene.mNumMeshes = 1;
+    mesh->mPrimitiveTypes = aiPrimitiveType_POLYGON;
+    mesh->mNumVertices = 4;
+    mesh->mVertices = new aiVector3D[4]{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh->mNormals = new aiVector3D[4]{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    for (unsigned set = 0; set < 2; ++set) {
+        mesh->mTextureCoords[set] = new aiVector3D[4];
+        mesh->mNumUVComponents[set] = 2;
+        for (unsigned k = 0; k < 4; ++k)
+            mesh->mTextureCoords[set][k] = mesh->mVertices[k] * (set == 0 ? 1.0f : 0.5f);
+    }
+    mesh->mNumFaces = 1;
+    mesh->mFaces = new aiFace[1];
+    mesh->mFaces[0].mNumIndices = 4;
+    mesh->mFaces[0].mIndices = new unsigned[4]{0, 1, 2, 3};
+    Assimp::Exporter exporter;
+    ASSERT_EQ(exporter.Export(&scene, "fbxa", file.string()), aiReturn_SUCCESS) << exporter.GetErrorString();
+}
+
+TEST_F(MeshFiles, fbx_keeps_quads_and_has_several_uv_sets) {
+    write_fbx(folder_ / "a.fbx");
+    for (const int set : {0, 1}) {
+        const Mesh mesh = load_mesh(folder_ / "a.fbx", {.uv_set = set});
+        EXPECT_EQ(mesh.face_sizes, std::vector<uint32_t>{4});
+        EXPECT_EQ(mesh.positions.size(), 4u);
+        EXPECT_EQ(mesh.normal_indices.size(), 4u);
+        ASSERT_EQ(mesh.uv_indices.size(), 4u);
+        EXPECT_EQ(mesh.uvs.at(mesh.uv_indices[2]), (set == 0 ? Vec2f{1, 1} : Vec2f{0.5f, 0.5f}));
+    }
+    EXPECT_HAS(message_of([&] { load_mesh(folder_ / "a.fbx", {.uv_set = 2}); }), "a.fbx: has no uv set 2");
+    EXPECT_HAS(message_of([&] { load_mesh(folder_ / "a.fbx", {.uv_set = 200}); }), "has no uv set 200");
 }
 
 TEST_F(MeshFiles, missing_unknown_and_broken_files_are_named) {

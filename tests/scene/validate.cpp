@@ -59,6 +59,15 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(ValidateScene, accepts_a_sound_scene) { EXPECT_NO_THROW(validate_scene(make_scene())); }
 
+TEST(ValidateScene, tangents_are_finite_and_one_a_corner) {
+    const auto set = [](size_t count, float z) {
+        return complaint([=](Scene& scene) { scene.meshes[0].tangents.assign(count, {1, 0, z, -1}); });
+    };
+    EXPECT_EQ(set(4, 0), "accepted");
+    EXPECT_HAS(set(3, 0), "has 3 tangents for 4 corners");
+    EXPECT_HAS(set(4, kNan), "tangent 0 is not finite");
+}
+
 TEST(ValidateScene, names_the_object_with_a_bad_index_or_transform) {
     EXPECT_HAS(complaint([](Scene& s) { s.objects[0].mesh = 1; }), "object 'thing': mesh 1");
     EXPECT_HAS(complaint([](Scene& s) { s.objects[0].displacement = 7; }), "displacement 7");

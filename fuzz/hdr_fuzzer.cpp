@@ -1,0 +1,19 @@
+// Bytes of a Radiance HDR file must end in texels or in an Error.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "io/image_input.h"
+#include "relief/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    try {
+        const relief::Texture texture =
+            relief::parse_texture({reinterpret_cast<const char*>(data), size}, "fuzz.hdr");
+        if (texture.floats.size() != 4 * size_t(texture.width) * texture.height) std::abort();
+    } catch (const relief::Error&) {
+        // refused with a message: what is wanted
+    }
+    return 0;
+}

@@ -1,0 +1,272 @@
+#include <nlohmann/json.hpp>
+
+#include "io/mesh_gltf.h"
+#include "io/test_files.h"
+
+namespace relief {
+
+namespace {
+
+using GltfFiles = FileTest;
+using Json = nlohmann::json;
+
+/// A glTF document in the making: accessors with bytes of their own, in one buffer.
+class Document {
+  public:
+    Document() {
+        json = {
+            {"asset", {{"version", "2.0"}}}, {"accessors", Json::array()}, {"bufferViews", Json::array()}};
+    }
+
+    template <class T> int add(const std::string& type, int component, const std::vector<T>& values) {
+        const size_t width = type == "SCALAR" ? 1 : size_t(type.back() - '0');
+        const size_t bytes = values.size() * sizeof(T);
+        json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes}});
+        buffer.append(reinterpret_cast<const char*>(values.data()), bytes);
+        buffer.resize((buffer.size() + 3) / 4 * 4);
+        json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                     {"componentType", component},
+                                     {"count", values.size() / width},
+                                     {"type", type}});
+        return int(json["accessors"].size()) - 1;
+    }
+    int add_floats(const std::string& type, const std::vector<float>& values) {
+        return add(type, 5126, values);
+    }
+
+    std::string make_glb() const {
+        Json whole = json;
+        whole["buffers"] = {{{"byteLength", buffer.size()}}};
+        std::string text = whole.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        const auto word = [](size_t value) {
+            const auto number = uint32_t(value);
+            return std::string(reinterpret_cast<const char*>(&number), 4);
+        };
+        return "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) + "JSON" + text +
+               word(buffer.size()) + std::string("BIN\0", 4) + buffer;
+    }
+
+    Json json;
+    std::string buffer;
+};
+
+const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+
+/// A square as one primitive of one mesh, without nodes.
+Document make_square() {
+    Document document;
+    const int positions = document.add_floats("VEC3", kSquare);
+    const int indices = document.add<uint16_t>("SCALAR", 5123, {0, 1, 2, 0, 2, 3});
+    document.json["meshes"] = {
+        {{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+    return document;
+}
+
+Json& primitive_of(Document& document) { return document.json["meshes"][0]["primitives"][0]; }
+
+std::string refuse(const std::string& path) {
+    throw Error(ErrorKind::bad_input, {"there is no file " + path, "", "make one"});
+}
+
+Mesh parse(const Document& document, const MeshReadOptions& options = {}) {
+    return parse_gltf(document.make_glb(), "m.glb", refuse, options);
+}
+
+TEST_F(GltfFiles, triangles_strips_and_fans_of_all_kinds_of_indices) {
+    Document document = make_square();
+    EXPECT_EQ(parse(document).position_indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+    primitive_of(document)["indices"] = document.add<uint8_t>("SCALAR", 5121, {0, 1, 2, 3});
+    primitive_of(document)["mode"] = 6;
+    EXPECT_EQ(parse(document).position_indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+    primitive_of(document)["indices"] = document.add<uint32_t>("SCALAR", 5125, {0, 1, 3, 2, 2, 0});
+    primitive_of(document)["mode"] = 5;
+    const Mesh strip = parse(document); // the last two triangles have no area
+    ASSERT_EQ(strip.face_sizes, (std::vector<uint32_t>{3, 3}));
+    const std::vector<Vec3f> expected = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    for (size_t k = 0; k < 6; ++k) EXPECT_EQ(strip.positions.at(strip.position_indices[k]), expected[k]) << k;
+    primitive_of(document)["mode"] = 1;
+    EXPECT_TRUE(parse(document).face_sizes.empty());
+}
+
+TEST_F(GltfFiles, encoded_ngons_become_polygons_again) {
+    Document document;
+    std::vector<float> points;
+    for (int k = 0; k < 9; ++k) points.insert(points.end(), {float(k), float(k * k), 0});
+    const int positions = document.add_floats("VEC3", points);
+    // A pentagon, a quad that begins elsewhere, and two triangles about the same corner that share no edge.
+    const int indices = document.add<uint16_t>(
+        "SCALAR", 5123, {0, 1, 2, 0, 2, 3, 0, 3, 4, 1, 5, 6, 1, 6, 2, 7, 8, 0, 7, 1, 2});
+    document.json["meshes"] = {{{"primitives",
+                                 {{{"attributes", {{"POSITION", positions}}},
+                                   {"indices", indices},
+                                   {"extensions", {{"FB_ngon_encoding", Json::object()}}}}}}}};
+    EXPECT_EQ(parse(document).face_sizes, (std::vector<uint32_t>{5, 4, 3, 3}));
+    EXPECT_EQ(parse(document).position_indices,
+              (std::vector<uint32_t>{0, 1, 2, 3, 4, 1, 5, 6, 2, 7, 8, 0, 7, 1, 2}));
+    primitive_of(document).erase("extensions");
+    EXPECT_EQ(parse(document).face_sizes.size(), 7u);
+}
+
+TEST_F(GltfFiles, positions_are_welded_and_node_transforms_applied) {
+    Document document;
+    const int positions = document.add_floats("VEC3", {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0});
+    document.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
+    const double half = std::sqrt(0.5);
+    document.json["nodes"] = {{{"children", {1}}, {"translation", {0, 0, 5}}},
+                              {{"mesh", 0}, {"rotation", {0, 0, half, half}}, {"scale", {2, 1, 1}}},
+                              {{"mesh", 0}}}; // of no scene
+    document.json["scenes"] = {{{"nodes", {2}}}, {{"nodes", {0}}}};
+    document.json["scene"] = 1;
+    const Mesh mesh = parse(document);
+    EXPECT_EQ(mesh.face_sizes, (std::vector<uint32_t>{3, 3}));
+    ASSERT_EQ(mesh.positions.size(), 4u);
+    EXPECT_NEAR(mesh.positions[1].x, 0, 1e-6); // scaled, then turned by a quarter about z, then moved
+    EXPECT_NEAR(mesh.positions[1].y, 2, 1e-6);
+    EXPECT_NEAR(mesh.positions[1].z, 5, 1e-6);
+    document.json["nodes"][1] = {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1}}};
+    EXPECT_EQ(parse(document).positions[0], (Vec3f{7, 8, 14}));
+}
+
+TEST_F(GltfFiles, a_mirroring_node_turns_faces_normals_and_tangents_round) {
+    Document document = make_square();
+    Json& attributes = primitive_of(document)["attributes"];
+    attributes["NORMAL"] = document.add_floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+    attributes["TANGENT"] = document.add_floats("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
+    const Mesh plain = parse(document);
+    ASSERT_EQ(plain.tangents.size(), 6u);
+    EXPECT_EQ(plain.tangents[0], (std::array<float, 4>{1, 0, 0, 1}));
+    EXPECT_EQ(plain.tangents[5][3], -1.0f);
+    for (const auto& t : plain.tangents) // also those that the file has not
+        EXPECT_NEAR(t[0] * t[0] + t[1] * t[1] + t[2] * t[2], 1, 1e-6);
+    document.json["nodes"] = {{{"mesh", 0}, {"scale", {-2, 1, 1}}}};
+    const Mesh mirrored = parse(document);
+    EXPECT_EQ(mirrored.normals, (std::vector<Vec3f>{{0, 0, 1}}));
+    const auto at = [&](size_t k) { return mirrored.positions.at(mirrored.position_indices[k]); };
+    const Vec3f a = at(0), b = at(1), c = at(2);
+    EXPECT_GT((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0); // still seen from above
+    EXPECT_EQ(mirrored.tangents[2], (std::array<float, 4>{-1, 0, 0, -1}));
+}
+
+TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
+    Document document = make_square();
+    Json& attributes = primitive_of(document)["attributes"];
+    attributes["TEXCOORD_0"] = document.add_floats("VEC2", {0, 1, 1, 1, 1, 0, 0, 0});
+    attributes["TEXCOORD_1"] = document.add<uint16_t>("VEC2", 5123, {0, 0, 65535, 0, 65535, 65535, 0, 65535});
+    document.json["accessors"].back()["normalized"] = true;
+    const Mesh first = parse(document), second = parse(document, {.uv_set = 1});
+    EXPECT_EQ(first.uvs.at(first.uv_indices[0]), (Vec2f{0, 0}));
+    EXPECT_EQ(first.uvs.at(first.uv_indices[2]), (Vec2f{1, 1}));
+    EXPECT_EQ(second.uvs.at(second.uv_indices[0]), (Vec2f{0, 1}));
+    const std::string message = message_of([&] { parse(document, {.uv_set = 2}); });
+    EXPECT_HAS(message, "m.glb: has no uv set 2");
+    EXPECT_HAS(message, "it has 2, counted from 0");
+    Json bare = primitive_of(document);
+    bare["attributes"].erase("TEXCOORD_1");
+    document.json["meshes"][0]["primitives"].push_back(bare);
+    EXPECT_EQ(parse(document).face_sizes.size(), 4u);
+    EXPECT_HAS(message_of([&] { parse(document, {.uv_set = 1}); }),
+               "some parts have uv set 1 and some have not");
+}
+
+TEST_F(GltfFiles, buffers_may_be_data_or_files_beside) {
+    Document document = make_square();
+    write("a b.bin", document.buffer);
+    document.json["buffers"] = {{{"byteLength", document.buffer.size()}, {"uri", "a%20b.bin"}}};
+    EXPECT_EQ(load_mesh(write("s.gltf", document.json.dump())).positions.size(), 4u);
+    // The square 0 0 0, 1 0 0, 1 1 0 in base64.
+    const std::string data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA";
+    Document small;
+    small.json["bufferViews"] = {{{"buffer", 0}, {"byteLength", 36}}};
+    small.json["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}}};
+    small.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}};
+    const auto load = [&](const std::string& uri) {
+        small.json["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
+        return load_mesh(write("d.gltf", small.json.dump()));
+    };
+    EXPECT_EQ(load("data:application/octet-stream;base64," + data).positions.at(2), (Vec3f{1, 1, 0}));
+    EXPECT_HAS(message_of([&] { load("data:text/plain,abc"); }),
+               "buffers[0].uri: holds data that is not in base64");
+    EXPECT_HAS(message_of([&] { load("data:;base64,AA*A"); }), "where base64 must be");
+    EXPECT_HAS(message_of([&] { load("none.bin"); }), "none.bin");
+    write("out.bin", document.buffer);
+    for (const std::string uri :
+         {"../out.bin", "/etc/hostname", "x/%2e%2E/../out.bin", "http://a/b", "a%00b", ""})
+        EXPECT_HAS(message_of([&] { load(uri); }), "no file in the folder") << uri;
+    EXPECT_EQ(load("x/../a b.bin").face_sizes.size(), 1u);
+}
+
+TEST_F(GltfFiles, damaged_documents_name_their_place) {
+    const auto complain = [](const auto& change) {
+        Document document = make_square();
+        change(document);
+        return message_of([&] { parse(document); });
+    };
+    const auto set = [&](const char* pointer, const Json& value) {
+        return complain([&](Document& d) { d.json[Json::json_pointer(pointer)] = value; });
+    };
+    EXPECT_HAS(set("/asset/version", "1.0"), "glTF of version 1.0");
+    EXPECT_HAS(set("/accessors/0/count", 5), "accessors[0]: goes to byte 60 of a bufferView of 48 bytes");
+    EXPECT_HAS(set("/accessors/0/count", 1e30), "accessors[0].count");
+    EXPECT_HAS(set("/accessors/0/count", -1), "accessors[0].count");
+    EXPECT_HAS(set("/accessors/0/byteOffset", 4), "accessors[0]: goes to byte 52");
+    EXPECT_HAS(set("/accessors/0/bufferView", 9), "there is no bufferView 9: the file has 2");
+    EXPECT_HAS(set("/accessors/0/componentType", 5124), "5124");
+    EXPECT_HAS(set("/accessors/0/type", "VEC4"), "is of type VEC4, not VEC3");
+    EXPECT_HAS(set("/accessors/0/sparse", Json::object()), "accessors[0]: is sparse (export it without");
+    EXPECT_HAS(set("/accessors/1/componentType", 5122), "indices must be unsigned whole numbers");
+    EXPECT_HAS(set("/bufferViews/0/byteStride", 8), "bufferViews[0].byteStride");
+    EXPECT_HAS(set("/bufferViews/0/byteStride", 20), "goes to byte 72");
+    EXPECT_HAS(set("/bufferViews/1/byteLength", 1e9), "bufferViews[1]: goes to byte");
+    EXPECT_HAS(set("/bufferViews/1/buffer", 1), "there is no buffer 1: the file has 1");
+    EXPECT_HAS(set("/meshes/0/primitives/0/attributes", Json::object()), "key 'POSITION' is missing");
+    EXPECT_HAS(set("/meshes/0/primitives/0/indices", 0), "is of type VEC3, not SCALAR");
+    EXPECT_HAS(set("/nodes", Json::parse(R"([{"children":[1]},{"children":[1]}])")),
+               "nodes[1]: stands twice");
+    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
+    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
+    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");
+    EXPECT_HAS(set("/extensionsRequired", {"KHR_draco_mesh_compression"}), "export it without compression");
+    EXPECT_HAS(set("/meshes", {1}), "meshes[0]: must be an object");
+    EXPECT_HAS(complain([](Document& d) { d.json["accessors"][0].erase("bufferView"); }),
+               "such as that of Draco");
+    EXPECT_HAS(complain([](Document& d) {
+                   primitive_of(d)["indices"] = d.add<uint16_t>("SCALAR", 5123, {0, 1, 4});
+               }),
+               "index 2 is 4, out of range: there are 4 vertices");
+    EXPECT_HAS(complain([](Document& d) {
+                   primitive_of(d)["indices"] = d.add<uint16_t>("SCALAR", 5123, {0, 1, 2, 3});
+               }),
+               "4 indices do not make triangles");
+    EXPECT_HAS(complain([](Document& d) {
+                   primitive_of(d)["attributes"]["NORMAL"] = d.add_floats("VEC3", {0, 0, 1});
+               }),
+               "1 values for 4 vertices");
+}
+
+TEST_F(GltfFiles, damaged_containers_are_told) {
+    const std::string glb = make_square().make_glb();
+    const auto complain = [](const std::string& bytes) {
+        return message_of([&] { parse_gltf(bytes, "m.glb", refuse, {}); });
+    };
+    EXPECT_HAS(complain(glb.substr(0, 15)), "ends in its header");
+    EXPECT_HAS(complain(glb.substr(0, glb.size() - 1)), "bytes of the");
+    std::string changed = glb;
+    changed[4] = 1;
+    EXPECT_HAS(complain(changed), "GLB of version 1");
+    changed = glb, changed[15] = '\x7f';
+    EXPECT_HAS(complain(changed), "the chunk at byte 12 is cut off");
+    changed = glb, changed[16] = 'X';
+    EXPECT_HAS(complain(changed), "has no JSON");
+    EXPECT_HAS(complain("{"), "m.glb, line 1");
+    EXPECT_HAS(complain("[1]"), "must be an object");
+    const std::string deep(100000, '[');
+    EXPECT_HAS(complain(R"({"asset":{"version":"2.0"},"extras":)" + deep), "broken JSON");
+    const std::string closed = deep + std::string(100000, ']');
+    EXPECT_TRUE(parse_gltf(R"({"asset":{"version":"2.0"},"extras":)" + closed + "}", "m.gltf", refuse, {})
+                    .face_sizes.empty());
+}
+
+} // namespace
+
+} // namespace relief
