@@ -130,8 +130,8 @@ void note_place(const Mesh& mesh, size_t first, uint32_t size, MeshUvs& result) 
         ++result.crossing_faces;
 }
 
-/// Faces that share an edge with both uvs are of one island.
-FaceSets join_islands(const Mesh& mesh) {
+/// Faces that share an edge with both uvs and lie the same way round are of one island.
+FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
     const std::vector<uint32_t> points = number_uv_points(mesh);
     FaceSets sets(mesh.face_sizes.size());
     std::unordered_map<uint64_t, uint32_t> face_of_edge;
@@ -142,7 +142,8 @@ FaceSets join_islands(const Mesh& mesh) {
             const uint64_t a = points[first + k], b = points[first + (k + 1) % size];
             const auto [place, is_new] =
                 face_of_edge.try_emplace(std::min(a, b) << 32 | std::max(a, b), face);
-            if (!is_new) sets.join(face, place->second);
+            if (is_new) continue;
+            if ((areas[face] < 0) == (areas[place->second] < 0)) sets.join(face, place->second);
         }
         first += size;
     }
@@ -155,20 +156,20 @@ MeshUvs survey_uvs(const Mesh& mesh) {
     MeshUvs result;
     result.low = result.high = mesh.uvs[mesh.uv_indices.front()];
     Coverage coverage;
-    FaceSets sets = join_islands(mesh);
-    std::map<uint32_t, double> area_of_island;
+    std::vector<double> areas;
     size_t first = 0;
-    for (uint32_t face = 0; face < mesh.face_sizes.size(); ++face) {
-        const uint32_t size = mesh.face_sizes[face];
-        const double area = compute_area(mesh, first, size);
-        result.mirrored_faces += area < 0;
-        result.flat_faces += area == 0;
-        area_of_island[sets.find(face)] += area;
+    for (const uint32_t size : mesh.face_sizes) {
+        areas.push_back(compute_area(mesh, first, size));
+        result.mirrored_faces += areas.back() < 0;
+        result.flat_faces += areas.back() == 0;
         note_place(mesh, first, size, result);
         const auto uv = [&](uint32_t k) { return mesh.uvs[mesh.uv_indices[first + k]]; };
         for (uint32_t k = 2; k < size; ++k) coverage.add(uv(0), uv(k - 1), uv(k));
         first += size;
     }
+    FaceSets sets = join_islands(mesh, areas);
+    std::map<uint32_t, double> area_of_island;
+    for (uint32_t face = 0; face < areas.size(); ++face) area_of_island[sets.find(face)] += areas[face];
     result.islands = area_of_island.size();
     for (const auto& [island, area] : area_of_island) result.mirrored_islands += area < 0;
     result.overlap = coverage.measure_overlap();
