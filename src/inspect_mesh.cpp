@@ -1,98 +1,200 @@
 // What a mesh is and what stands in the way of displacing it.
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "math/box.h"
+#include "mesh_survey.h"
 #include "relief/inspect.h"
 
 namespace relief {
 
 namespace {
 
-struct FaceCounts {
-    size_t triangles = 0, quads = 0, others = 0;
-    size_t all() const { return triangles + quads + others; }
-};
+void add(std::vector<Finding>& findings, Severity severity, const char* code, std::string text) {
+    findings.push_back({severity, code, std::move(text)});
+}
 
-FaceCounts count_faces(const Mesh& mesh) {
-    FaceCounts counts;
-    for (const uint32_t size : mesh.face_sizes) {
-        if (size == 3)
-            ++counts.triangles;
-        else if (size == 4)
-            ++counts.quads;
-        else
-            ++counts.others;
+void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
+    if (faults.has_bad_counts)
+        add(findings, Severity::error, "E-INDEX",
+            "faces with fewer than three corners, or lists of different lengths; export the mesh again");
+    if (faults.bad_indices > 0)
+        add(findings, Severity::error, "E-INDEX",
+            fmt::format("{} indices are out of range; export the mesh again", faults.bad_indices));
+    if (faults.bad_position)
+        add(findings, Severity::error, "E-NAN",
+            fmt::format("vertex {} is not finite; export the mesh again", *faults.bad_position));
+    if (faults.bad_uv)
+        add(findings, Severity::error, "E-NAN",
+            fmt::format("uv {} is not finite; unwrap the mesh again", *faults.bad_uv));
+}
+
+void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+    if (shape.triangles > shape.faces() / 2)
+        add(findings, Severity::warning, "W-TRI",
+            fmt::format("{} of {} faces are triangles: probably a triangulated export, whose diagonals a "
+                        "subdivision keeps; export quads (Blender: untick Triangulated Mesh)",
+                        shape.triangles, shape.faces()));
+    if (shape.others > 0)
+        add(findings, Severity::warning, "W-NGON",
+            fmt::format("{} of {} faces have more than four corners: displaced, they are split into quads, "
+                        "which a baker may have split otherwise; make them quads",
+                        shape.others, shape.faces()));
+    if (shape.triangles + shape.others > 0)
+        add(findings, Severity::note, "I-REFINE",
+            fmt::format("{} of {} faces are not quads: displaced, the whole mesh is refined once to "
+                        "quads; plain, n-gons are cut into triangles",
+                        shape.triangles + shape.others, shape.faces()));
+}
+
+void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+    if (shape.crowded_edges > 0)
+        add(findings, Severity::warning, "W-NONMANIF",
+            fmt::format("{} edges have more than two faces (one is of face {}): the surface has no two sides "
+                        "there; remove inner or doubled faces",
+                        shape.crowded_edges, *shape.crowded_face));
+    if (shape.turned_edges > 0)
+        add(findings, Severity::warning, "W-NONMANIF",
+            fmt::format("{} edges are run the same way by both faces (one is face {}): normals point apart "
+                        "there; make normals consistent",
+                        shape.turned_edges, *shape.turned_face));
+}
+
+std::string list_valences(const MeshShape& shape) {
+    std::string text;
+    for (size_t valence = 1; valence < shape.valences.size(); ++valence)
+        if (shape.valences[valence] > 0)
+            text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", shape.valences[valence], valence);
+    return text;
+}
+
+void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result) {
+    Box box;
+    for (const Vec3f& position : mesh.positions) box.extend(position);
+    result.facts.insert(
+        result.facts.end(),
+        {{"vertices", fmt::format("{}", mesh.positions.size())},
+         {"faces", fmt::format("{}: {} quads, {} triangles, {} with more corners", shape.faces(), shape.quads,
+                               shape.triangles, shape.others)},
+         {"points", "by number of edges: " + list_valences(shape)},
+         {"open_edges", fmt::format("{}", shape.open_edges)},
+         {"bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x,
+                                box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z)},
+         {"normals", mesh.normal_indices.empty() ? "none" : "in the file"},
+         {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file"}});
+}
+
+/// Tiles in runs: "1001-1004, 1011".
+std::string list_tiles(const std::set<int>& tiles) {
+    std::string text;
+    for (auto it = tiles.begin(); it != tiles.end();) {
+        const int first = *it;
+        int last = first;
+        for (++it; it != tiles.end() && *it == last + 1; ++it) ++last;
+        if (!text.empty()) text += ", ";
+        text += first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last);
     }
-    return counts;
+    return text;
 }
 
-size_t count_out_of_range(const std::vector<uint32_t>& indices, size_t size) {
-    return size_t(
-        std::count_if(indices.begin(), indices.end(), [size](uint32_t index) { return index >= size; }));
+void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& result) {
+    result.facts.push_back({"uv_range", fmt::format("u {:.6g} to {:.6g}, v {:.6g} to {:.6g}", uvs.low.x,
+                                                    uvs.high.x, uvs.low.y, uvs.high.y)});
+    result.facts.push_back(
+        {"uv_islands", fmt::format("{}, {} of them mirrored", uvs.islands, uvs.mirrored_islands)});
+    result.facts.push_back({"uv_overlap", fmt::format("{:.2f} % of the covered area", 100 * uvs.overlap)});
+    result.facts.push_back({"uv_tiles", uvs.tiles.empty() ? "none" : list_tiles(uvs.tiles)});
+    if (!map || !map->is_udim) return;
+    std::set<int> found;
+    for (const MapTile& tile : map->tiles) found.insert(tile.udim);
+    result.facts.push_back({"map_tiles", list_tiles(found)});
 }
 
-void describe_uvs(const Mesh& mesh, Inspection& result) {
-    if (mesh.uv_indices.empty()) {
-        result.findings.push_back({Severity::warning, "W-NOUV",
-                                   "no uvs: the mesh cannot be displaced by a map; export it with uvs"});
+void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector<Finding>& findings) {
+    std::set<int> missing = uvs.tiles;
+    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
+    if (missing.empty()) return;
+    std::set<int> found;
+    for (const MapTile& tile : map.tiles) found.insert(tile.udim);
+    add(findings, Severity::error, "E-TILE",
+        fmt::format("no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export "
+                    "the missing ones, or look at their names",
+                    list_tiles(missing), list_tiles(found)));
+}
+
+/// Uvs outside of the unit square need tiles or a map that repeats.
+void find_range_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
+    const bool has_tiles = map && map->is_udim;
+    const bool is_repeated = map && (map->wrap == WrapMode::repeat || map->wrap == WrapMode::mirror);
+    const bool is_outside = uvs.low.x < 0 || uvs.low.y < 0 || uvs.high.x > 1 || uvs.high.y > 1;
+    if (has_tiles && uvs.crossing_faces + uvs.outside_faces > 0)
+        add(findings, Severity::warning, "W-UVRANGE",
+            fmt::format(
+                "{} faces lie across two tiles and {} outside of all tiles (u in [0, 10), v >= 0): each "
+                "face takes the tile of its middle; move its uvs into one tile",
+                uvs.crossing_faces, uvs.outside_faces));
+    if (has_tiles || is_repeated || !is_outside) return;
+    if (!map && uvs.crossing_faces == 0 && uvs.outside_faces == 0) {
+        add(findings, Severity::note, "I-UDIM",
+            fmt::format("uvs fill the tiles {}: name the map with <UDIM>", list_tiles(uvs.tiles)));
         return;
     }
-    Box box;
-    for (const Vec2f& uv : mesh.uvs) box.extend(Vec3f{uv.x, uv.y, 0});
-    result.facts.push_back({"uv_range", fmt::format("u {:.6g} to {:.6g}, v {:.6g} to {:.6g}", box.lower.x,
-                                                    box.upper.x, box.lower.y, box.upper.y)});
-    if (box.lower.x < 0 || box.lower.y < 0 || box.upper.x > 1 || box.upper.y > 1)
-        result.findings.push_back({Severity::warning, "W-UVRANGE",
-                                   "uvs leave the unit square: the map needs <UDIM> tiles or wrap 'repeat'"});
+    add(findings, Severity::warning, "W-UVRANGE",
+        "uvs leave the unit square: the map needs <UDIM> tiles or wrap repeat");
 }
 
-void find_face_mistakes(const FaceCounts& faces, std::vector<Finding>& findings) {
-    if (faces.triangles > faces.all() / 2)
-        findings.push_back(
-            {Severity::warning, "W-TRI",
-             fmt::format("{} of {} faces are triangles: probably a triangulated export; export quads",
-                         faces.triangles, faces.all())});
-    if (faces.triangles + faces.others > 0)
-        findings.push_back(
-            {Severity::note, "I-REFINE",
-             fmt::format("{} of {} faces are not quads: displaced, the whole mesh is refined once to "
-                         "quads; plain, n-gons are cut into triangles",
-                         faces.triangles + faces.others, faces.all())});
-}
-
-void find_bad_values(const Mesh& mesh, std::vector<Finding>& findings) {
-    const size_t bad_indices = count_out_of_range(mesh.position_indices, mesh.positions.size()) +
-                               count_out_of_range(mesh.uv_indices, mesh.uvs.size()) +
-                               count_out_of_range(mesh.normal_indices, mesh.normals.size());
-    if (bad_indices > 0)
-        findings.push_back({Severity::error, "E-INDEX",
-                            fmt::format("{} indices are out of range; export the mesh again", bad_indices)});
-    const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
-    if (bad != mesh.positions.end())
-        findings.push_back(
-            {Severity::error, "E-NAN",
-             fmt::format("vertex {} is not finite; export the mesh again", bad - mesh.positions.begin())});
+void find_uv_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
+    constexpr double kOverlap = 0.01;
+    find_range_mistakes(uvs, map, findings);
+    if (map && map->is_udim) find_missing_tiles(uvs, *map, findings);
+    if (uvs.overlap > kOverlap)
+        add(findings, Severity::warning, "W-UVOVER",
+            fmt::format("faces share {:.1f} % of the uv area: what is sculpted on one shows on the others; "
+                        "lay the islands apart unless this is meant",
+                        100 * uvs.overlap));
+    const bool uses_frames =
+        !map || map->type == DisplacementType::height || map->space == DisplacementSpace::tangent;
+    if (uvs.mirrored_islands > 0 && uses_frames)
+        add(findings, Severity::warning, "W-MIRROR",
+            fmt::format("{} of {} uv islands are mirrored ({} faces): their bitangent is turned, so that a "
+                        "tangent-space map is mirrored there; bake and render with the same tangents, or use "
+                        "object space",
+                        uvs.mirrored_islands, uvs.islands, uvs.mirrored_faces));
+    if (uvs.flat_faces > 0)
+        add(findings, Severity::note, "I-UVFLAT",
+            fmt::format("{} faces have no area in uv: one texel displaces all of each", uvs.flat_faces));
 }
 
 } // namespace
 
-Inspection inspect_mesh(const Mesh& mesh) {
-    const FaceCounts faces = count_faces(mesh);
-    Box box;
-    for (const Vec3f& position : mesh.positions) box.extend(position);
+Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     Inspection result;
-    result.facts = {
-        {"vertices", fmt::format("{}", mesh.positions.size())},
-        {"faces", fmt::format("{}: {} quads, {} triangles, {} with more corners", faces.all(), faces.quads,
-                              faces.triangles, faces.others)},
-        {"bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x,
-                               box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z)},
-        {"normals", mesh.normal_indices.empty() ? "none" : "in the file"}};
-    describe_uvs(mesh, result);
-    find_bad_values(mesh, result.findings);
-    find_face_mistakes(faces, result.findings);
+    const MeshFaults faults = find_mesh_faults(mesh);
+    find_faults(faults, result.findings);
+    if (!faults.is_sound()) {
+        result.facts = {{"vertices", fmt::format("{}", mesh.positions.size())},
+                        {"faces", fmt::format("{}", mesh.face_sizes.size())}};
+        return result;
+    }
+    const MeshShape shape = survey_shape(mesh);
+    describe_shape(mesh, shape, result);
+    if (mesh.uv_indices.empty()) {
+        if (displacement)
+            add(result.findings, Severity::error, "E-NOUV",
+                "no uvs, which its map needs; unwrap the mesh, or export it with uvs (many exporters leave "
+                "them out unless told)");
+        else
+            add(result.findings, Severity::warning, "W-NOUV",
+                "no uvs: the mesh cannot be displaced by a map; export it with uvs");
+    } else {
+        const MeshUvs uvs = survey_uvs(mesh);
+        describe_uvs(uvs, displacement, result);
+        find_uv_mistakes(uvs, displacement, result.findings);
+    }
+    find_face_mistakes(shape, result.findings);
+    find_edge_mistakes(shape, result.findings);
     return result;
 }
 

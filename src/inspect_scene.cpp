@@ -1,13 +1,18 @@
 // What a scene is, what it costs as it is and what it would cost tessellated.
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "base/timer.h"
 #include "engine/engine.h"
 #include "engine/prepared_scene.h"
 #include "engine/tessellate.h"
+#include "film/film.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "validate_settings.h"
@@ -16,44 +21,129 @@ namespace relief {
 
 namespace {
 
-void describe_maps(const Scene& scene, Inspection& result) {
-    for (const Displacement& displacement : scene.displacements) {
-        for (const MapTile& tile : displacement.tiles) {
-            if (!tile.texture) continue;
-            const Inspection map = inspect_texture(*tile.texture);
-            const std::string name =
-                displacement.is_udim ? fmt::format("{}.{}", displacement.name, tile.udim) : displacement.name;
-            for (const Fact& fact : map.facts)
-                result.facts.push_back({fmt::format("map.{}.{}", name, fact.name), fact.value});
-            for (const Finding& finding : map.findings) {
-                // A height map is what this displacement asks for.
-                const bool is_meant = displacement.type == DisplacementType::height &&
-                                      (finding.code == "W-1CH" || finding.code == "W-GRAY");
-                if (!is_meant)
-                    result.findings.push_back({finding.severity, finding.code,
-                                               fmt::format("displacement '{}': {}", name, finding.text)});
-            }
-        }
+/// A displacement and a mesh that an object puts together.
+using Pair = std::pair<uint32_t, uint32_t>;
+
+std::set<Pair> list_displaced(const Scene& scene) {
+    std::set<Pair> pairs;
+    for (const Object& object : scene.objects)
+        if (object.displacement != kNoIndex) pairs.insert({object.displacement, object.mesh});
+    return pairs;
+}
+
+bool has_all_textures(const Displacement& map) {
+    return !map.tiles.empty() && std::all_of(map.tiles.begin(), map.tiles.end(), [](const MapTile& tile) {
+        return tile.texture && tile.texture->width > 0 && tile.texture->height > 0;
+    });
+}
+
+/// Maps, each with the first mesh that it is used on.
+void describe_maps(const Scene& scene, const std::set<Pair>& pairs, Inspection& result) {
+    for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
+        const Displacement& map = scene.displacements[index];
+        if (!has_all_textures(map)) continue;
+        const auto pair = pairs.lower_bound({index, 0});
+        const bool is_used = pair != pairs.end() && pair->first == index;
+        const Mesh* mesh = is_used ? &scene.meshes.at(pair->second) : nullptr;
+        const Inspection inspection = inspect_map(map, MapMeaning::declared, mesh);
+        for (const Fact& fact : inspection.facts)
+            result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value});
+        for (const Finding& finding : inspection.findings)
+            result.findings.push_back({finding.severity, finding.code,
+                                       fmt::format("displacement '{}': {}", map.name, finding.text)});
     }
 }
 
-/// Meshes by their objects: uvs and quads matter where a map is applied only.
-void describe_meshes(const Scene& scene, Inspection& result) {
+void add_mesh_findings(const Mesh& mesh, const Displacement* map, Inspection& result) {
+    for (const Finding& finding : inspect_mesh(mesh, map).findings) {
+        // Uvs and quads matter where a map is applied only.
+        if (finding.severity != Severity::error && !map) continue;
+        result.findings.push_back(
+            {finding.severity, finding.code, fmt::format("mesh '{}': {}", mesh.name, finding.text)});
+    }
+}
+
+void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection& result) {
     std::set<uint32_t> displaced;
-    for (const Object& object : scene.objects) {
-        if (object.displacement != kNoIndex) displaced.insert(object.mesh);
+    for (const auto& [map, mesh] : pairs) {
+        displaced.insert(mesh);
+        add_mesh_findings(scene.meshes.at(mesh), &scene.displacements.at(map), result);
     }
-    for (uint32_t index = 0; index < scene.meshes.size(); ++index) {
-        for (const Finding& finding : inspect_mesh(scene.meshes[index]).findings) {
-            if (finding.severity != Severity::error && displaced.count(index) == 0) continue;
-            result.findings.push_back({finding.severity, finding.code,
-                                       fmt::format("mesh '{}': {}", scene.meshes[index].name, finding.text)});
+    for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+        if (displaced.count(mesh) == 0) add_mesh_findings(scene.meshes[mesh], nullptr, result);
+}
+
+/// Times samples of a part of a picture.
+class TrialRender {
+  public:
+    TrialRender(const std::shared_ptr<const PreparedScene>& prepared, const RenderSettings& settings)
+        : settings_(settings) {
+        settings_.spp = 1;
+        engine_ = make_cpu_engine(prepared, settings_);
+        groups_ = std::max(1, (settings.height + kBands * kRows - 1) / (kBands * kRows));
+        while (std::gcd(stride_, groups_) != 1) ++stride_;
+    }
+
+    int group_count() const { return groups_; }
+    /// Seconds of one sample of each pixel in a group of bands of rows, spread over the picture; full width,
+    /// so that all threads have work. Groups [0, group_count) make up about the whole.
+    double time_group(int group) {
+        const Timer timer;
+        for (int band = 0; band < kBands; ++band) {
+            // Far from the group before, so that its trees do not serve this one more than others.
+            const int slot = band * groups_ + int((int64_t(group) * stride_) % groups_);
+            const int y0 = slot * kRows, y1 = std::min(settings_.height, y0 + kRows);
+            if (y0 >= y1) continue;
+            Film film(settings_.width, settings_.height, {0, y0, settings_.width, y1}, {});
+            engine_->render(film, nullptr);
         }
+        return timer.seconds();
     }
+
+  private:
+    static constexpr int kBands = 8, kRows = 4;
+    RenderSettings settings_;
+    std::unique_ptr<Engine> engine_;
+    int groups_ = 1;
+    int stride_ = 7; ///< has no factor in common with groups_
+};
+
+/// What a render would take: groups of rows are rendered for about a second, and the rest is taken to be like
+/// the last of them, whose trees are mostly made.
+std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
+                          const RenderSettings& settings) {
+    constexpr double kBudget_s = 1;
+    const Timer timer;
+    TrialRender trial(prepared, settings);
+    const double ready_s = prepare_s + timer.seconds();
+    double first_s = 0, last_s = 0;
+    int done = 0;
+    while (done < trial.group_count() && (done == 0 || first_s < kBudget_s)) {
+        last_s = trial.time_group(done++);
+        first_s += last_s;
+    }
+    first_s += last_s * (trial.group_count() - done);
+    const double next_s = trial.time_group(0) * trial.group_count();
+    return fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
+                       "{}x{} on the CPU; measured on {} of {} parts of the picture",
+                       ready_s, first_s, ready_s + first_s + next_s * (settings.spp - 1), settings.spp,
+                       settings.width, settings.height, done, trial.group_count());
+}
+
+uint64_t count_map_bytes(const Scene& scene) {
+    std::set<const Texture*> textures;
+    uint64_t bytes = 0;
+    for (const Displacement& map : scene.displacements)
+        for (const MapTile& tile : map.tiles)
+            if (tile.texture && textures.insert(tile.texture.get()).second)
+                bytes += tile.texture->byte_count();
+    return bytes;
 }
 
 void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
+    const Timer timer;
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
+    const double prepare_s = timer.seconds();
     uint64_t patches = 0, triangles = 0;
     int max_level = 0;
     for (const Instance& instance : prepared->instances) {
@@ -75,8 +165,10 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     add("finest_level", fmt::format("{}", max_level));
     add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
     add("structures", fmt::format("{} bytes", statistics.structures_bytes));
+    add("map_texels", fmt::format("{} bytes", count_map_bytes(scene)));
     add("tessellated",
         fmt::format("{} bytes at the levels of this view", estimate_tessellation(*prepared).peak_bytes));
+    add("time", estimate_time(prepared, prepare_s, settings));
 }
 
 } // namespace
@@ -99,9 +191,11 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
         {"lights", fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : "")}};
     for (const std::string& warning : scene.warnings)
         result.findings.push_back({Severity::warning, "W-READ", warning});
-    describe_meshes(scene, result);
-    describe_maps(scene, result);
     try {
+        validate_scene(scene);
+        const std::set<Pair> pairs = list_displaced(scene);
+        describe_meshes(scene, pairs, result);
+        describe_maps(scene, pairs, result);
         describe_cost(scene, settings, result);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::bad_input) throw;

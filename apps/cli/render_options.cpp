@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "map_options.h"
 #include "values.h"
 
 namespace relief::cli {
@@ -12,7 +13,7 @@ namespace relief::cli {
 namespace {
 
 constexpr int kMaxCacheMegabytes = 1 << 20;
-constexpr double kLargestFactor = 1e9;
+const char* const kMeshGroup = "With a mesh in place of a scene";
 
 template <class T> using Word = std::pair<std::string_view, T>;
 
@@ -84,31 +85,12 @@ void add_mesh_options(CLI::App& verb, RenderOptions& o) {
         add(verb, name, value, help, [&o, name, parse](const std::string& text) {
             o.mesh_only.push_back(name);
             parse(text);
-        })->group("With a mesh in place of a scene");
+        })->group(kMeshGroup);
     };
     mesh("--vdm", "MAP", "displacement map; may hold <UDIM>",
          [&o](const std::string& text) { o.mesh.displacement_map = text; });
-    mesh("--preset", "NAME", "what wrote the map: blender-brush, mudbox, ...",
-         [&o](const std::string& text) { o.mesh.preset = text; });
-    mesh("--space", "NAME", "tangent, object or world",
-         [&o](const std::string& text) { o.mesh.space = text; });
-    mesh("--axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...",
-         [&o](const std::string& text) { o.mesh.axes = text; });
-    mesh("--midlevel", "F", "value that means no displacement", [&o](const std::string& text) {
-        o.mesh.midlevel = float(parse_number("--midlevel", text, -kLargestFactor, kLargestFactor));
-    });
-    mesh("--vdm-scale", "F", "factor on the displacement", [&o](const std::string& text) {
-        o.mesh.scale = float(parse_number("--vdm-scale", text, -kLargestFactor, kLargestFactor));
-    });
     mesh("--env", "MAP", "environment picture", [&o](const std::string& text) { o.mesh.environment = text; });
-    verb.add_flag_callback(
-            "--flip-v",
-            [&o] {
-                o.mesh.flip_v = true;
-                o.mesh_only.push_back("--flip-v");
-            },
-            "row 0 of the map is v = 0")
-        ->group("With a mesh in place of a scene");
+    add_map_options(verb, o.mesh.map, {kMeshGroup, &o.mesh_only});
 }
 
 void add_level_options(CLI::App& verb, RenderOptions& o) {

@@ -1,4 +1,4 @@
-// scene, inspect and devices: what there is, and what it is.
+// scene and devices: what there is.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -14,12 +14,10 @@
 #include "exit_codes.h"
 #include "relief/devices.h"
 #include "relief/error.h"
-#include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/peer_scenes.h"
 #include "relief/render.h"
 #include "relief/samples.h"
-#include "values.h"
 
 namespace relief::cli {
 
@@ -29,23 +27,6 @@ struct SceneOptions {
     std::string name, folder;
     bool is_instanced = false;
 };
-
-struct InspectOptions {
-    std::string file;
-    bool is_json = false, is_strict = false;
-};
-
-std::string get_severity_name(Severity severity) {
-    switch (severity) {
-    case Severity::note:
-        return "note";
-    case Severity::warning:
-        return "warning";
-    case Severity::error:
-        break;
-    }
-    return "error";
-}
 
 std::string list_scenes() {
     return fmt::format("{}; for comparisons {}", fmt::join(sample_scene_names(), ", "),
@@ -70,52 +51,6 @@ int run_scene(const SceneOptions& options) {
     save_scene(make_named_scene(options), folder);
     fmt::print("wrote {}\n", (folder / "scene.json").string());
     return kExitDone;
-}
-
-Inspection inspect_file(const std::filesystem::path& file) {
-    if (is_mesh_file(file)) return inspect_mesh(load_mesh(file));
-    if (get_lower_extension(file) != ".json") return inspect_texture(read_texture(file));
-    const Scene scene = load_scene(file);
-    RenderSettings settings;
-    settings.width = scene.picture.width.value_or(settings.width);
-    settings.height = scene.picture.height.value_or(settings.height);
-    return inspect_scene(scene, settings);
-}
-
-void print_inspection(const Inspection& inspection) {
-    size_t width = 0;
-    for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
-    for (const Fact& fact : inspection.facts) fmt::print("{:<{}}  {}\n", fact.name, width, fact.value);
-    for (const Finding& finding : inspection.findings)
-        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code, finding.text);
-}
-
-void print_inspection_json(const Inspection& inspection, const std::string& file) {
-    nlohmann::ordered_json json = {{"file", file},
-                                   {"facts", nlohmann::ordered_json::object()},
-                                   {"findings", nlohmann::ordered_json::array()}};
-    for (const Fact& fact : inspection.facts) json["facts"][fact.name] = fact.value;
-    for (const Finding& finding : inspection.findings)
-        json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
-                                    {"code", finding.code},
-                                    {"text", finding.text}});
-    fmt::print("{}\n", json.dump(2));
-}
-
-int run_inspect(const InspectOptions& options) {
-    if (options.file.empty())
-        throw Error(ErrorKind::usage, {"no file given", "", "relief inspect SCENE.json, a mesh or a map"});
-    const Inspection inspection = inspect_file(options.file);
-    if (options.is_json)
-        print_inspection_json(inspection, options.file);
-    else
-        print_inspection(inspection);
-    const auto has = [&](Severity severity) {
-        return std::any_of(inspection.findings.begin(), inspection.findings.end(),
-                           [&](const Finding& finding) { return finding.severity == severity; });
-    };
-    if (has(Severity::error)) return int(ErrorKind::bad_input);
-    return options.is_strict && has(Severity::warning) ? kExitWarnings : kExitDone;
 }
 
 constexpr StructureKind kStructures[] = {StructureKind::bvh, StructureKind::lbvh, StructureKind::kdtree};
@@ -193,14 +128,6 @@ Command add_scene(CLI::App& verb) {
     verb.add_option("-o", options->folder, "folder to write; default: the name")->type_name("DIR");
     verb.add_flag("--instanced", options->is_instanced, "copies share their mesh");
     return [options] { return run_scene(*options); };
-}
-
-Command add_inspect(CLI::App& verb) {
-    const auto options = std::make_shared<InspectOptions>();
-    verb.add_option("file", options->file, "scene file, mesh or map")->type_name("SCENE|MESH|MAP");
-    verb.add_flag("--json", options->is_json, "print one JSON object");
-    verb.add_flag("--strict", options->is_strict, "exit 6 when there are warnings");
-    return [options] { return run_inspect(*options); };
 }
 
 Command add_devices(CLI::App& verb) {

@@ -43,6 +43,7 @@ struct Texture {
     std::vector<float> floats;    ///< 4 * width * height, or empty; integers are scaled to [0, 1]
     std::vector<uint16_t> halves; ///< 4 * width * height IEEE 754 binary16 bits, or empty
     std::string file;             ///< for messages
+    std::string colour_tag; ///< what in the file calls its values colours ("sRGB chunk"); empty: nothing
     /// Bytes of the texels held.
     size_t byte_count() const { return floats.size() * sizeof(float) + halves.size() * sizeof(uint16_t); }
 };

@@ -1,10 +1,12 @@
-// What a scene, a mesh or a map is, what it will cost, and what is wrong with it.
+// What a scene, a mesh or a map is, what it will cost, and what is wrong with it. docs/inspect.md lists the
+// codes of what can be found.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "relief/image.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 
@@ -40,8 +42,29 @@ struct TessellationCost {
 /// Cost at the levels of `settings`; nothing is tessellated. Throws Error (bad_input).
 TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings& settings);
 
+/// Counts, bytes, the time that a render of `settings` would take (measured on a few windows of the picture),
+/// and the mistakes of all meshes and maps.
 Inspection inspect_scene(const Scene& scene, const RenderSettings& settings);
-Inspection inspect_mesh(const Mesh& mesh);
-Inspection inspect_texture(const Texture& texture);
+
+/// Faces, edges, uvs. With the displacement that is meant for it also what of the two does not fit: tiles,
+/// density, range of uvs.
+Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement = nullptr);
+
+/// Whether the values of a Displacement beside its tiles are what somebody said, or only defaults.
+enum class MapMeaning { declared, unknown };
+
+/// What the texels of a map are, how they are probably meant and why, and which of the usual mistakes they
+/// show. With the mesh that the map is for, tangent and object space can be told apart, and lengths be
+/// compared with its size. Values that are not finite are found, not refused.
+Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh = nullptr);
+
+/// The same map with space, axes and midlevel as they are probably meant; what cannot be told stays as it is.
+Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
+
+/// Contact sheet of a scene, seen by its camera, four pictures of `settings.width` x `settings.height` each:
+/// the base (with the axes of its displacement as arrows, red, green and blue), displaced, displacement as
+/// colours (red, green, blue along t, b, n or x, y, z; grey is none), and folds: where the surface faces away
+/// from its base, in red. Values are for a tone-mapped file. Throws as render().
+Image make_check_picture(const Scene& scene, const RenderSettings& settings);
 
 } // namespace relief

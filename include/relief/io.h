@@ -18,13 +18,30 @@ namespace relief {
 /// Throws Error{bad_input} with file, line and column, object and hint; for its pictures as read_image.
 Scene load_scene(const std::filesystem::path& file);
 
-/// What the command line says of a mesh that comes without a scene file. Unset values come from the preset.
+/// What is said of a displacement map beside its file. Unset values come from the preset, then from the file;
+/// docs/formats.md lists the names.
+struct MapOptions {
+    std::string preset; ///< empty: none
+    std::optional<std::string> type, space, axes, encoding, wrap;
+    std::optional<Vec3f> midlevel, scale; ///< a channel each; of the values after the encoding
+    bool flip_v = false;
+    bool dilate = true; ///< see Displacement
+};
+
+/// The tiles of a map and what they mean. `file` may hold <UDIM>, <UVTILE> or <uvtile>. Values that are not
+/// finite are kept, for inspect_map; a render refuses them. What had to be assumed is added to `warnings`.
+/// Throws Error{bad_input}.
+Displacement load_map(const std::filesystem::path& file, const MapOptions& options,
+                      std::vector<std::string>& warnings);
+
+/// For the plain name of a file that is one tile of several that lie in its folder ("head.1001.exr"): the
+/// name with the token that takes them all ("head.<UDIM>.exr"). Else empty.
+std::string find_tile_pattern(const std::filesystem::path& file);
+
+/// What a mesh is rendered with that comes without a scene file.
 struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold <UDIM>
-    std::string preset;                     ///< empty: none
-    std::optional<std::string> space, axes;
-    std::optional<float> midlevel, scale;
-    bool flip_v = false;
+    MapOptions map;
     std::filesystem::path environment; ///< empty: a soft sky and a sun
 };
 
@@ -32,6 +49,13 @@ struct MeshSceneOptions {
 /// or wider picture) and light. The brightness of an environment given here is set so that the brightest
 /// white diffuse surface that the camera can see, whatever way it is turned, has radiance 1.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
+
+/// A mesh in memory, displaced by `map` unless that is null, with the same kind of camera and light.
+Scene make_mesh_scene(Mesh mesh, const Displacement* map);
+
+/// A map alone, on a plane two units wide that faces +z, with the same kind of camera and light. Throws
+/// Error{bad_input}.
+Scene make_map_scene(const Displacement& map);
 
 /// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).
 bool is_mesh_file(const std::filesystem::path& file);

@@ -1,11 +1,10 @@
 #include "io/asset_cache.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "io/tile_names.h"
 #include "math/half.h"
 #include "math/scalar.h"
 #include "relief/error.h"
@@ -17,28 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kUdimToken = "<UDIM>";
-
 bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
-
-/// Throws bad_input with pixel and tile for a NaN or an infinity in the first three channels.
-void check_finite(const Texture& texture, int udim) {
-    const size_t count = size_t(texture.width) * texture.height;
-    for (size_t i = 0; i < count; ++i) {
-        for (size_t c = 0; c < 3; ++c) {
-            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[4 * i + c])
-                                                       : !std::isfinite(texture.floats[4 * i + c]);
-            if (!is_bad) continue;
-            const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
-            const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
-            const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
-            throw Error(ErrorKind::bad_input,
-                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", c),
-                         fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
-                         "repair the pixel, for example by painting over it, and export again"});
-        }
-    }
-}
 
 void decode_colours(Texture& texture) {
     const bool is_integer =
@@ -76,38 +54,22 @@ float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel
     return texture.floats.empty() ? half_to_float(texture.halves[i]) : texture.floats[i];
 }
 
-bool has_udim_token(const std::string& file) { return file.find(kUdimToken) != std::string::npos; }
-
-std::vector<std::pair<int, fs::path>> find_udim_tiles(const fs::path& pattern) {
-    const std::string name = pattern.filename().string();
-    const size_t at = name.find(kUdimToken);
-    const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
-    std::vector<std::pair<int, fs::path>> tiles;
-    if (at != std::string::npos) {
-        const std::string prefix = name.substr(0, at), suffix = name.substr(at + kUdimToken.size());
-        std::error_code code;
-        for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-            const std::string entry = it->path().filename().string();
-            if (entry.size() != prefix.size() + 4 + suffix.size() || !entry.starts_with(prefix) ||
-                !entry.ends_with(suffix))
-                continue;
-            const std::string digits = entry.substr(prefix.size(), 4);
-            if (!std::all_of(digits.begin(), digits.end(),
-                             [](unsigned char c) { return std::isdigit(c) != 0; }))
-                continue;
-            if (const int udim = std::stoi(digits); udim >= 1001) tiles.emplace_back(udim, it->path());
+void check_finite(const Texture& texture, int udim) {
+    const size_t count = size_t(texture.width) * texture.height;
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t c = 0; c < 3; ++c) {
+            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[4 * i + c])
+                                                       : !std::isfinite(texture.floats[4 * i + c]);
+            if (!is_bad) continue;
+            const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
+            const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
+            const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", c),
+                         fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
+                         "repair the pixel, for example by painting over it, and export again"});
         }
     }
-    if (tiles.empty())
-        throw Error(ErrorKind::bad_input,
-                    {"no tile file found", pattern.string(),
-                     "<UDIM> stands for the four digits 1001, 1002, ... in a file name"});
-    if (tiles.size() > size_t(kMaxMapTiles))
-        throw Error(ErrorKind::bad_input,
-                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxMapTiles),
-                     pattern.string(), "split the mesh"});
-    std::sort(tiles.begin(), tiles.end());
-    return tiles;
 }
 
 fs::path AssetCache::resolve(const std::string& file) const {
@@ -132,16 +94,17 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
 
 std::vector<MapTile> AssetCache::load_displacement(const std::string& file) {
     std::vector<MapTile> tiles;
-    if (!has_udim_token(file)) {
+    if (!has_tile_token(file)) {
         tiles.push_back({1001, load(file, TextureUse::data)});
-        check_finite(*tiles.back().texture, 0);
+        if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
+            warnings_.push_back(
+                fmt::format("{}: is one tile of several, and the only one read; name them all "
+                            "as {}",
+                            file, pattern));
         return tiles;
     }
-    for (const auto& [udim, path] : find_udim_tiles(resolve(file))) {
-        const fs::path absolute = fs::absolute(path);
-        tiles.push_back({udim, load(absolute.string(), TextureUse::data)});
-        check_finite(*tiles.back().texture, udim);
-    }
+    for (const auto& [udim, path] : find_tiles(resolve(file)))
+        tiles.push_back({udim, load(fs::absolute(path).string(), TextureUse::data)});
     return tiles;
 }
 

@@ -22,8 +22,8 @@ class AssetCache {
 
     std::filesystem::path resolve(const std::string& file) const;
     std::shared_ptr<const Texture> load(const std::string& file, TextureUse use);
-    /// The tiles of a displacement map, checked to be finite: one for a plain file, all that exist for
-    /// <UDIM>.
+    /// The tiles of a displacement map as they are: one for a plain file, all that exist for a name with a
+    /// token (io/tile_names.h). A plain file that is one tile of several is warned of.
     std::vector<MapTile> load_displacement(const std::string& file);
 
     /// What was noticed while reading, in order.
@@ -35,11 +35,8 @@ class AssetCache {
     std::vector<std::string> warnings_;
 };
 
-/// True for a file name with the token <UDIM>.
-bool has_udim_token(const std::string& file);
-
-/// Files NAME.1001.EXT and so on for NAME.<UDIM>.EXT, by rising number. Throws bad_input when there is none.
-std::vector<std::pair<int, std::filesystem::path>> find_udim_tiles(const std::filesystem::path& pattern);
+/// Throws bad_input with pixel and tile (0: none) for a NaN or an infinity in the first three channels.
+void check_finite(const Texture& texture, int udim);
 
 /// Value of channel `channel` of texel (x, y).
 float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel);

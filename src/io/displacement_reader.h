@@ -1,45 +1,29 @@
-// What a displacement map means: presets, axis texts, defaults by kind of file, warnings.
+// From what was said of a displacement map to the map itself: presets, defaults by kind of file, warnings.
 #pragma once
 
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 
 #include "io/asset_cache.h"
+#include "io/displacement_conventions.h"
+#include "relief/io.h"
 #include "relief/scene.h"
 
 namespace relief {
 
-/// Axes as text and the letters they were written in.
-struct AxisText {
-    AxisMap axes;
-    bool is_tangent = true; ///< t, b, n; otherwise x, y, z
-};
-
-/// "t,-n,b" or "x,-z,y": the axis that each channel moves along. Throws bad_input with a hint.
-AxisText parse_axes(std::string_view text);
-std::string format_axes(const AxisMap& axes, DisplacementSpace space);
-
-/// Presets that a scene or a command line may name.
-std::span<const std::string_view> get_preset_names();
-
-DisplacementType parse_displacement_type(std::string_view text);
-DisplacementSpace parse_displacement_space(std::string_view text);
-WrapMode parse_wrap_mode(std::string_view text);
-std::string_view get_name(DisplacementType type);
-std::string_view get_name(DisplacementSpace space);
-std::string_view get_name(WrapMode wrap);
-
-/// What was said of a map. Unset values come from the preset, then from the file.
+/// A map of a scene file or of a command line.
 struct DisplacementRequest {
-    std::string name, file, preset;
-    std::optional<std::string> type, space, axes, wrap;
-    std::optional<Vec3f> midlevel, scale;
-    bool flip_v = false, dilate = true;
+    std::string name, file;
+    MapOptions options;
 };
 
-/// Reads the tiles and settles every value; what it had to assume goes to the warnings of `assets`.
+/// Settles every value without looking at a file: what depends on its samples is as for floats.
+Displacement make_displacement_values(const MapOptions& options);
+
+/// Reads the tiles and settles every value; what it had to assume goes to the warnings of `assets`. Values
+/// that are not finite are kept.
+Displacement read_displacement_map(const DisplacementRequest& request, AssetCache& assets);
+
+/// The same; throws bad_input with pixel and tile for a NaN or an infinity.
 Displacement make_displacement(const DisplacementRequest& request, AssetCache& assets);
 
 } // namespace relief

@@ -1,5 +1,5 @@
-// What OpenEXR believes of a header before it reads it: attribute sizes. A damaged one would make it take
-// gigabytes.
+// Attributes of an EXR header: their sizes, which OpenEXR believes before it reads them (a damaged one would
+// make it take gigabytes), and those that say something of colours.
 #pragma once
 
 #include <istream>
@@ -12,5 +12,8 @@ namespace relief {
 /// fit, or when the stream is no EXR (the reader will say so). `stream_bytes` is its whole length; the
 /// position moves.
 std::optional<std::string> find_oversized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
+
+/// What the header of an EXR stream says of colours: "attribute chromaticities"; empty: nothing, or no EXR.
+std::string find_exr_colour_tag(std::istream& stream);
 
 } // namespace relief

@@ -13,6 +13,7 @@
 #include "io/file_system.h"
 #include "io/picture_library.h"
 #include "io/png_header.h"
+#include "io/tiff_header.h"
 #include "relief/error.h"
 #include "relief/scene.h"
 #include "relief/suggest.h"
@@ -91,6 +92,17 @@ std::unique_ptr<PixelSource> open(std::unique_ptr<std::istream> stream, const st
 bool has_near_display(const PixelHeader& header) {
     return header.full_width > 0 && header.full_height > 0 && header.full_width <= 4 * header.width &&
            header.full_height <= 4 * header.height;
+}
+
+std::string find_colour_tag(std::istream& stream) {
+    for (std::string (*find)(std::istream&) :
+         {find_png_colour_tag, find_exr_colour_tag, find_tiff_colour_tag}) {
+        std::string tag = find(stream);
+        stream.clear();
+        stream.seekg(0);
+        if (!tag.empty()) return tag;
+    }
+    return {};
 }
 
 std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,6 +20,10 @@ std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std:
 
 /// read_texture for the bytes of a file; throws as it does.
 Texture parse_texture(std::string_view bytes, const std::string& name);
+
+/// What a file, by the chunks and attributes in it, says of its values being colours; empty: nothing. The
+/// libraries' own guesses by the kind of file do not count.
+std::string find_colour_tag(std::istream& stream);
 
 /// True where the display window is at most four times as wide and high as the pixels: textures are filled up
 /// to it.

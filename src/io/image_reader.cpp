@@ -1,5 +1,7 @@
 // read_texture and read_image: pixels as stored.
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "io/image_input.h"
 #include "relief/error.h"
@@ -74,11 +76,21 @@ template <class Read> auto with_memory_error(const std::string& name, const Read
 } // namespace
 
 Texture read_texture(const std::filesystem::path& file) {
-    return with_memory_error(file.string(), [&] { return read_pixels(*open_image(file), file.string()); });
+    return with_memory_error(file.string(), [&] {
+        Texture texture = read_pixels(*open_image(file), file.string());
+        std::ifstream stream(file, std::ios::binary);
+        texture.colour_tag = find_colour_tag(stream);
+        return texture;
+    });
 }
 
 Texture parse_texture(std::string_view bytes, const std::string& name) {
-    return with_memory_error(name, [&] { return read_pixels(*open_image_bytes(bytes, name), name); });
+    return with_memory_error(name, [&] {
+        Texture texture = read_pixels(*open_image_bytes(bytes, name), name);
+        std::istringstream stream{std::string(bytes)};
+        texture.colour_tag = find_colour_tag(stream);
+        return texture;
+    });
 }
 
 Image read_image(const std::filesystem::path& file) {

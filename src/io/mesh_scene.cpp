@@ -87,34 +87,29 @@ void add_map(Scene& scene, const MeshSceneOptions& options, AssetCache& assets) 
     DisplacementRequest request;
     request.name = options.displacement_map.stem().string();
     request.file = std::filesystem::absolute(options.displacement_map).string();
-    request.preset = options.preset;
-    request.space = options.space;
-    request.axes = options.axes;
-    if (options.midlevel) request.midlevel = Vec3f{*options.midlevel, *options.midlevel, *options.midlevel};
-    if (options.scale) request.scale = Vec3f{*options.scale, *options.scale, *options.scale};
-    request.flip_v = options.flip_v;
+    request.options = options.map;
     scene.displacements.push_back(make_displacement(request, assets));
     scene.objects.front().displacement = 0;
 }
 
 uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
     ContentHash hash;
-    const auto add_float = [&](const std::optional<float>& value) {
-        hash.add(value ? fmt::format("{}", *value) : std::string("-"));
-    };
-    hash.add(options.preset), hash.add(options.space.value_or("-")), hash.add(options.axes.value_or("-"));
-    add_float(options.midlevel), add_float(options.scale);
-    hash.add(options.flip_v ? "flip" : "-");
+    const MapOptions& map = options.map;
+    hash.add(map.preset);
+    for (const std::optional<std::string>& text : {map.type, map.space, map.axes, map.encoding, map.wrap})
+        hash.add(text.value_or("-"));
+    for (const std::optional<Vec3f>& value : {map.midlevel, map.scale})
+        hash.add(value ? fmt::format("{} {} {}", value->x, value->y, value->z) : std::string("-"));
+    hash.add(map.flip_v ? "flip" : "-");
     add_scene_content(hash, scene);
     return hash.value();
 }
 
-} // namespace
-
-Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
+/// One object of clay; not framed and not lit yet.
+Scene make_clay_scene(Mesh mesh) {
     Scene scene;
-    scene.source = mesh.string();
-    scene.meshes.push_back(load_mesh(mesh));
+    scene.source = mesh.source;
+    scene.meshes.push_back(std::move(mesh));
     Material clay;
     clay.name = "clay";
     clay.base_color = {0.75f, 0.55f, 0.45f};
@@ -124,13 +119,34 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     object.name = scene.meshes.front().name;
     object.material = 0;
     scene.objects.push_back(object);
+    return scene;
+}
 
-    AssetCache assets("");
-    if (!options.displacement_map.empty()) add_map(scene, options, assets);
+/// Sets the camera; returns the way from the object to it.
+Vec3f frame_scene(Scene& scene) {
     validate_scene(scene); // framing follows the indices of the mesh and the uvs into the map
     scene.camera = frame_object(scene.meshes.front(),
                                 scene.displacements.empty() ? nullptr : &scene.displacements.front());
-    const Vec3f view = normalize(scene.camera.from - scene.camera.to);
+    return normalize(scene.camera.from - scene.camera.to);
+}
+
+Mesh make_map_plane() {
+    Mesh plane;
+    plane.name = "plane";
+    plane.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    plane.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    plane.face_sizes = {4};
+    plane.position_indices = plane.uv_indices = {0, 1, 2, 3};
+    return plane;
+}
+
+} // namespace
+
+Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
+    Scene scene = make_clay_scene(load_mesh(mesh));
+    AssetCache assets("");
+    if (!options.displacement_map.empty()) add_map(scene, options, assets);
+    const Vec3f view = frame_scene(scene);
     if (options.environment.empty()) {
         add_default_light(scene, view);
     } else {
@@ -141,5 +157,18 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     scene.hash = compute_hash(scene, options);
     return scene;
 }
+
+Scene make_mesh_scene(Mesh mesh, const Displacement* map) {
+    Scene scene = make_clay_scene(std::move(mesh));
+    if (map) {
+        scene.displacements.push_back(*map);
+        scene.objects.front().displacement = 0;
+    }
+    add_default_light(scene, frame_scene(scene));
+    validate_scene(scene);
+    return scene;
+}
+
+Scene make_map_scene(const Displacement& map) { return make_mesh_scene(make_map_plane(), &map); }
 
 } // namespace relief

@@ -1,14 +1,19 @@
-// What libpng believes of a file before it reads it: chunk lengths. A damaged one would make it take
-// gigabytes.
+// Chunks of a PNG stream: their lengths, which libpng believes before it reads them (a damaged one would make
+// it take gigabytes), and those that say something of colours.
 #pragma once
 
 #include <cstdint>
 #include <istream>
+#include <string>
 
 namespace relief {
 
 /// True where a chunk of a PNG stream claims to reach beyond the stream; false for other kinds of files.
 /// `stream_bytes` is its whole length; the position moves.
 bool has_oversized_png_chunk(std::istream& stream, uint64_t stream_bytes);
+
+/// The chunk of a PNG stream that calls its values colours: "sRGB chunk", or iCCP, cHRM, or gAMA of another
+/// gamma than 1; empty: none, or no PNG. The position moves.
+std::string find_png_colour_tag(std::istream& stream);
 
 } // namespace relief

@@ -20,7 +20,7 @@ inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rot
 inline constexpr auto kMaterial = make_keys("base_color", "base_color_texture", "roughness",
                                             "roughness_texture", "metallic", "ior", "emission");
 inline constexpr auto kDisplacement =
-    make_keys("type", "file", "preset", "space", "axes", "midlevel", "scale", "flip_v", "wrap", "dilate");
+    make_keys("type", "file", "preset", "space", "axes", "encoding", "midlevel", "scale", "flip_v", "wrap", "dilate");
 inline constexpr auto kMesh = make_keys("file", "uv_set");
 inline constexpr auto kObject = make_keys("name", "mesh", "displacement", "material", "transform");
 inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");

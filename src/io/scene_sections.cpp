@@ -158,19 +158,21 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     node.check_keys(scene_keys::kDisplacement);
     DisplacementRequest request;
     request.name = name;
+    MapOptions& options = request.options;
     const auto as_text = [](const JsonNode& n) { return n.as_string(); };
     const auto as_factors = [](const JsonNode& n) { return n.as_vec3_or_number(); };
     request.file = node.get("file").as_string();
-    read_optional(node, "preset", request.preset, as_text);
-    read_optional(node, "type", request.type, as_text);
-    read_optional(node, "space", request.space, as_text);
-    read_optional(node, "axes", request.axes, as_text);
-    read_optional(node, "wrap", request.wrap, as_text);
-    read_optional(node, "midlevel", request.midlevel, as_factors);
-    read_optional(node, "scale", request.scale, as_factors);
+    read_optional(node, "preset", options.preset, as_text);
+    read_optional(node, "type", options.type, as_text);
+    read_optional(node, "space", options.space, as_text);
+    read_optional(node, "axes", options.axes, as_text);
+    read_optional(node, "encoding", options.encoding, as_text);
+    read_optional(node, "wrap", options.wrap, as_text);
+    read_optional(node, "midlevel", options.midlevel, as_factors);
+    read_optional(node, "scale", options.scale, as_factors);
     const auto as_bool = [](const JsonNode& n) { return n.as_bool(); };
-    read_optional(node, "flip_v", request.flip_v, as_bool);
-    read_optional(node, "dilate", request.dilate, as_bool);
+    read_optional(node, "flip_v", options.flip_v, as_bool);
+    read_optional(node, "dilate", options.dilate, as_bool);
     return node.with_place([&] { return make_displacement(request, assets); });
 }
 

@@ -1,103 +1,104 @@
-// What inspect finds in maps, meshes and scenes.
-#include <limits>
-
+// The inspect verb: files in, facts and findings out, exit codes.
 #include <nlohmann/json.hpp>
 
 #include "command.h"
-#include "relief/inspect.h"
+#include "relief/io.h"
 
 namespace relief::cli {
 namespace {
 
-bool has_code(const Inspection& inspection, const std::string& code) {
-    for (const Finding& finding : inspection.findings) {
-        if (finding.code == code) return true;
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+class Inspect : public CommandTest {
+  protected:
+    /// A copy of the bump under another name, changed.
+    template <class Change> void write_bump(const std::string& name, const Change& change) {
+        Image image = read_image(folder_ / "bump.exr");
+        change(image);
+        write_image(image, folder_ / name);
     }
-    return false;
-}
-
-/// 8 x 8 texels of a bump in the normal channel and a constant elsewhere.
-Texture make_texture(SampleType type, float base) {
-    Texture texture;
-    texture.width = texture.height = 8;
-    texture.channel_count = 3;
-    texture.source_type = type;
-    for (uint32_t y = 0; y < 8; ++y) {
-        for (uint32_t x = 0; x < 8; ++x) {
-            const bool is_inside = x > 1 && x < 6 && y > 1 && y < 6;
-            texture.floats.insert(texture.floats.end(), {base, base, is_inside ? base + 0.25f : base, 1.0f});
-        }
-    }
-    return texture;
-}
-
-TEST(InspectTexture, a_clean_float_map_has_no_findings_and_a_normal_channel) {
-    const Inspection inspection = inspect_texture(make_texture(SampleType::float32, 0));
-    EXPECT_TRUE(inspection.findings.empty());
-    EXPECT_EQ(inspection.facts.back().name, "normal_channel");
-    EXPECT_EQ(inspection.facts.back().value.substr(0, 1), "B");
-}
-
-TEST(InspectTexture, integer_maps_are_warned_of) {
-    EXPECT_TRUE(has_code(inspect_texture(make_texture(SampleType::uint8, 0.5f)), "W-8BIT"));
-    EXPECT_TRUE(has_code(inspect_texture(make_texture(SampleType::uint16, 0.5f)), "W-INT16"));
-    EXPECT_FALSE(has_code(inspect_texture(make_texture(SampleType::uint16, 0.5f)), "W-BORDER"));
-}
-
-TEST(InspectTexture, a_background_away_from_zero_is_named) {
-    EXPECT_TRUE(has_code(inspect_texture(make_texture(SampleType::float32, 0.1f)), "W-BORDER"));
-}
-
-TEST(InspectTexture, a_bad_texel_is_an_error_with_its_place) {
-    Texture texture = make_texture(SampleType::float32, 0);
-    texture.floats[4 * (3 * 8 + 5) + 1] = std::numeric_limits<float>::quiet_NaN();
-    const Inspection inspection = inspect_texture(texture);
-    ASSERT_EQ(inspection.findings.size(), 1u);
-    EXPECT_EQ(inspection.findings[0].severity, Severity::error);
-    EXPECT_NE(inspection.findings[0].text.find("column 5, row 3"), std::string::npos);
-}
-
-TEST(InspectTexture, gray_and_single_channel_maps_are_height_maps) {
-    Texture texture = make_texture(SampleType::float32, 0);
-    for (size_t i = 0; i < texture.floats.size(); i += 4)
-        texture.floats[i] = texture.floats[i + 1] = texture.floats[i + 2];
-    EXPECT_TRUE(has_code(inspect_texture(texture), "W-GRAY"));
-    texture.channel_count = 1;
-    EXPECT_TRUE(has_code(inspect_texture(texture), "W-1CH"));
-}
-
-TEST(InspectTexture, a_normal_map_is_recognised) {
-    Texture texture = make_texture(SampleType::uint8, 0.5f);
-    for (size_t i = 0; i < texture.floats.size(); i += 4) texture.floats[i + 2] = 1;
-    EXPECT_TRUE(has_code(inspect_texture(texture), "W-NORMALMAP"));
-}
-
-TEST(InspectMesh, missing_uvs_and_bad_indices_are_found) {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.face_sizes = {3};
-    mesh.position_indices = {0, 1, 2};
-    EXPECT_TRUE(has_code(inspect_mesh(mesh), "W-NOUV"));
-    EXPECT_TRUE(has_code(inspect_mesh(mesh), "W-TRI"));
-    EXPECT_FALSE(has_code(inspect_mesh(mesh), "E-INDEX"));
-    mesh.position_indices[2] = 3;
-    EXPECT_TRUE(has_code(inspect_mesh(mesh), "E-INDEX"));
-}
-
-class Inspect : public CommandTest {};
+};
 
 TEST_F(Inspect, exit_codes_follow_the_findings) {
     EXPECT_EQ(run({"inspect", "bump.exr", "--strict"}).exit_code, 0);
-    EXPECT_EQ(run({"inspect", "plane.obj"}).exit_code, 0);
+    EXPECT_EQ(run({"inspect", "plane.obj", "--strict"}).exit_code, 0);
     write("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     const CommandResult bare = run({"inspect", "bare.obj"});
     EXPECT_EQ(bare.exit_code, 0);
-    EXPECT_NE(bare.output.find("W-NOUV"), std::string::npos);
+    EXPECT_TRUE(contains(bare.output, "warning: W-NOUV: "));
     EXPECT_EQ(run({"inspect", "bare.obj", "--strict"}).exit_code, 6);
+    const CommandResult both = run({"inspect", "bump.exr", "--mesh", "bare.obj"});
+    EXPECT_EQ(both.exit_code, 3);
+    EXPECT_TRUE(contains(both.output, "error: E-NOUV: mesh: no uvs")) << both.output;
+}
+
+TEST_F(Inspect, a_map_is_read_as_the_options_say) {
+    write_bump("half.exr", [](Image& image) {
+        for (float& value : image.pixels) value = 0.5f + 0.5f * value;
+    });
+    const CommandResult plain = run({"inspect", "half.exr"});
+    EXPECT_EQ(plain.exit_code, 3);
+    EXPECT_TRUE(contains(plain.output, "E-NONEG")) << plain.output;
+    EXPECT_EQ(run({"inspect", "half.exr", "--encoding", "signed", "--strict"}).exit_code, 0);
+    EXPECT_EQ(run({"inspect", "half.exr", "--midlevel", "0.5,0.5,0.5", "--strict"}).exit_code, 0);
+    EXPECT_EQ(run({"inspect", "half.exr", "--midlevel", "0.5,0.5"}).exit_code, 2);
+}
+
+TEST_F(Inspect, a_map_that_no_render_takes_is_inspected) {
+    write_bump("nan.exr", [](Image& image) { image.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN(); });
+    const CommandResult result = run({"inspect", "nan.exr"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_TRUE(
+        contains(result.output, "error: E-NAN: NaN or infinity in 1 texel(s), the first at column 3, row 2"))
+        << result.output << result.errors;
+    EXPECT_TRUE(contains(run({"inspect", "nan.exr", "-o", "check.png"}).errors, "no check picture"));
+    EXPECT_FALSE(exists("check.png"));
+}
+
+TEST_F(Inspect, tiles_are_matched_with_the_mesh) {
+    for (const char* name : {"t.1001.exr", "t.1003.exr"}) write_bump(name, [](Image&) {});
+    write("tiles.obj",
+          "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+          "vt 0 0\nvt 1 0\nvt 2 0\nvt 0 1\nvt 1 1\nvt 2 1\nf 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\n");
+    const CommandResult result = run({"inspect", "t.<UDIM>.exr", "--mesh", "tiles.obj"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_TRUE(contains(result.output, "E-TILE: mesh: no file for tile(s) 1002")) << result.output;
+    const CommandResult one = run({"inspect", "t.1001.exr"});
+    EXPECT_TRUE(contains(one.output, "W-TILE")) << one.output;
+    EXPECT_TRUE(contains(one.output, "t.<UDIM>.exr")) << one.output;
+}
+
+TEST_F(Inspect, a_check_picture_shows_base_displaced_axes_and_folds) {
+    ASSERT_EQ(run({"inspect", "bump.exr", "-o", "check.exr"}).exit_code, 0);
+    const Image sheet = read_image(folder_ / "check.exr");
+    ASSERT_EQ(sheet.width, 2 * 640);
+    ASSERT_EQ(sheet.height, 2 * 480);
+    const auto differ = [&](int x0, int y0, int x1, int y1) {
+        int count = 0;
+        for (int y = 0; y < 480; ++y)
+            for (int x = 0; x < 640; ++x)
+                count += std::fabs(sheet.at(x0 + x, y0 + y, 0) - sheet.at(x1 + x, y1 + y, 0)) > 0.05f;
+        return count;
+    };
+    EXPECT_GT(differ(0, 0, 640, 0), 2000) << "the bump is in the second picture only";
+    EXPECT_GT(differ(0, 480, 640, 480), 2000) << "colours are in the third only";
+    EXPECT_EQ(run({"inspect", "plane.obj", "-o", "plane.png"}).exit_code, 0);
+    EXPECT_TRUE(exists("plane.png"));
+    EXPECT_EQ(run({"inspect", "bump.exr", "-o", "check.txt"}).exit_code, 2);
+}
+
+TEST_F(Inspect, options_of_maps_are_refused_elsewhere) {
+    const CommandResult result = run({"inspect", "plane.obj", "--axes", "t,b,n"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(contains(result.errors, "--axes goes with a map")) << result.errors;
+    EXPECT_EQ(run({"inspect", "plane.obj", "--mesh", "plane.obj"}).exit_code, 2);
 }
 
 TEST_F(Inspect, a_scene_tells_its_counts_and_costs) {
     write("scene.json", R"({"version": 1, "camera": {"from": [0, 0, 5], "to": [0, 0, 0]},
+        "render": {"width": 64, "height": 48, "spp": 2},
         "displacements": {"bump": {"type": "vector", "file": "bump.exr", "preset": "blender-brush"}},
         "meshes": {"plane": {"file": "plane.obj"}},
         "objects": [{"name": "a", "mesh": "plane", "displacement": "bump"}, {"name": "b", "mesh": "plane"}]})");
@@ -107,8 +108,25 @@ TEST_F(Inspect, a_scene_tells_its_counts_and_costs) {
     EXPECT_EQ(facts["objects"], "2, 1 displaced");
     EXPECT_EQ(facts["patches"], "1");
     EXPECT_EQ(facts["triangles"], "2");
-    for (const char* key : {"geometry", "structures", "tessellated", "finest_level", "map.bump.size"})
+    EXPECT_TRUE(contains(facts["time"], "for all 2 at 64x48"));
+    for (const char* key : {"geometry", "structures", "map_texels", "tessellated", "finest_level",
+                            "map.bump.size", "map.bump.looks_like"})
         EXPECT_TRUE(facts.contains(key)) << key;
+}
+
+TEST_F(Inspect, mistakes_of_a_scene_name_the_mesh_and_the_map) {
+    write_bump("gray.exr", [](Image& image) {
+        for (size_t i = 0; i < image.pixels.size(); i += 3)
+            image.pixels[i] = image.pixels[i + 1] = image.pixels[i + 2];
+    });
+    write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    write("scene.json", R"({"render": {"width": 32, "height": 24, "spp": 1},
+        "displacements": {"m": {"type": "vector", "file": "gray.exr"}}, "meshes": {"t": {"file": "tri.obj"}},
+        "objects": [{"name": "a", "mesh": "t", "displacement": "m"}]})");
+    const CommandResult result = run({"inspect", "scene.json", "--strict"});
+    EXPECT_EQ(result.exit_code, 6);
+    EXPECT_TRUE(contains(result.output, "warning: W-GRAY: displacement 'm': ")) << result.output;
+    EXPECT_TRUE(contains(result.output, "warning: W-TRI: mesh 't': ")) << result.output;
 }
 
 } // namespace

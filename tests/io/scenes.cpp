@@ -245,9 +245,9 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
 TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {
     MeshSceneOptions options;
     options.displacement_map = folder_ / "map.exr";
-    options.preset = "genvdm";
+    options.map.preset = "genvdm";
     const Scene flat = load_mesh_scene(folder_ / "plane.obj", {});
-    options.scale = 3.0f;
+    options.map.scale = Vec3f{3, 3, 3};
     const Scene scene = load_mesh_scene(folder_ / "plane.obj", options);
     EXPECT_GT(scene.camera.from.z, 2.0f);
     EXPECT_GT(scene.camera.focus_distance, flat.camera.focus_distance + 0.5f);
@@ -261,7 +261,7 @@ TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {
     EXPECT_LT(raised, 0.91f);
     EXPECT_EQ(scene.lights.size(), 1u);
     EXPECT_NE(scene.hash, flat.hash);
-    options.axes = "t,q,b";
+    options.map.axes = "t,q,b";
     EXPECT_HAS(message_of([&] { load_mesh_scene(folder_ / "plane.obj", options); }), "is no order of axes");
 }
 
@@ -281,7 +281,7 @@ TEST_F(SceneFiles, a_mesh_alone_is_checked_before_it_is_framed) {
 TEST_F(SceneFiles, coding_errors_of_a_map_do_not_move_the_camera) {
     MeshSceneOptions options;
     options.displacement_map = folder_ / "map.exr";
-    options.preset = "genvdm";
+    options.map.preset = "genvdm";
     const Camera exact = load_mesh_scene(folder_ / "plane.obj", options).camera;
     write_pixels<float>("map.exr", 2, 2, 3, OIIO::TypeDesc::FLOAT,
                         {.002f, 0, .998f, 0, -.002f, .002f, 0, 0, 0, -.002f, .502f, 0});

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "io/displacement_reader.h"
+#include "io/displacement_conventions.h"
 #include "io/scene_keys.h"
 #include "relief/scene.h"
 
@@ -76,6 +76,7 @@ TEST(Schema, names_only_what_the_reader_takes) {
     for (const std::string name : map.at("type").at("enum")) EXPECT_NO_THROW(parse_displacement_type(name));
     for (const std::string name : map.at("space").at("enum")) EXPECT_NO_THROW(parse_displacement_space(name));
     for (const std::string name : map.at("wrap").at("enum")) EXPECT_NO_THROW(parse_wrap_mode(name));
+    for (const std::string name : map.at("encoding").at("enum")) EXPECT_NO_THROW(parse_encoding(name));
     const std::vector<std::string> presets = map.at("preset").at("enum");
     const std::span<const std::string_view> known = get_preset_names();
     EXPECT_EQ(Names(presets.begin(), presets.end()), make_names(known));

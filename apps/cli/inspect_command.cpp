@@ -1,0 +1,197 @@
+// inspect: what a scene, a mesh or a map is, what it costs, what is wrong with it.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "exit_codes.h"
+#include "map_options.h"
+#include "relief/error.h"
+#include "relief/inspect.h"
+#include "relief/io.h"
+#include "relief/render.h"
+#include "values.h"
+
+namespace relief::cli {
+
+namespace {
+
+struct InspectOptions {
+    std::string file, mesh, picture;
+    MapOptions map;
+    std::vector<std::string> map_only; ///< options given that only a map takes
+    bool is_json = false, is_strict = false;
+};
+
+enum class FileKind { map, mesh, scene };
+
+FileKind get_kind(const std::filesystem::path& file) {
+    if (is_mesh_file(file)) return FileKind::mesh;
+    return get_lower_extension(file) == ".json" ? FileKind::scene : FileKind::map;
+}
+
+std::string get_severity_name(Severity severity) {
+    switch (severity) {
+    case Severity::note:
+        return "note";
+    case Severity::warning:
+        return "warning";
+    case Severity::error:
+        break;
+    }
+    return "error";
+}
+
+/// Facts and findings of a mesh after those of its map.
+void append(Inspection mesh, Inspection& map) {
+    for (Fact& fact : mesh.facts) map.facts.push_back({"mesh." + fact.name, std::move(fact.value)});
+    for (Finding& finding : mesh.findings) {
+        finding.text = "mesh: " + finding.text;
+        map.findings.push_back(std::move(finding));
+    }
+}
+
+/// A quarter of the check picture.
+RenderSettings make_check_settings() {
+    RenderSettings settings;
+    settings.width = 640, settings.height = 480;
+    settings.spp = 8, settings.bounces = 1;
+    return settings;
+}
+
+void write_check_picture(const Scene& scene, const RenderSettings& settings, const std::string& file) {
+    if (!file.empty()) write_image(make_check_picture(scene, settings), file);
+}
+
+Inspection inspect_map_file(const InspectOptions& options) {
+    std::vector<std::string> warnings;
+    const Displacement map = load_map(options.file, options.map, warnings);
+    const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
+    std::optional<Mesh> mesh;
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
+    const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
+    const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
+    Inspection inspection = inspect_map(map, meaning, mesh_or_null);
+    if (mesh) append(inspect_mesh(*mesh, &meant), inspection);
+    if (const std::string pattern = find_tile_pattern(options.file); !pattern.empty())
+        inspection.findings.push_back(
+            {Severity::warning, "W-TILE",
+             fmt::format("one tile of several, and the only one read; name them all as {}", pattern)});
+    if (options.picture.empty()) return inspection;
+    const auto stands_in_the_way = [](const Finding& finding) {
+        return finding.severity == Severity::error && finding.code != "E-TILE" && finding.code != "E-NONEG";
+    };
+    const auto found =
+        std::find_if(inspection.findings.begin(), inspection.findings.end(), stands_in_the_way);
+    if (found != inspection.findings.end())
+        throw Error(ErrorKind::bad_input, {found->text, options.file, "no check picture can be made"});
+    const Scene scene = mesh ? make_mesh_scene(std::move(*mesh), &meant) : make_map_scene(meant);
+    write_check_picture(scene, make_check_settings(), options.picture);
+    return inspection;
+}
+
+Inspection inspect_mesh_file(const InspectOptions& options) {
+    Mesh mesh = load_mesh(options.file);
+    Inspection inspection = inspect_mesh(mesh);
+    if (!options.picture.empty())
+        write_check_picture(make_mesh_scene(std::move(mesh), nullptr), make_check_settings(),
+                            options.picture);
+    return inspection;
+}
+
+Inspection inspect_scene_file(const InspectOptions& options) {
+    const Scene scene = load_scene(options.file);
+    RenderSettings settings;
+    settings.width = scene.picture.width.value_or(settings.width);
+    settings.height = scene.picture.height.value_or(settings.height);
+    settings.spp = scene.picture.spp.value_or(settings.spp);
+    settings.bounces = scene.picture.bounces.value_or(settings.bounces);
+    Inspection inspection = inspect_scene(scene, settings);
+    if (!options.picture.empty()) {
+        RenderSettings check = make_check_settings();
+        check.width = std::max(1, int(int64_t(check.height) * settings.width / settings.height));
+        write_check_picture(scene, check, options.picture);
+    }
+    return inspection;
+}
+
+Inspection inspect_file(const InspectOptions& options) {
+    switch (get_kind(options.file)) {
+    case FileKind::map:
+        return inspect_map_file(options);
+    case FileKind::mesh:
+        return inspect_mesh_file(options);
+    case FileKind::scene:
+        break;
+    }
+    return inspect_scene_file(options);
+}
+
+void print_inspection(const Inspection& inspection) {
+    size_t width = 0;
+    for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
+    for (const Fact& fact : inspection.facts) fmt::print("{:<{}}  {}\n", fact.name, width, fact.value);
+    for (const Finding& finding : inspection.findings)
+        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code, finding.text);
+}
+
+void print_inspection_json(const Inspection& inspection, const std::string& file) {
+    nlohmann::ordered_json json = {{"file", file},
+                                   {"facts", nlohmann::ordered_json::object()},
+                                   {"findings", nlohmann::ordered_json::array()}};
+    for (const Fact& fact : inspection.facts) json["facts"][fact.name] = fact.value;
+    for (const Finding& finding : inspection.findings)
+        json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
+                                    {"code", finding.code},
+                                    {"text", finding.text}});
+    fmt::print("{}\n", json.dump(2));
+}
+
+void check_options(const InspectOptions& options) {
+    if (options.file.empty())
+        throw Error(ErrorKind::usage, {"no file given", "", "relief inspect SCENE.json, a mesh or a map"});
+    if (get_kind(options.file) != FileKind::map && (!options.map_only.empty() || !options.mesh.empty()))
+        throw Error(
+            ErrorKind::usage,
+            {fmt::format("{} goes with a map", options.mesh.empty() ? options.map_only.front() : "--mesh"),
+             options.file, "relief inspect MAP --mesh MESH, or a scene file that says it all"});
+    if (!options.picture.empty()) check_writable(options.picture);
+}
+
+int run_inspect(const InspectOptions& options) {
+    check_options(options);
+    const Inspection inspection = inspect_file(options);
+    if (options.is_json)
+        print_inspection_json(inspection, options.file);
+    else
+        print_inspection(inspection);
+    const auto has = [&](Severity severity) {
+        return std::any_of(inspection.findings.begin(), inspection.findings.end(),
+                           [&](const Finding& finding) { return finding.severity == severity; });
+    };
+    if (has(Severity::error)) return int(ErrorKind::bad_input);
+    return options.is_strict && has(Severity::warning) ? kExitWarnings : kExitDone;
+}
+
+} // namespace
+
+Command add_inspect(CLI::App& verb) {
+    const auto options = std::make_shared<InspectOptions>();
+    verb.add_option("file", options->file, "scene file, mesh or map")->type_name("SCENE|MESH|MAP");
+    verb.add_option("--mesh", options->mesh, "the mesh that a map is for")->type_name("MESH");
+    verb.add_option("-o", options->picture, "check picture: base, displaced, displacement as colours, folds")
+        ->type_name("FILE");
+    verb.add_flag("--json", options->is_json, "print a JSON object");
+    verb.add_flag("--strict", options->is_strict, "exit 6 when there are warnings");
+    add_map_options(verb, options->map, {"What a map means, where it is known", &options->map_only});
+    return [options] { return run_inspect(*options); };
+}
+
+} // namespace relief::cli

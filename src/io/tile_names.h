@@ -1,0 +1,19 @@
+// Tiles of a map by their file names: 1001 + u + 10 v (Mari), u1_v1 (Mudbox), u0_v0 (ZBrush).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace relief {
+
+/// True for a file name with a token that stands for a tile: <UDIM> for 1001 ..., <UVTILE> for u1_v1 ...,
+/// <uvtile> for u0_v0 ...
+bool has_tile_token(const std::string& file);
+
+/// The files that a name with a token stands for, numbered as UDIM does (1001 + u + 10 v), by rising number.
+/// Throws bad_input when there is none, more than a map may have, or two of one number.
+std::vector<std::pair<int, std::filesystem::path>> find_tiles(const std::filesystem::path& pattern);
+
+} // namespace relief

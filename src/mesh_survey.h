@@ -1,0 +1,51 @@
+// What the faces, edges and uvs of a mesh are, for inspection.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Faces by corners, and edges by the faces that meet there; points at equal positions count as one.
+struct MeshShape {
+    size_t triangles = 0, quads = 0, others = 0;
+    size_t open_edges = 0;              ///< of one face
+    size_t crowded_edges = 0;           ///< of more than two faces
+    size_t turned_edges = 0;            ///< whose two faces run it the same way: one of them is inside out
+    std::optional<size_t> crowded_face; ///< one that has a crowded edge
+    std::optional<size_t> turned_face;  ///< one of a pair that runs an edge the same way
+    std::vector<size_t> valences;       ///< points by the number of their edges
+    size_t faces() const { return triangles + quads + others; }
+};
+
+struct MeshUvs {
+    Vec2f low, high;
+    size_t islands = 0;
+    size_t mirrored_islands = 0, mirrored_faces = 0; ///< of negative area
+    size_t flat_faces = 0;                           ///< of no area
+    std::set<int> tiles;                             ///< UDIM numbers of the middles of all faces
+    size_t outside_faces = 0;  ///< whose middle has no UDIM number: u < 0, u >= 10 or v < 0
+    size_t crossing_faces = 0; ///< that reach into more than one unit square
+    double overlap = 0;        ///< area that several faces share, over the area that any covers; [0, 1]
+};
+
+/// How often each index of a mesh points nowhere, and the first vertex that is not finite.
+struct MeshFaults {
+    size_t bad_indices = 0;
+    std::optional<size_t> bad_position, bad_uv;
+    bool has_bad_counts = false; ///< corners and indices differ in number, or a face has fewer than three
+    bool is_sound() const { return bad_indices == 0 && !bad_position && !bad_uv && !has_bad_counts; }
+};
+
+MeshFaults find_mesh_faults(const Mesh& mesh);
+
+/// Both for meshes without faults only; the second with uvs.
+MeshShape survey_shape(const Mesh& mesh);
+MeshUvs survey_uvs(const Mesh& mesh);
+
+} // namespace relief

@@ -1,0 +1,175 @@
+// What a map looks like: channels, signs and space.
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "inspect/findings.h"
+#include "math/affine.h"
+#include "support/sculpt.h"
+#include "surface/surface.h"
+
+namespace relief::test {
+namespace {
+
+constexpr uint32_t kSize = 64;
+
+AxisMap draw_axes(std::mt19937& random) {
+    AxisMap axes;
+    for (size_t c = 2; c > 0; --c) std::swap(axes.axis[c], axes.axis[random() % (c + 1)]);
+    for (int8_t& sign : axes.sign) sign = random() % 2 == 0 ? 1 : -1;
+    return axes;
+}
+
+TEST(MapConvention, twelve_signed_permutations_are_all_named) {
+    std::mt19937 random(20);
+    for (int k = 0; k < 12; ++k) {
+        const AxisMap axes = draw_axes(random);
+        const Displacement map = make_map(make_sculpt_texture(kSize, axes));
+        const Displacement guess = guess_map_meaning(map);
+        EXPECT_EQ(guess.axes, axes) << "number " << k;
+        EXPECT_EQ(guess.space, DisplacementSpace::tangent);
+        EXPECT_EQ(guess.midlevel, Vec3f{});
+    }
+}
+
+TEST(MapConvention, the_orders_of_programs_are_named_by_presets) {
+    const auto looks = [](const AxisMap& axes) {
+        return get_fact(inspect_map(make_map(make_sculpt_texture(kSize, axes)), MapMeaning::unknown),
+                        "looks_like");
+    };
+    EXPECT_HAS_PART(looks({}), "blender-brush");
+    EXPECT_HAS_PART(looks({{0, 2, 1}, {1, 1, 1}}), "mudbox");
+    EXPECT_EQ(looks({{0, 2, 1}, {1, 1, -1}}).find("presets"), std::string::npos);
+}
+
+TEST(MapConvention, rows_the_other_way_up_turn_no_sign) {
+    auto texture = make_sculpt_texture(kSize);
+    auto turned = std::make_shared<Texture>(*texture);
+    for (uint32_t y = 0; y < kSize; ++y)
+        std::copy_n(&texture->floats[size_t(4) * kSize * y], 4 * kSize,
+                    &turned->floats[size_t(4) * kSize * (kSize - 1 - y)]);
+    Displacement map = make_map(turned);
+    map.flip_v = true;
+    EXPECT_EQ(guess_map_meaning(map).axes, AxisMap{});
+}
+
+TEST(MapConvention, declared_axes_that_the_values_contradict_are_noted) {
+    Displacement map = make_map(make_sculpt_texture(kSize, {{0, 2, 1}, {1, 1, 1}}));
+    EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "I-AXES"));
+    map.axes = {{0, 2, 1}, {1, 1, 1}};
+    EXPECT_FALSE(has_code(inspect_map(map, MapMeaning::declared), "I-AXES"));
+}
+
+TEST(MapConvention, waves_without_a_side_are_not_clear) {
+    auto texture = make_sculpt_texture(kSize);
+    constexpr float kTurn = 2 * std::numbers::pi_v<float>;
+    for (uint32_t k = 0; k < kSize * kSize; ++k) {
+        const float u = float(k % kSize) / kSize, v = float(k / kSize) / kSize;
+        texture->floats[4 * k] = 0.1f * std::sin(kTurn * u),
+                            texture->floats[4 * k + 1] = 0.1f * std::sin(kTurn * v);
+        texture->floats[4 * k + 2] = 0.2f * std::cos(kTurn * u) * std::cos(kTurn * v);
+    }
+    const Inspection inspection = inspect_map(make_map(texture), MapMeaning::unknown);
+    EXPECT_HAS_PART(get_fact(inspection, "looks_like"), "not clear");
+    EXPECT_HAS_PART(get_fact(inspection, "wrap"), "repeat");
+    EXPECT_EQ(count_severe(inspection), 0u);
+}
+
+/// A cube, each side an island of its own that lies turned by another angle in the atlas of 3 x 2 cells.
+Mesh make_cube() {
+    Mesh cube;
+    cube.name = "cube";
+    for (int k = 0; k < 8; ++k)
+        cube.positions.push_back({float(k & 1) * 2 - 1, float(k >> 1 & 1) * 2 - 1, float(k >> 2) * 2 - 1});
+    const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    constexpr uint32_t kCuts = 4;
+    for (uint32_t face = 0; face < 6; ++face) {
+        const auto mix = [&](const auto* c, float s, float t) {
+            return (c[0] * (1 - s) + c[1] * s) * (1 - t) + (c[3] * (1 - s) + c[2] * s) * t;
+        };
+        Vec3f corners[4];
+        Vec2f uvs[4];
+        for (uint32_t k = 0; k < 4; ++k) {
+            corners[k] = cube.positions[faces[face][k]];
+            const uint32_t turned = (k + face) % 4;
+            uvs[k] = {(float(face % 3) + (turned == 1 || turned == 2 ? 0.9f : 0.1f)) / 3,
+                      (float(face / 3) + (turned >= 2 ? 0.9f : 0.1f)) / 2};
+        }
+        for (uint32_t j = 0; j < kCuts; ++j)
+            for (uint32_t i = 0; i < kCuts; ++i) {
+                cube.face_sizes.push_back(4);
+                for (const auto& [a, b] : {std::pair(i, j), {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+                    cube.position_indices.push_back(uint32_t(cube.positions.size()));
+                    cube.uv_indices.push_back(uint32_t(cube.uvs.size()));
+                    cube.positions.push_back(mix(corners, float(a) / kCuts, float(b) / kCuts));
+                    cube.uvs.push_back(mix(uvs, float(a) / kCuts, float(b) / kCuts));
+                }
+            }
+    }
+    return cube;
+}
+
+/// A map of the cube by a function of position and frame, at the nearest place of each texel.
+template <class Displace> Displacement bake(const Mesh& cube, const Displace& displace) {
+    constexpr uint32_t kWidth = 192, kHeight = 128;
+    auto texture = std::make_shared<Texture>();
+    texture->width = kWidth, texture->height = kHeight, texture->channel_count = 3;
+    texture->floats.assign(size_t(4) * kWidth * kHeight, 0.0f);
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 0; x < kWidth; ++x) {
+            const uint32_t face = x / (kWidth / 3) + 3 * ((kHeight - 1 - y) / (kHeight / 2));
+            // Corners of the whole side, from its grid of quads.
+            const size_t first = size_t(face) * 64;
+            const auto at = [&](size_t quad, size_t k) {
+                return cube.positions[cube.position_indices[first + 4 * quad + k]];
+            };
+            const auto uv = [&](size_t quad, size_t k) {
+                return cube.uvs[cube.uv_indices[first + 4 * quad + k]];
+            };
+            const Vec3f a = at(0, 0), along_s = at(3, 1) - a, along_t = at(12, 3) - a;
+            const Vec2f o = uv(0, 0), us = uv(3, 1) - o, ut = uv(12, 3) - o;
+            const Vec2f here{(float(x) + 0.5f) / kWidth - o.x, 1 - (float(y) + 0.5f) / kHeight - o.y};
+            const float determinant = us.x * ut.y - us.y * ut.x;
+            const float s = (here.x * ut.y - here.y * ut.x) / determinant;
+            const float t = (us.x * here.y - us.y * here.x) / determinant;
+            const Vec3f n = normalize(cross(along_s, along_t));
+            const Vec3f tangent = normalize(along_s * ut.y - along_t * us.y);
+            const Vec3f d = displace(a + along_s * s + along_t * t, Frame{tangent, cross(n, tangent), n});
+            for (int c = 0; c < 3; ++c)
+                texture->floats[4 * (size_t(y) * kWidth + x) + size_t(c)] = get_component(d, c);
+        }
+    return make_map(texture);
+}
+
+TEST(MapConvention, seams_of_the_mesh_tell_object_space) {
+    const Mesh cube = make_cube();
+    // Outwards from the middle, more at the top.
+    const auto puff = [](const Vec3f& p) { return p * (0.1f + 0.05f * p.y); };
+    const Displacement object = bake(cube, [&](const Vec3f& p, const Frame&) {
+        const Vec3f d = puff(p);
+        return Vec3f{d.x, d.z, d.y};
+    });
+    const Inspection inspection = inspect_map(object, MapMeaning::unknown, &cube);
+    EXPECT_HAS_PART(get_fact(inspection, "space"), "object: ");
+    EXPECT_HAS_PART(get_fact(inspection, "looks_like"), "object space, axes x,z,y");
+    EXPECT_TRUE(has_code(inspect_map(object, MapMeaning::declared, &cube), "I-SPACE"));
+    EXPECT_EQ(count_severe(inspection), 0u);
+}
+
+TEST(MapConvention, seams_of_the_mesh_tell_tangent_space) {
+    const Mesh cube = make_cube();
+    const Displacement tangent = bake(cube, [](const Vec3f& p, const Frame& frame) {
+        const Vec3f wind{0.03f * p.z, 0.05f, 0.04f * p.x};
+        const Vec3f d = wind + frame.n * 0.15f;
+        return Vec3f{dot(d, frame.t), dot(d, frame.n), dot(d, frame.b)};
+    });
+    const Inspection inspection = inspect_map(tangent, MapMeaning::unknown, &cube);
+    EXPECT_HAS_PART(get_fact(inspection, "space"), "tangent: ");
+    EXPECT_HAS_PART(get_fact(inspection, "looks_like"), "tangent space, axes t,n,b");
+}
+
+} // namespace
+} // namespace relief::test
