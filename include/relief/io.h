@@ -25,7 +25,9 @@ struct MeshSceneOptions {
     std::optional<std::string> space, axes;
     std::optional<float> midlevel, scale;
     bool flip_v = false;
-    std::filesystem::path environment; ///< empty: a soft sky and a sun
+    std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
+    std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel]
+    std::filesystem::path environment;      ///< empty: a soft sky and a sun
 };
 
 /// A mesh alone: automatic camera (from above, front; the object fills about 85 % of the height of a square

@@ -11,6 +11,7 @@
 #include "io/json_node.h"
 #include "io/scene_keys.h"
 #include "io/scene_sections.h"
+#include "io/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/suggest.h"
@@ -51,6 +52,7 @@ Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& 
     const std::filesystem::path path = assets.resolve(file.as_string());
     Mesh mesh = file.with_place([&] { return load_mesh(path); });
     mesh.name = name;
+    if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
 }
 
