@@ -118,22 +118,17 @@ struct FitSample {
 /// parameters.
 class Cell {
   public:
-    Cell(const LimitFace& face, const RefinedMesh& refined, uint32_t quad, int depth)
-        : face_(face),
-          refined_(refined),
-          quad_(quad),
-          origin_(refined.origins[quad]),
-          side_(std::ldexp(1, -depth)) {
+    Cell(const LimitFace& face, const RefinedMesh& refined, uint32_t quad)
+        : face_(face), refined_(refined), quad_(quad), place_(refined.places[quad]) {
         for (size_t k = 0; k < 4; ++k) {
             is_regular_[k] = refined.is_regular[refined.points[quad][k]];
-            const LimitSample sample = evaluate(k == 1 || k == 2, k >= 2);
-            const double u_sign = k == 0 || k == 3 ? 1 : -1, v_sign = k < 2 ? 1 : -1;
-            const Vec3d along_u = sample.du * u_sign, along_v = sample.dv * v_sign;
+            const Vec2<double> to_next = side(k), to_previous = side((k + 3) % 4) * -1.0;
+            const LimitSample sample = face_.evaluate(place_.part, place_.corners[k].x, place_.corners[k].y);
             corner_[k] = sample.position;
             normal_[k] = find_normal(k, sample);
-            to_next_[k] = k % 2 == 0 ? along_u : along_v;
-            to_previous_[k] = k % 2 == 0 ? along_v : along_u;
-            twist_[k] = sample.duv * (u_sign * v_sign);
+            to_next_[k] = sample.du * to_next.x + sample.dv * to_next.y;
+            to_previous_[k] = sample.du * to_previous.x + sample.dv * to_previous.y;
+            twist_[k] = sample.duv * (to_next.x * to_previous.y + to_next.y * to_previous.x);
         }
         for (size_t k = 0; k < 4; ++k) fit_edge(k);
         fit_inside();
@@ -145,11 +140,15 @@ class Cell {
     const Vec3d& control(size_t k) const { return control_[k]; }
 
   private:
+    /// Side k in the parameters of the face.
+    Vec2<double> side(size_t k) const { return place_.corners[(k + 1) % 4] - place_.corners[k]; }
+    /// Only along the axes of a face its surface is cubic.
+    bool is_along_axis(size_t k) const { return side(k).x == 0 || side(k).y == 0; }
+
     LimitSample evaluate(double x, double y) const {
-        LimitSample sample = face_.evaluate(origin_.part, (origin_.i + x) * side_, (origin_.j + y) * side_);
-        sample.du = sample.du * side_, sample.dv = sample.dv * side_;
-        sample.duv = sample.duv * (side_ * side_);
-        return sample;
+        const std::array<Vec2<double>, 4>& c = place_.corners;
+        const Vec2<double> at = (c[0] * (1 - x) + c[1] * x) * (1 - y) + (c[3] * (1 - x) + c[2] * x) * y;
+        return face_.evaluate(place_.part, at.x, at.y);
     }
 
     /// Of the surface at corner k. Where a smooth boundary goes round the corner of a lone quad both
@@ -176,13 +175,14 @@ class Cell {
         const size_t next = (k + 1) % 4;
         Curve curve = {corner_[k], corner_[k] + to_next_[k] * (1.0 / 3),
                        corner_[next] + to_previous_[next] * (1.0 / 3), corner_[next]};
-        if (!is_regular_[k] || !is_regular_[next]) {
+        if (!is_regular_[k] || !is_regular_[next] || !is_along_axis(k)) {
             std::array<Vec3d, kFitCount> targets;
             for (int sample = 0; sample < kFitCount; ++sample)
                 targets[size_t(sample)] = evaluate_edge(k, place_of_fit(sample));
             fit_curve(curve, targets);
-            if (!refined_.is_sharp[refined_.edges[quad_][k]])
-                curve[1] = flatten(curve[1], k), curve[2] = flatten(curve[2], next);
+            const bool is_sharp = refined_.is_sharp[refined_.edges[quad_][k]];
+            if (!is_regular_[k] && !is_sharp) curve[1] = flatten(curve[1], k);
+            if (!is_regular_[next] && !is_sharp) curve[2] = flatten(curve[2], next);
         }
         control_[2 * k] = curve[1], control_[2 * k + 1] = curve[2];
     }
@@ -197,7 +197,9 @@ class Cell {
         for (size_t k = 0; k < 4; ++k)
             control_[8 + k] =
                 corner_[k] + (to_next_[k] + to_previous_[k]) * (1.0 / 3) + twist_[k] * (1.0 / 9);
-        if (is_regular_[0] && is_regular_[1] && is_regular_[2] && is_regular_[3]) return;
+        bool is_exact = true;
+        for (size_t k = 0; k < 4; ++k) is_exact = is_exact && is_regular_[k] && is_along_axis(k);
+        if (is_exact) return;
         // A start without derivatives at irregular points (Coons 1967, in control points).
         for (size_t k = 0; k < 4; ++k)
             control_[8 + k] = control_[2 * k] + control_[2 * ((k + 3) % 4) + 1] - corner_[k];
@@ -253,8 +255,7 @@ class Cell {
     const LimitFace& face_;
     const RefinedMesh& refined_;
     uint32_t quad_;
-    CellOrigin origin_;
-    double side_;
+    const QuadPlace& place_;
     std::array<bool, 4> is_regular_{};
     std::array<Vec3d, 4> corner_{}, normal_{}, to_next_{}, to_previous_{}, twist_{};
     std::array<Vec3d, 12> control_{};
@@ -290,16 +291,15 @@ LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& 
     patches.controls.resize(refined.quad_count());
     patches.corner_normals.resize(refined.quad_count());
     const std::vector<uint32_t> first_quads = find_first_quads(refined);
-    // Quads of a face follow one another.
     std::vector<uint32_t> starts;
     for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
-        if (quad == 0 || refined.origins[quad].face != refined.origins[quad - 1].face) starts.push_back(quad);
+        if (quad == 0 || refined.places[quad].face != refined.places[quad - 1].face) starts.push_back(quad);
     starts.push_back(refined.quad_count());
     parallel_for("limit patches", starts.size() - 1, 16, [&](size_t begin, size_t end) {
         for (size_t run = begin; run < end; ++run) {
-            const LimitFace face = mesh.make_face(refined.origins[starts[run]].face);
+            const LimitFace face = mesh.make_face(refined.places[starts[run]].face);
             for (uint32_t quad = starts[run]; quad < starts[run + 1]; ++quad) {
-                const Cell cell(face, refined, quad, mesh.get_depth(refined.origins[quad].face));
+                const Cell cell(face, refined, quad);
                 for (size_t k = 0; k < 4; ++k) {
                     const uint32_t point = refined.points[quad][k];
                     if (first_quads[point] == quad) patches.positions[point] = to_float(cell.corner(k));

@@ -183,7 +183,8 @@ void find_overrides(Surface& surface) {
 
 /// Quads, smooth where the mesh says so.
 SmoothBase make_base(Polygons polygons, const Subdivision& subdivision) {
-    if (subdivision.scheme != SubdivisionScheme::none) return subdivide(polygons, subdivision);
+    if (subdivision.scheme != SubdivisionScheme::none)
+        return subdivide(polygons, subdivision, BasePatches::bicubic);
     SmoothBase base;
     bool is_all_quads = true;
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
@@ -217,7 +218,8 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
 Polygons make_plain_polygons(const Mesh& mesh) {
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
         return cut_to_triangles(make_polygons(mesh, Welding::none));
-    return cut_to_triangles(subdivide(make_polygons(mesh, Welding::equal_points), mesh.subdivision).polygons);
+    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    return cut_to_triangles(subdivide(polygons, mesh.subdivision, BasePatches::bilinear).polygons);
 }
 
 Surface make_plain(const Mesh& mesh) {

@@ -7,6 +7,7 @@
 
 #include "base/machine.h"
 #include "relief/error.h"
+#include "surface/isolate.h"
 #include "surface/limit_patches.h"
 #include "surface/subdivision_mesh.h"
 
@@ -125,7 +126,7 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
                                refined.points[quad].end());
         if (!refined.uvs.empty())
             polygons.uvs.insert(polygons.uvs.end(), refined.uvs[quad].begin(), refined.uvs[quad].end());
-        polygons.source_faces.push_back(source.source_faces[refined.origins[quad].face]);
+        polygons.source_faces.push_back(source.source_faces[refined.places[quad].face]);
     }
     polygons.starts.push_back(4 * refined.quad_count());
     return polygons;
@@ -133,10 +134,12 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
 
 } // namespace
 
-SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision) {
+SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, BasePatches kind) {
     SubdivisionMesh mesh(polygons, subdivision);
     check_size(mesh, polygons.where);
-    const RefinedMesh refined = mesh.refine();
+    RefinedMesh refined = mesh.refine();
+    if (kind == BasePatches::bicubic && subdivision.scheme == SubdivisionScheme::catmark)
+        isolate_irregular_points(refined, kIsolationDepth);
     SmoothBase base;
     base.polygons = make_quads(refined, polygons);
     if (subdivision.scheme == SubdivisionScheme::bilinear) {
@@ -146,7 +149,7 @@ SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision) {
     LimitPatches patches = make_limit_patches(mesh, refined);
     join_normals(refined, patches, base);
     base.polygons.positions = std::move(patches.positions);
-    base.controls = std::move(patches.controls);
+    if (kind == BasePatches::bicubic) base.controls = std::move(patches.controls);
     return base;
 }
 

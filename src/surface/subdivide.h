@@ -16,9 +16,11 @@ struct SmoothBase {
     std::vector<InnerControls> controls; ///< one a face; empty: bilinear patches
 };
 
+enum class BasePatches { bilinear, bicubic };
+
 /// Subdivides by `subdivision`, whose scheme must not be `none`. Bilinear subdivision gives neither normals
 /// nor controls. Throws bad_input for a mesh that cannot be subdivided and out_of_memory where the patches
 /// would not fit.
-SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision);
+SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, BasePatches patches);
 
 } // namespace relief

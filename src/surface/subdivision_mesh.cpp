@@ -29,7 +29,7 @@ using RefinerPointer = std::unique_ptr<osd::Far::TopologyRefiner>;
 
 constexpr float kSharpForEver = 10; // as OpenSubdiv counts
 /// Steps beyond the patches that the surface beside irregular points is isolated by.
-constexpr int kStepsBeyond = 3;
+constexpr int kStepsBeyond = 5;
 constexpr int kMostSteps = 10;
 
 /// What OpenSubdiv complained of last, which it would print otherwise.
@@ -155,6 +155,11 @@ Vec3d make_unit(const Vec3d& v) {
     return size > 0 ? v * (1 / size) : Vec3d{};
 }
 
+/// Cell (i, j) of a face or part, and its axes.
+struct CellOrigin {
+    uint32_t face = 0, part = 0, i = 0, j = 0;
+};
+
 /// Corner k of a quad stands at (u, v) = kCorner[k].
 constexpr std::array<std::array<uint32_t, 2>, 4> kCorner = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
@@ -192,7 +197,9 @@ struct SubdivisionMesh::Implementation {
 
     void check_edges(const Polygons& polygons) const;
     void check_creases(const Polygons& polygons) const;
+    int get_depth(uint32_t face) const;
     std::vector<CellOrigin> find_origins() const;
+    std::vector<QuadPlace> find_places() const;
     std::vector<BlendedUv> refine_uvs() const;
     std::vector<BlendedPoint> refine_points() const;
     std::vector<Vec3d> find_limit_normals(const std::vector<bool>& is_regular) const;
@@ -279,9 +286,9 @@ SubdivisionMesh::~SubdivisionMesh() = default;
 
 int SubdivisionMesh::level() const { return implementation_->level; }
 
-int SubdivisionMesh::get_depth(uint32_t face) const {
-    const bool is_quad = implementation_->refiner->GetLevel(0).GetFaceVertices(int(face)).size() == 4;
-    return implementation_->level - (is_quad ? 0 : 1);
+/// Steps that the parts of a face are refined by.
+int SubdivisionMesh::Implementation::get_depth(uint32_t face) const {
+    return level - (refiner->GetLevel(0).GetFaceVertices(int(face)).size() == 4 ? 0 : 1);
 }
 
 uint64_t SubdivisionMesh::quad_count() const {
@@ -289,7 +296,7 @@ uint64_t SubdivisionMesh::quad_count() const {
     uint64_t count = 0;
     for (int face = 0; face < base.GetNumFaces(); ++face) {
         const int size = base.GetFaceVertices(face).size();
-        count += uint64_t(size == 4 ? 1 : size) << 2 * get_depth(uint32_t(face));
+        count += uint64_t(size == 4 ? 1 : size) << 2 * implementation_->get_depth(uint32_t(face));
     }
     return count;
 }
@@ -318,6 +325,17 @@ std::vector<CellOrigin> SubdivisionMesh::Implementation::find_origins() const {
         origins = std::move(children);
     }
     return origins;
+}
+
+std::vector<QuadPlace> SubdivisionMesh::Implementation::find_places() const {
+    std::vector<QuadPlace> places;
+    for (const CellOrigin& origin : find_origins()) {
+        const double side = std::ldexp(1.0, -get_depth(origin.face));
+        QuadPlace& place = places.emplace_back(QuadPlace{origin.face, origin.part, {}});
+        for (size_t k = 0; k < 4; ++k)
+            place.corners[k] = {(origin.i + kCorner[k][0]) * side, (origin.j + kCorner[k][1]) * side};
+    }
+    return places;
 }
 
 std::vector<BlendedUv> SubdivisionMesh::Implementation::refine_uvs() const {
@@ -389,7 +407,7 @@ RefinedMesh SubdivisionMesh::refine() {
     const osd::Far::TopologyLevel last = self.refiner->GetLevel(self.level);
     RefinedMesh refined;
     refined.point_count = uint32_t(last.GetNumVertices());
-    refined.origins = self.find_origins();
+    refined.places = self.find_places();
     self.copy_quads(refined);
     for (int edge = 0; edge < last.GetNumEdges(); ++edge)
         refined.is_sharp.push_back(last.GetEdgeSharpness(edge) >= kSharpForEver);

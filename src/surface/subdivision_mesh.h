@@ -14,10 +14,11 @@ namespace relief {
 
 using Vec3d = Vec3<double>;
 
-/// Where a refined quad lies: cell (i, j) of 2^depth x 2^depth of a quad face, or of the part of a polygon
-/// beside its corner `part`; the axes of the cell are those of the face or part.
-struct CellOrigin {
-    uint32_t face = 0, part = 0, i = 0, j = 0;
+/// Where a quad lies: its corners on a face of the mesh, or on the part of a polygon beside its corner
+/// `part`.
+struct QuadPlace {
+    uint32_t face = 0, part = 0;
+    std::array<Vec2<double>, 4> corners;
 };
 
 /// Quads of a mesh refined to its level.
@@ -25,7 +26,7 @@ struct RefinedMesh {
     uint32_t point_count = 0;
     std::vector<std::array<uint32_t, 4>> points; ///< one a quad
     std::vector<std::array<Vec2f, 4>> uvs;       ///< one a quad, or empty
-    std::vector<CellOrigin> origins;             ///< one a quad
+    std::vector<QuadPlace> places;               ///< one a quad; those of a face follow one another
     std::vector<std::array<uint32_t, 4>> edges;  ///< one a quad: numbers of its sides
     std::vector<uint32_t> first_quads;           ///< lowest quad of each edge
     std::vector<bool> is_sharp;                  ///< one an edge: a boundary, or a crease that stays
@@ -66,8 +67,6 @@ class SubdivisionMesh {
 
     /// Levels that the mesh is refined by: at least 1 where a face is no quad.
     int level() const;
-    /// Steps that the parts of a face are refined by: cells a side as a power of two.
-    int get_depth(uint32_t face) const;
     /// Patches at that level.
     uint64_t quad_count() const;
     RefinedMesh refine();

@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 
+#include "surface/isolate.h"
 #include "surface/patch_samples.h"
 #include "surface/smooth_shapes.h"
 
@@ -125,16 +126,24 @@ TEST(SmoothSurface, makes_as_many_patches_as_the_level_says) {
     Mesh mesh = test::make_shape(Shape::cube);
     for (const int level : {0, 1, 3}) {
         mesh.subdivision.level = level;
-        EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(), 6u << 2 * level);
+        EXPECT_EQ(make_surface(mesh, nullptr, {}).patch_count(), 6u << 2 * level);
     }
     // A quad and four triangles are 16 quads after one step, which they need.
     mesh = test::make_shape(Shape::pyramid);
-    for (const int level : {0, 1}) {
+    for (const int level : {0, 1, 2}) {
         mesh.subdivision.level = level;
-        EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(), 16u);
+        EXPECT_EQ(make_surface(mesh, nullptr, {}).patch_count(), level == 2 ? 64u : 16u);
     }
-    mesh.subdivision.level = 2;
-    EXPECT_EQ(make_surface(mesh, nullptr, {}).patch_count(), 64u);
+}
+
+TEST(SmoothSurface, bicubic_patches_are_cut_around_irregular_points) {
+    // Eight corners with three quads each, of which every one becomes two more a step.
+    Mesh mesh = test::make_shape(Shape::cube);
+    EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(),
+              96u + 8 * 3 * 2 * kIsolationDepth);
+    // Corners of a cube share their quads: none is alone.
+    mesh.subdivision.level = 0;
+    EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(), 6u);
 }
 
 TEST(SmoothSurface, bilinear_subdivision_changes_no_shape) {
