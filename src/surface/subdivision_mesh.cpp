@@ -110,6 +110,42 @@ CreaseLists list_creases(const Polygons& polygons) {
     return lists;
 }
 
+/// Fails where OpenSubdiv does not take the topology.
+RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivision, const UvTopology& uvs,
+                            const CreaseLists& creases) {
+    std::vector<int> sizes;
+    const std::vector<int> points(polygons.points.begin(), polygons.points.end());
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        sizes.push_back(int(polygons.face_size(face)));
+    osd::Far::TopologyDescriptor::FVarChannel channel;
+    channel.numValues = int(uvs.values.size());
+    channel.valueIndices = uvs.indices.data();
+    osd::Far::TopologyDescriptor descriptor;
+    descriptor.numVertices = int(polygons.positions.size());
+    descriptor.numFaces = int(sizes.size());
+    descriptor.numVertsPerFace = sizes.data();
+    descriptor.vertIndicesPerFace = points.data();
+    descriptor.numCreases = int(creases.edge_sharpness.size());
+    descriptor.creaseVertexIndexPairs = creases.ends.data();
+    descriptor.creaseWeights = creases.edge_sharpness.data();
+    descriptor.numCorners = int(creases.corners.size());
+    descriptor.cornerVertexIndices = creases.corners.data();
+    descriptor.cornerWeights = creases.corner_sharpness.data();
+    descriptor.numFVarChannels = uvs.values.empty() ? 0 : 1;
+    descriptor.fvarChannels = &channel;
+
+    using RefinerFactory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
+    const auto scheme = subdivision.scheme == SubdivisionScheme::bilinear ? osd::Sdc::SCHEME_BILINEAR
+                                                                          : osd::Sdc::SCHEME_CATMARK;
+    keep_complaints();
+    RefinerPointer refiner(
+        RefinerFactory::Create(descriptor, RefinerFactory::Options(scheme, make_options(subdivision))));
+    if (!refiner)
+        throw Error(ErrorKind::bad_input, {"cannot be subdivided: " + complaint, polygons.where,
+                                           "repair the mesh, or set the subdivision scheme to none"});
+    return refiner;
+}
+
 /// What primvars of OpenSubdiv must be able to do.
 template <class Value> struct Blended {
     Value value{};
@@ -239,40 +275,14 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     Implementation& self = *implementation_;
     self.where = polygons.where;
     self.uvs = join_uvs(polygons);
-    std::vector<int> sizes, points(polygons.points.begin(), polygons.points.end());
-    for (uint32_t face = 0; face < polygons.face_count(); ++face)
-        sizes.push_back(int(polygons.face_size(face)));
     for (const Vec3f& p : polygons.positions) self.positions.insert(self.positions.end(), {p.x, p.y, p.z});
-    const bool is_all_quads = std::all_of(sizes.begin(), sizes.end(), [](int size) { return size == 4; });
+    bool is_all_quads = true;
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        is_all_quads = is_all_quads && polygons.face_size(face) == 4;
     self.level = std::max(subdivision.level, is_all_quads ? 0 : 1);
 
     const CreaseLists creases = list_creases(polygons);
-    osd::Far::TopologyDescriptor::FVarChannel channel;
-    channel.numValues = int(self.uvs.values.size());
-    channel.valueIndices = self.uvs.indices.data();
-    osd::Far::TopologyDescriptor descriptor;
-    descriptor.numVertices = int(polygons.positions.size());
-    descriptor.numFaces = int(sizes.size());
-    descriptor.numVertsPerFace = sizes.data();
-    descriptor.vertIndicesPerFace = points.data();
-    descriptor.numCreases = int(creases.edge_sharpness.size());
-    descriptor.creaseVertexIndexPairs = creases.ends.data();
-    descriptor.creaseWeights = creases.edge_sharpness.data();
-    descriptor.numCorners = int(creases.corners.size());
-    descriptor.cornerVertexIndices = creases.corners.data();
-    descriptor.cornerWeights = creases.corner_sharpness.data();
-    descriptor.numFVarChannels = self.uvs.values.empty() ? 0 : 1;
-    descriptor.fvarChannels = &channel;
-
-    using RefinerFactory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
-    const auto scheme = subdivision.scheme == SubdivisionScheme::bilinear ? osd::Sdc::SCHEME_BILINEAR
-                                                                          : osd::Sdc::SCHEME_CATMARK;
-    keep_complaints();
-    self.refiner.reset(
-        RefinerFactory::Create(descriptor, RefinerFactory::Options(scheme, make_options(subdivision))));
-    if (!self.refiner)
-        throw Error(ErrorKind::bad_input, {"cannot be subdivided: " + complaint, self.where,
-                                           "repair the mesh, or set the subdivision scheme to none"});
+    self.refiner = make_refiner(polygons, subdivision, self.uvs, creases);
     self.check_edges(polygons);
     self.check_creases(polygons);
     Factory::Options options;
