@@ -89,6 +89,13 @@ void add_mesh_options(CLI::App& verb, RenderOptions& o) {
     };
     mesh("--vdm", "MAP", "displacement map; may hold <UDIM>",
          [&o](const std::string& text) { o.mesh.displacement_map = text; });
+    mesh("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
+         [&o](const std::string& text) { o.mesh.subdivision = text; });
+    mesh("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 2",
+         [&o](const std::string& text) {
+             o.mesh.subdivision_level =
+                 int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
+         });
     mesh("--env", "MAP", "environment picture", [&o](const std::string& text) { o.mesh.environment = text; });
     add_map_options(verb, o.mesh.map, {kMeshGroup, &o.mesh_only});
 }
@@ -187,7 +194,11 @@ void complete_render_options(RenderOptions& o) {
     if (!is_mesh_file(o.input) && !o.mesh_only.empty())
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
-                     o.input.string(), "the scene file says this under 'displacements' and 'environment'"});
+                     o.input.string(),
+                     "the scene file says this under 'meshes', 'displacements' and 'environment'"});
+    if (o.mesh.subdivision_level && !o.mesh.subdivision)
+        throw Error(ErrorKind::usage, {"--subdivision-level says nothing without a scheme",
+                                       "--subdivision-level", "--subdivision catmark"});
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
                     o.settings.crop != Window{} || !o.settings.layers.empty() || !o.edits.empty()))
         throw Error(ErrorKind::usage,

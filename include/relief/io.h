@@ -42,7 +42,9 @@ std::string find_tile_pattern(const std::filesystem::path& file);
 struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold <UDIM>
     MapOptions map;
-    std::filesystem::path environment; ///< empty: a soft sky and a sun
+    std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
+    std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel]
+    std::filesystem::path environment;      ///< empty: a soft sky and a sun
 };
 
 /// A mesh alone: automatic camera (from above, front; the object fills about 85 % of the height of a square

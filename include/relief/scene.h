@@ -20,12 +20,34 @@ inline constexpr int kMaxSamples = 1 << 20;   ///< a pixel
 inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
+inline constexpr int kMaxSubdivisionLevel = 8;
 
 /// Semi-sharp edge of a subdivided mesh (DeRose, Kass and Truong 1998), between two positions; a sharp point
 /// where `first` and `second` are the same.
 struct Crease {
     uint32_t first = 0, second = 0;
     float sharpness = 0; ///< >= 0; 10 and above stays sharp for ever
+    friend bool operator==(const Crease&, const Crease&) = default;
+};
+
+enum class SubdivisionScheme { none, bilinear, catmark };
+/// How uvs are subdivided: as positions are, but for the boundaries of uv islands, whose corners and
+/// junctions stay sharp; or linearly in each face.
+enum class UvRule { smooth, linear };
+/// What stays sharp where the mesh ends: its edges, or also the corners of lone faces.
+enum class BoundaryRule { edge_only, edge_and_corner };
+enum class CreaseRule { obey, ignore };
+
+/// How a mesh becomes a smooth base.
+struct Subdivision {
+    SubdivisionScheme scheme = SubdivisionScheme::none;
+    /// Every quad becomes 2^level x 2^level patches, [0, kMaxSubdivisionLevel]; a mesh with faces that are
+    /// not quads is subdivided at least once.
+    int level = 2;
+    UvRule uv = UvRule::smooth;
+    BoundaryRule boundary = BoundaryRule::edge_and_corner;
+    CreaseRule creases = CreaseRule::obey;
+    friend bool operator==(const Subdivision&, const Subdivision&) = default;
 };
 
 /// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
@@ -42,6 +64,7 @@ struct Mesh {
     std::vector<std::array<float, 4>>
         tangents;                ///< one a corner: unit x, y, z, and the bitangent's sign; or empty
     std::vector<Crease> creases; ///< used where the mesh is subdivided
+    Subdivision subdivision;     ///< of the surface that is rendered
 };
 
 enum class DisplacementType { vector, height };

@@ -10,6 +10,11 @@ void add_scene_content(ContentHash& hash, const Scene& scene) {
         hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
         hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
         hash.add(mesh.tangents), hash.add(mesh.creases);
+        const Subdivision& subdivision = mesh.subdivision;
+        if (subdivision.scheme == SubdivisionScheme::none) continue;
+        hash.add(std::array{uint32_t(subdivision.scheme), uint32_t(subdivision.level),
+                            uint32_t(subdivision.uv), uint32_t(subdivision.boundary),
+                            uint32_t(subdivision.creases)});
     }
     std::set<const Texture*> seen;
     const auto add_texture = [&](const std::shared_ptr<const Texture>& texture) {

@@ -10,6 +10,7 @@
 #include "io/content_hash.h"
 #include "io/displacement_reader.h"
 #include "io/frame_object.h"
+#include "io/subdivision_json.h"
 #include "math/scalar.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -110,6 +111,9 @@ Scene make_clay_scene(Mesh mesh) {
     Scene scene;
     scene.source = mesh.source;
     scene.meshes.push_back(std::move(mesh));
+    Subdivision& subdivision = scene.meshes.front().subdivision;
+    if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
+    if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     Material clay;
     clay.name = "clay";
     clay.base_color = {0.75f, 0.55f, 0.45f};

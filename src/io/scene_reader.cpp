@@ -11,6 +11,7 @@
 #include "io/json_node.h"
 #include "io/scene_keys.h"
 #include "io/scene_sections.h"
+#include "io/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/suggest.h"
@@ -54,6 +55,7 @@ Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& 
     if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
     Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
     mesh.name = name;
+    if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
 }
 

@@ -11,6 +11,7 @@
 #include "io/image_coders.h"
 #include "io/json_node.h"
 #include "io/obj_tags.h"
+#include "io/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -184,7 +185,9 @@ class SceneWriter {
             const std::string file =
                 "meshes/" + file_namer.make_unique(make_file_stem(mesh_names_.back())) + ".obj";
             write_text_file(folder_ / file, format_obj(mesh));
-            root_["meshes"][mesh_names_.back()]["file"] = file;
+            Json& node = root_["meshes"][mesh_names_.back()];
+            node["file"] = file;
+            if (has_subdivision(mesh)) node["subdivision"] = write_subdivision(mesh);
         }
     }
 

@@ -82,6 +82,18 @@ void validate_mesh(const Mesh& mesh, size_t index) {
             fail(where, fmt::format("uv {} is not finite", i));
     for (size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
+    const int level = mesh.subdivision.level;
+    if (level < 0 || level > kMaxSubdivisionLevel)
+        fail(where, fmt::format("subdivision level {} is not in [0, {}]", level, kMaxSubdivisionLevel));
+    for (size_t i = 0; i < mesh.creases.size(); ++i) {
+        const Crease& crease = mesh.creases[i];
+        if (crease.first >= mesh.positions.size() || crease.second >= mesh.positions.size())
+            fail(where, fmt::format("crease {} from point {} to {} is out of range: there are {}", i,
+                                    crease.first, crease.second, mesh.positions.size()));
+        if (!(crease.sharpness >= 0))
+            fail(where, fmt::format("crease {} has sharpness {}", i, crease.sharpness),
+                 "it must be 0 or more");
+    }
 }
 
 namespace {

@@ -4,6 +4,7 @@
 // No include guard: each instance includes it inside a namespace of its own.
 #include "shared/lang.h"
 #include "shared/displace.h"
+#include "shared/control_points.h"
 #include "shared/constants.h"
 #include "shared/exact.h"
 #include "shared/levels.h"

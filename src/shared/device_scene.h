@@ -29,6 +29,7 @@ struct SurfaceData {
     uint first_override, override_count;
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced
+    uint first_control;       ///< of positions, in vertices: twelve a patch; kNone: bilinear patches
 };
 
 /// d = matrix (texel - midlevel).

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kEdgeSegments = 8;
 constexpr int kMiddleSegments = 16;
+constexpr double kBicubicCells = 32; // a side, that bicubic patches may have on any map
 
 /// Level of a displaced line from its points, world space; `texels` is its length on the map.
 int choose_level(const Vec3f* points, int count, double texels, const LevelFieldConfig& config) {
@@ -34,10 +35,14 @@ int choose_level(const Vec3f* points, int count, double texels, const LevelField
     return std::min(cap, int(std::clamp(std::ceil(std::log2(line_length / cell)), 0.0, double(kMaxLevel))));
 }
 
-double count_texels(const DisplacementMap& map, uint8_t tile, const Vec2f& a, const Vec2f& b) {
-    if (tile >= map.tiles.size()) return 0;
+/// Texels that a line runs over; a bicubic base bends where the map is smooth, too.
+double count_texels(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
+    const DisplacementMap& map = surface.map;
+    const double least = surface.controls.empty() ? 0 : kBicubicCells;
+    if (tile >= map.tiles.size()) return least;
     const Texture& texture = *map.tiles[tile].texture;
-    return std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
+    return std::max(least,
+                    std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height));
 }
 
 int choose_edge_level(const Surface& surface, const PatchSamples& samples, int edge,
@@ -50,7 +55,7 @@ int choose_edge_level(const Surface& surface, const PatchSamples& samples, int e
         points[k] = transform_point(world_from_object, point);
     }
     const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
-    const double texels = count_texels(surface.map, first.tile, first.uv, second.uv);
+    const double texels = count_texels(surface, first.tile, first.uv, second.uv);
     return choose_level(points, kEdgeSegments + 1, texels, config);
 }
 
@@ -70,7 +75,7 @@ int choose_middle_level(const Surface& surface, const PatchSamples& samples, con
             blend_corners(samples.corners(), direction == 0 ? 0 : 0.5f, direction == 0 ? 0.5f : 0);
         const VertexData b =
             blend_corners(samples.corners(), direction == 0 ? 1 : 0.5f, direction == 0 ? 0.5f : 1);
-        const double texels = count_texels(surface.map, a.tile, a.uv, b.uv);
+        const double texels = count_texels(surface, a.tile, a.uv, b.uv);
         level = std::max(level, choose_level(points, kMiddleSegments - 1, texels, config));
     }
     return level;

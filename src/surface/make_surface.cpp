@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "relief/error.h"
 #include "surface/displacement_map.h"
 #include "surface/polygons.h"
+#include "surface/subdivide.h"
 #include "surface/surface.h"
 #include "surface/vertex_frames.h"
 
@@ -93,8 +95,14 @@ void check_texel_range(const DisplacementMap& map, const Polygons& polygons, uin
                  "unwrap the mesh again"});
 }
 
-/// Patches and split vertices; returns the handedness of each vertex.
-std::vector<float> split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
+/// Split vertices: where each came from, and which way round its uvs go.
+struct SplitVertices {
+    std::vector<uint32_t> points;
+    std::vector<float> handedness;
+};
+
+/// Patches and split vertices.
+SplitVertices split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
     VertexSplitter vertices(polygons.positions.size());
     std::vector<uint8_t> tiles;
     surface.quads.reserve(polygons.face_count());
@@ -119,15 +127,16 @@ std::vector<float> split_displaced(Surface& surface, const Polygons& polygons, b
     copy_positions(surface, polygons, vertices);
     copy_uvs(surface, vertices);
     bool has_copies = false;
-    std::vector<float> handedness(vertices.count());
+    SplitVertices split;
     for (uint32_t v = 0; v < vertices.count(); ++v) {
-        handedness[v] = vertices.attributes(v).handedness;
+        split.points.push_back(vertices.point(v));
+        split.handedness.push_back(vertices.attributes(v).handedness);
         has_copies = has_copies || vertices.dominant(v) != v;
         if (is_udim) surface.vertex_tiles.push_back(vertices.attributes(v).tile);
     }
     if (has_copies)
         for (uint32_t v = 0; v < vertices.count(); ++v) surface.dominants.push_back(vertices.dominant(v));
-    return handedness;
+    return split;
 }
 
 /// Where patch edges between the same two points have different vertices, all take those of the lowest.
@@ -172,6 +181,18 @@ void find_overrides(Surface& surface) {
         surface.override_bits[entry.patch_edge >> 6] |= uint64_t(1) << (entry.patch_edge & 63);
 }
 
+/// Quads, smooth where the mesh says so.
+SmoothBase make_base(Polygons polygons, const Subdivision& subdivision) {
+    if (subdivision.scheme != SubdivisionScheme::none)
+        return subdivide(polygons, subdivision, BasePatches::bicubic);
+    SmoothBase base;
+    bool is_all_quads = true;
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        is_all_quads = is_all_quads && polygons.face_size(face) == 4;
+    base.polygons = is_all_quads ? std::move(polygons) : refine_to_quads(polygons);
+    return base;
+}
+
 Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const Affine& object_from_world,
                        PyramidCache& pyramids) {
     Polygons polygons = make_polygons(mesh, Welding::equal_points);
@@ -179,24 +200,30 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
         throw Error(ErrorKind::bad_input,
                     {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
                      polygons.where, "unwrap the mesh"});
-    const auto is_quad = [&](uint32_t face) { return polygons.face_size(face) == 4; };
-    for (uint32_t face = 0; face < polygons.face_count(); ++face)
-        if (!is_quad(face)) {
-            polygons = refine_to_quads(polygons);
-            break;
-        }
+    SmoothBase base = make_base(std::move(polygons), mesh.subdivision);
     Surface surface;
     surface.name = mesh.name;
     surface.has_displacement = true;
     surface.map = make_displacement_map(displacement, object_from_world, pyramids);
-    const std::vector<float> handedness = split_displaced(surface, polygons, displacement.is_udim);
+    const SplitVertices split = split_displaced(surface, base.polygons, displacement.is_udim);
     find_overrides(surface);
-    compute_vertex_frames(surface, handedness);
+    surface.controls = std::move(base.controls);
+    std::vector<Vec3f> normals;
+    if (!base.point_normals.empty())
+        for (const uint32_t point : split.points) normals.push_back(base.point_normals[point]);
+    compute_vertex_frames(surface, split.handedness, normals);
     return surface;
 }
 
+Polygons make_plain_polygons(const Mesh& mesh) {
+    if (mesh.subdivision.scheme == SubdivisionScheme::none)
+        return cut_to_triangles(make_polygons(mesh, Welding::none));
+    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    return cut_to_triangles(subdivide(polygons, mesh.subdivision, BasePatches::bilinear).polygons);
+}
+
 Surface make_plain(const Mesh& mesh) {
-    const Polygons polygons = cut_to_triangles(make_polygons(mesh, Welding::none));
+    const Polygons polygons = make_plain_polygons(mesh);
     Surface surface;
     surface.name = mesh.name;
     VertexSplitter vertices(polygons.positions.size());

@@ -1,10 +1,11 @@
 // Boxes of displaced patches. A sample is P = sum of w_c (p_c + F_c d) over the corners c with bilinear
 // weights, so it lies in the hull of the p_c + F_c D, where D holds every d that the map gives over the
-// patch's uvs. All intervals are in double precision and widened by the rounding of the float evaluation (u =
-// 2^-24 an operation).
+// patch's uvs. A bicubic base lies in the hull of its control points instead of the p_c. All intervals are in
+// double precision and widened by the rounding of the float evaluation (u = 2^-24 an operation).
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "surface/patch_samples.h"
 #include "surface/texels.h"
@@ -67,10 +68,12 @@ struct Footprint {
     uint8_t tile;
     double largest_position = 0, largest_u = 0, largest_v = 0;
 
-    void include(const VertexData& vertex) {
-        const Vec3f& p = vertex.position;
+    void include(const Vec3f& p) {
         for (const float value : {p.x, p.y, p.z})
             largest_position = std::max(largest_position, double(std::fabs(value)));
+    }
+    void include(const VertexData& vertex) {
+        include(vertex.position);
         largest_u = std::max(largest_u, double(std::fabs(vertex.uv.x)));
         largest_v = std::max(largest_v, double(std::fabs(vertex.uv.y)));
     }
@@ -146,38 +149,62 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     return result;
 }
 
-/// Extends `bounds` by the hull over `corners` of p + F D.
-void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint, const Corner* corners,
-                    int count) {
+/// Extends `bounds` by the hull over `corners` of p + F D; by a bicubic base that lies in `base` plus the
+/// hull of F D, where `base` is not null.
+void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint, const CoordinateRanges* base,
+                    std::span<const Corner> corners) {
     Interval u, v;
-    for (int c = 0; c < count; ++c) u.extend(corners[c].uv[0]), v.extend(corners[c].uv[1]);
+    for (const Corner& corner : corners) u.extend(corner.uv[0]), v.extend(corner.uv[1]);
     const std::array<Interval, 3> d = bound_displacement(footprint, u, v);
     for (int axis = 0; axis < 3; ++axis) {
         Interval hull;
         double size = 0;
-        for (int c = 0; c < count; ++c) {
-            Interval moved{corners[c].position[axis], corners[c].position[axis]};
+        for (const Corner& corner : corners) {
+            Interval moved{corner.position[axis], corner.position[axis]};
+            if (base) moved = {(*base)[size_t(axis)][0], (*base)[size_t(axis)][1]};
             if (!footprint.map->is_tangent) moved = moved + d[axis];
             for (int k = 0; k < 3 && footprint.map->is_tangent; ++k)
-                moved = moved + d[k] * corners[c].frame[axis][k];
+                moved = moved + d[k] * corner.frame[axis][k];
             hull.extend(moved.low), hull.extend(moved.high);
         }
         // Entries of frames are at most 1, but their blends err by 8 units of the largest, not of the value.
         for (const Interval& channel : d) size += channel.size();
+        // A cubic is blended twice, each time with 6 units.
         const double slack = 16 * kUnit * (footprint.largest_position + size) + kUnderflow;
         bounds[axis].extend(hull.low - slack), bounds[axis].extend(hull.high + slack);
     }
 }
 
+/// The patch's own corners and its base.
+struct PatchBase {
+    Footprint footprint;
+    std::array<Corner, 4> corners;
+    const BicubicBase* bicubic; ///< or null
+
+    PatchBase(const Surface& surface, const PatchSamples& samples)
+        : footprint{&surface.map, samples.corners()[0].tile}, bicubic(samples.base()) {
+        for (int k = 0; k < 4; ++k) {
+            footprint.include(samples.corners()[k]);
+            corners[k] = make_corner(samples.corners()[k]);
+        }
+        if (!bicubic) return;
+        for (const auto& column : bicubic->columns)
+            for (const Vec3f& control : column) footprint.include(control);
+    }
+};
+
 /// Extends `bounds` by all samples in [u0, u1] x [v0, v1] of a patch that are not on foreign lines.
-void extend_by_part(std::array<Interval, 3>& bounds, const Footprint& footprint,
-                    const std::array<Corner, 4>& corners, const std::array<double, 4>& u0_v0_u1_v1) {
+void extend_by_part(std::array<Interval, 3>& bounds, const PatchBase& base,
+                    const std::array<double, 4>& u0_v0_u1_v1) {
     const auto [u0, v0, u1, v1] = u0_v0_u1_v1;
+    const std::array<Corner, 4>& corners = base.corners;
     const auto blend = [&](double u, double v) {
         return blend_line(blend_line(corners[0], corners[1], u), blend_line(corners[3], corners[2], u), v);
     };
     const std::array<Corner, 4> part = {blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
-    extend_by_hull(bounds, footprint, part.data(), 4);
+    if (!base.bicubic) return extend_by_hull(bounds, base.footprint, nullptr, part);
+    const CoordinateRanges ranges = bound_part(*base.bicubic, u0_v0_u1_v1);
+    extend_by_hull(bounds, base.footprint, &ranges, part);
 }
 
 /// Extends `bounds` by the samples of edge k between s0 and s1 of its line.
@@ -189,7 +216,12 @@ void extend_by_line(std::array<Interval, 3>& bounds, const PatchSamples& samples
                  second = make_corner(samples.second_of_line(k));
     const std::array<Corner, 2> ends = {blend_line(first, second, s0_s1[0]),
                                         blend_line(first, second, s0_s1[1])};
-    extend_by_hull(bounds, footprint, ends.data(), 2);
+    if (!samples.base()) return extend_by_hull(bounds, footprint, nullptr, ends);
+    const std::array<Vec3f, 2>& inner = samples.line_controls(k);
+    for (const Vec3f& control : inner) footprint.include(control);
+    const CoordinateRanges ranges = bound_curve(
+        {samples.first_of_line(k).position, inner[0], inner[1], samples.second_of_line(k).position}, s0_s1);
+    extend_by_hull(bounds, footprint, &ranges, ends);
 }
 
 /// Parts a side, so that slopes and turning frames do not make the box loose.
@@ -222,31 +254,18 @@ Box compute_plain_box(const Surface& surface, uint32_t patch) {
     return box;
 }
 
-struct PatchCorners {
-    Footprint footprint;
-    std::array<Corner, 4> corners;
-
-    PatchCorners(const Surface& surface, const PatchSamples& samples)
-        : footprint{&surface.map, samples.corners()[0].tile} {
-        for (int k = 0; k < 4; ++k) {
-            footprint.include(samples.corners()[k]);
-            corners[k] = make_corner(samples.corners()[k]);
-        }
-    }
-};
-
 } // namespace
 
 Box compute_patch_box(const Surface& surface, uint32_t patch) {
     if (!surface.has_displacement) return compute_plain_box(surface, patch);
     const PatchSamples samples(surface, patch);
-    const PatchCorners own(surface, samples);
+    const PatchBase own(surface, samples);
     std::array<Interval, 3> bounds;
     const int count = choose_part_count(own.footprint, samples.corners());
     for (int j = 0; j < count; ++j)
         for (int i = 0; i < count; ++i)
             extend_by_part(
-                bounds, own.footprint, own.corners,
+                bounds, own,
                 {double(i) / count, double(j) / count, double(i + 1) / count, double(j + 1) / count});
     for (int k = 0; k < 4; ++k)
         if (samples.is_line_foreign(k)) extend_by_line(bounds, samples, surface.map, k, {0, 1});
@@ -263,9 +282,9 @@ Box compute_tile_box(const Surface& surface, uint32_t patch, const PatchLevels& 
     const uint32_t n = 1u << levels.patch;
     const double step = 1.0 / n;
     const PatchSamples samples(surface, patch);
-    const PatchCorners own(surface, samples);
+    const PatchBase own(surface, samples);
     std::array<Interval, 3> bounds;
-    extend_by_part(bounds, own.footprint, own.corners, {i0 * step, j0 * step, i1 * step, j1 * step});
+    extend_by_part(bounds, own, {i0 * step, j0 * step, i1 * step, j1 * step});
     Box corner_box;
     const bool is_touched[4] = {j0 == 0, i1 == n, j1 == n, i0 == 0};
     const uint32_t starts[4] = {i0, j0, n - i1, n - j1}, ends[4] = {i1, j1, n - i0, n - j0};

@@ -109,7 +109,12 @@ PatchSamples::PatchSamples(const Surface& surface, uint32_t patch) : map_(&surfa
         lines_[k].first = lines_[k].is_foreign ? load_vertex(surface, line.first) : corners_[(k + start) & 3];
         lines_[k].second =
             lines_[k].is_foreign ? load_vertex(surface, line.second) : corners_[(k + 1 - start) & 3];
+        lines_[k].controls = surface.line_controls(patch, k, line);
     }
+    if (surface.controls.empty()) return;
+    base_.emplace(std::array<Vec3f, 4>{corners_[0].position, corners_[1].position, corners_[2].position,
+                                       corners_[3].position},
+                  surface.controls[patch]);
 }
 
 Vec3f PatchSamples::corner(int k) const {
@@ -118,12 +123,17 @@ Vec3f PatchSamples::corner(int k) const {
 }
 
 Vec3f PatchSamples::edge(int k, float s) const {
-    const VertexData sample = blend_line(lines_[k].first, lines_[k].second, s);
+    const Line& line = lines_[k];
+    VertexData sample = blend_line(line.first, line.second, s);
+    if (base_)
+        sample.position = blend_cubic(line.first.position, line.controls[0], line.controls[1],
+                                      line.second.position, scalar::weigh_cubic(s));
     return displace(*map_, sample.tile, sample.position, sample.uv, sample.frame);
 }
 
 Vec3f PatchSamples::interior(float u, float v) const {
-    const VertexData sample = blend_corners(corners_, u, v);
+    VertexData sample = blend_corners(corners_, u, v);
+    if (base_) sample.position = base_->evaluate(u, v);
     return displace(*map_, sample.tile, sample.position, sample.uv, sample.frame);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/scalar.h"
+#include "surface/bicubic.h"
 #include "surface/surface.h"
 
 namespace relief {
@@ -65,16 +66,22 @@ class PatchSamples {
     const std::array<VertexData, 4>& corners() const { return corners_; }
     const VertexData& first_of_line(int k) const { return lines_[k].first; }
     const VertexData& second_of_line(int k) const { return lines_[k].second; }
+    /// Inner control points of the line of edge k, from its start, where the base is bicubic.
+    const std::array<Vec3f, 2>& line_controls(int k) const { return lines_[k].controls; }
+    /// The bicubic base, or null.
+    const BicubicBase* base() const { return base_ ? &*base_ : nullptr; }
 
   private:
     struct Line {
         VertexData first, second;
+        std::array<Vec3f, 2> controls;
         bool is_reversed = false, is_foreign = false;
     };
     const DisplacementMap* map_;
     std::array<VertexData, 4> corners_, dominants_;
     std::array<Line, 4> lines_;
     std::array<bool, 4> is_corner_foreign_{};
+    std::optional<BicubicBase> base_;
 };
 
 /// evaluate_vertex and compute_shading_normal (surface/surface.h) of a patch that is unpacked already.

@@ -108,6 +108,28 @@ std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
     return result;
 }
 
+/// Creases between the points of the polygons; those between points that have become one are gone.
+std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
+                                 const std::vector<uint32_t>& representatives) {
+    std::vector<Crease> result;
+    for (const Crease& crease : mesh.creases) {
+        if (crease.first >= mesh.positions.size() || crease.second >= mesh.positions.size())
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("crease from point {} to {} is out of range, there are {}", crease.first,
+                                     crease.second, mesh.positions.size()),
+                         where, "points count from 0; write the mesh again"});
+        if (!(crease.sharpness >= 0))
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("sharpness {} of a crease is not 0 or more", crease.sharpness), where,
+                         "10 and above stays sharp for ever"});
+        Crease moved = crease;
+        if (!representatives.empty())
+            moved = {representatives[crease.first], representatives[crease.second], crease.sharpness};
+        if ((moved.first == moved.second) == (crease.first == crease.second)) result.push_back(moved);
+    }
+    return result;
+}
+
 void check_area(const Polygons& polygons, uint32_t face) {
     const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
     const auto refuse = [&] {
@@ -148,6 +170,9 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
     for (Vec3f& p : result.positions) p = p + Vec3f{}; // -0 becomes 0
     std::vector<uint32_t> representatives;
     if (welding == Welding::equal_points) representatives = find_equal_points(result.positions);
+
+    if (mesh.subdivision.creases == CreaseRule::obey)
+        result.creases = move_creases(mesh, result.where, representatives);
 
     size_t start = 0;
     for (size_t face = 0; face < mesh.face_sizes.size(); start += mesh.face_sizes[face], ++face) {

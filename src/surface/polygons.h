@@ -17,6 +17,7 @@ struct Polygons {
     std::vector<Vec2f> uvs;             ///< one a corner, or empty
     std::vector<Vec3f> normals;         ///< one a corner, or empty
     std::vector<uint32_t> source_faces; ///< face of the mesh, for messages
+    std::vector<Crease> creases;        ///< of the mesh, between these points
 
     uint32_t face_count() const { return uint32_t(source_faces.size()); }
     uint32_t face_size(uint32_t face) const { return starts[face + 1] - starts[face]; }

@@ -57,6 +57,8 @@ Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples
     const std::array<VertexData, 4>& c = samples.corners();
     scalar::SurfaceDerivative along_u = blend_difference(c[0], c[1], c[3], c[2], v);
     scalar::SurfaceDerivative along_v = blend_difference(c[0], c[3], c[1], c[2], u);
+    if (const BicubicBase* base = samples.base())
+        along_u.base = base->differentiate_u(u, v), along_v.base = base->differentiate_v(u, v);
     Vec3f normal = normalize(blend_normals({c[0].frame.n, c[1].frame.n, c[2].frame.n, c[3].frame.n}, {u, v}));
     if (normal == Vec3f{}) normal = normalize(cross(along_u.base, along_v.base));
 

@@ -66,6 +66,10 @@ struct DisplacementMap {
     bool is_tangent = false; ///< d is (t, b, n) and goes through the frame
 };
 
+/// The control points of a bicubic patch beside its corners (shared/control_points.h less 4). Those of an
+/// edge have the same bits in both of its patches.
+using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
+
 /// Immutable once made; safe to read from any thread.
 struct Surface {
     std::string name;                  ///< of the mesh, for messages
@@ -75,6 +79,7 @@ struct Surface {
     std::vector<uint32_t> dominants;   ///< one a split vertex, or empty: every vertex is its own
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     std::vector<Quad> quads;
+    std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
     std::vector<EdgeOverride> overrides;
     std::vector<uint64_t> override_bits; ///< one bit a patch edge that stands in `overrides`; empty: none
     DisplacementMap map;                 ///< no tiles: undisplaced
@@ -95,6 +100,12 @@ struct Surface {
         bool is_reversed;
     };
     EdgeLine edge_line(uint32_t patch, int edge) const;
+    /// Control points between the ends of the line of edge k, from its start; where the base is bicubic.
+    std::array<Vec3f, 2> line_controls(uint32_t patch, int edge, const EdgeLine& line) const {
+        if (controls.empty()) return {};
+        const Vec3f* own = &controls[patch][size_t(2 * edge)];
+        return {own[line.is_reversed ? 1 : 0], own[line.is_reversed ? 0 : 1]};
+    }
 
     /// True on both sides of an edge whose patches join its ends by different vertices.
     bool is_seam(uint32_t patch, int edge) const {

@@ -33,11 +33,19 @@ struct Corner {
     double angle;
 };
 
-Corner make_corner(const Surface& surface, const Quad& quad, int k) {
+Corner make_corner(const Surface& surface, size_t patch, int k) {
+    const Quad& quad = surface.quads[patch];
     const Vec3d p = to_double(surface.positions[quad.vertex[k]]);
     Corner corner;
-    corner.to_next = to_double(surface.positions[quad.vertex[(k + 1) & 3]]) - p;
-    corner.to_previous = to_double(surface.positions[quad.vertex[(k + 3) & 3]]) - p;
+    if (surface.controls.empty()) {
+        corner.to_next = to_double(surface.positions[quad.vertex[(k + 1) & 3]]) - p;
+        corner.to_previous = to_double(surface.positions[quad.vertex[(k + 3) & 3]]) - p;
+    } else {
+        // A cubic leaves its end towards the next control point.
+        const InnerControls& controls = surface.controls[patch];
+        corner.to_next = (to_double(controls[size_t(2 * k)]) - p) * 3.0;
+        corner.to_previous = (to_double(controls[size_t(2 * ((k + 3) & 3) + 1)]) - p) * 3.0;
+    }
     corner.angle = std::atan2(compute_length(cross(corner.to_next, corner.to_previous)),
                               dot(corner.to_next, corner.to_previous));
     return corner;
@@ -46,11 +54,11 @@ Corner make_corner(const Surface& surface, const Quad& quad, int k) {
 /// Sums of the points' normals, kept at their dominant vertices.
 std::vector<Vec3d> sum_normals(const Surface& surface) {
     std::vector<Vec3d> sums(surface.positions.size());
-    for (const Quad& quad : surface.quads)
+    for (size_t patch = 0; patch < surface.quads.size(); ++patch)
         for (int k = 0; k < 4; ++k) {
-            const Corner corner = make_corner(surface, quad, k);
+            const Corner corner = make_corner(surface, patch, k);
             Vec3d normal = normalize_double(cross(corner.to_next, corner.to_previous));
-            sums[surface.dominant(quad.vertex[k])] += normal * corner.angle;
+            sums[surface.dominant(surface.quads[patch].vertex[k])] += normal * corner.angle;
         }
     return sums;
 }
@@ -77,8 +85,11 @@ double compute_uv_area(const std::array<Vec2f, 4>& uvs) {
     return (ax * by - ay * bx) / 2;
 }
 
-void compute_vertex_frames(Surface& surface, const std::vector<float>& handedness) {
-    std::vector<Vec3d> normals = sum_normals(surface);
+void compute_vertex_frames(Surface& surface, const std::vector<float>& handedness,
+                           const std::vector<Vec3f>& known_normals) {
+    std::vector<Vec3d> normals;
+    for (const Vec3f& normal : known_normals) normals.push_back(to_double(normal));
+    if (known_normals.empty()) normals = sum_normals(surface);
     for (Vec3d& normal : normals) {
         normal = normalize_double(normal);
         if (normal == Vec3d{}) normal = {0, 0, 1};
@@ -86,9 +97,10 @@ void compute_vertex_frames(Surface& surface, const std::vector<float>& handednes
     std::vector<Vec3d> tangents;
     if (surface.map.is_tangent) {
         tangents.resize(surface.positions.size());
-        for (const Quad& quad : surface.quads)
+        for (size_t patch = 0; patch < surface.quads.size(); ++patch)
             for (int k = 0; k < 4; ++k) {
-                const Corner corner = make_corner(surface, quad, k);
+                const Quad& quad = surface.quads[patch];
+                const Corner corner = make_corner(surface, patch, k);
                 const Vec3d& normal = normals[surface.dominant(quad.vertex[k])];
                 tangents[quad.vertex[k]] +=
                     compute_u_direction(surface, quad, k, corner, normal) * corner.angle;

@@ -90,6 +90,12 @@ TEST_F(Usage, mesh_options_do_not_go_with_a_scene_file) {
     expect_refused({"render", "scene.json", "--vdm", "bump.exr"}, "--vdm");
 }
 
+TEST_F(Usage, a_subdivision_level_needs_a_scheme) {
+    expect_refused({"render", "plane.obj", "--subdivision-level", "2"}, "without a scheme");
+    expect_refused({"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "9"},
+                   "from 0 to 8");
+}
+
 TEST_F(Usage, a_missing_file_is_bad_input_with_its_name) {
     expect_refused({"render", "nothing.obj", "--size", "8x8"}, "nothing.obj", 3);
     expect_refused({"inspect", "nothing.exr"}, "nothing.exr", 3);

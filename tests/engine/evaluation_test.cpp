@@ -78,8 +78,11 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
     }
 }
 
-void expect_definition(const Displacement& displacement) {
-    const Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
+void expect_definition(const Displacement& displacement,
+                       SubdivisionScheme scheme = SubdivisionScheme::none) {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
+    scene.meshes[0].subdivision.scheme = scheme;
+    scene.meshes[0].subdivision.level = 0;
     RenderSettings settings;
     settings.level = 0;
     const auto prepared = prepare_scene(scene, settings);
@@ -121,6 +124,17 @@ TEST(Evaluation, is_the_definition_for_half_maps_height_maps_and_missing_tiles) 
     displacement.is_udim = true;
     displacement.tiles[0].udim = 1002; // the mesh lies on 1001: nothing is displaced
     expect_definition(displacement);
+}
+
+TEST(Evaluation, is_the_definition_on_bicubic_patches) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::black}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), space);
+            displacement.wrap = wrap;
+            expect_definition(displacement, SubdivisionScheme::catmark);
+            if (testing::Test::HasFatalFailure()) return;
+        }
 }
 
 TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {

@@ -31,6 +31,7 @@ struct Case {
     DisplacementSpace space;
     int level;
     Placement placement;
+    SubdivisionScheme scheme = SubdivisionScheme::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -45,6 +46,12 @@ const Case kCases[] = {
     {"torus_tangent_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single},
     {"torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel, Placement::instances},
     {"torus_object_level6", Body::torus, DisplacementSpace::object, 6, Placement::single},
+    {"smooth_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark},
+    {"smooth_sphere_object_auto_instances", Body::sphere, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::catmark},
+    {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
+     SubdivisionScheme::catmark},
 };
 
 uint64_t ray_count() {
@@ -88,7 +95,10 @@ Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t
 }
 
 Scene make_scene(const Case& c) {
-    Mesh mesh = c.body == Body::sphere ? test::make_cube_sphere(4) : test::make_torus(8, 14);
+    const bool is_smooth = c.scheme != SubdivisionScheme::none;
+    Mesh mesh = c.body == Body::sphere ? test::make_cube_sphere(is_smooth ? 2 : 4) : test::make_torus(8, 14);
+    mesh.subdivision.scheme = c.scheme;
+    mesh.subdivision.level = c.body == Body::sphere ? 1 : 0;
     Scene scene = test::make_body_scene(
         std::move(mesh),
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),

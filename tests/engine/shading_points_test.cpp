@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 /// A displaced torus with a seam along either circle, the same one mirrored, a sphere whose patches nearly
-/// all touch one, and plain quads.
+/// all touch one, plain quads, and a smooth base.
 Scene make_scene(const Displacement& displacement) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
     scene.meshes.push_back(test::make_cube_sphere(2));
@@ -21,6 +21,10 @@ Scene make_scene(const Displacement& displacement) {
     scene.objects.back().world_from_object.translation = {3, 1, -2};
     scene.objects.push_back({"sphere", 1, 0, kNoIndex, {}});
     scene.objects.push_back({"plain", 1, kNoIndex, kNoIndex, {}});
+    scene.meshes.push_back(test::make_cube_sphere(2));
+    scene.meshes.back().subdivision.scheme = SubdivisionScheme::catmark;
+    scene.meshes.back().subdivision.level = 1;
+    scene.objects.push_back({"smooth", 2, 0, kNoIndex, {}});
     return scene;
 }
 

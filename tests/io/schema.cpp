@@ -11,6 +11,7 @@
 
 #include "io/displacement_conventions.h"
 #include "io/scene_keys.h"
+#include "io/subdivision_json.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -59,6 +60,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/materials/additionalProperties", scene_keys::kMaterial);
     expect_keys("/properties/displacements/additionalProperties", scene_keys::kDisplacement);
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
+    expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
     expect_keys("/properties/objects/items", scene_keys::kObject);
     expect_keys("/properties/lights/items/oneOf/0", scene_keys::kSun);
     expect_keys("/properties/lights/items/oneOf/1", scene_keys::kPoint);
@@ -67,7 +69,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 12u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 13u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {
@@ -77,6 +79,13 @@ TEST(Schema, names_only_what_the_reader_takes) {
     for (const std::string name : map.at("space").at("enum")) EXPECT_NO_THROW(parse_displacement_space(name));
     for (const std::string name : map.at("wrap").at("enum")) EXPECT_NO_THROW(parse_wrap_mode(name));
     for (const std::string name : map.at("encoding").at("enum")) EXPECT_NO_THROW(parse_encoding(name));
+    const json& subdivision =
+        at(schema, "/properties/meshes/additionalProperties/properties/subdivision/properties");
+    for (const std::string name : subdivision.at("scheme").at("enum"))
+        EXPECT_NO_THROW(parse_subdivision_scheme(name));
+    for (const std::string name : subdivision.at("uv").at("enum")) EXPECT_NO_THROW(parse_uv_rule(name));
+    for (const std::string name : subdivision.at("boundary").at("enum"))
+        EXPECT_NO_THROW(parse_boundary_rule(name));
     const std::vector<std::string> presets = map.at("preset").at("enum");
     const std::span<const std::string_view> known = get_preset_names();
     EXPECT_EQ(Names(presets.begin(), presets.end()), make_names(known));
@@ -89,6 +98,9 @@ TEST(Schema, has_the_limits_of_the_library) {
     EXPECT_EQ(render.at("height").at("maximum"), kMaxPictureSize);
     EXPECT_EQ(render.at("spp").at("maximum"), kMaxSamples);
     EXPECT_EQ(render.at("bounces").at("maximum"), kMaxBounces);
+    EXPECT_EQ(
+        at(schema, "/properties/meshes/additionalProperties/properties/subdivision/properties/level/maximum"),
+        kMaxSubdivisionLevel);
     EXPECT_EQ(render.at("seed").at("maximum"), 4294967295u);
 }
 

@@ -25,6 +25,7 @@ ALLOWED = {
 # Libraries that only these folders may see; a folder stands for all below it. Tests may see all of them.
 LIBRARIES = {
     r"(oneapi/)?tbb/": ["src/base"],
+    r"opensubdiv/": ["src/surface"],
     r"hwy/": ["src/math", "src/engine/cpu"],
     r"OpenImageIO/": ["src/io/pictures"],
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],

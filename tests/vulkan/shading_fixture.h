@@ -70,7 +70,10 @@ inline Scene make_shading_scene() {
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
     glowing.emission = {4, 3, 1};
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
-    add_displaced(scene, test::make_torus(6, 8), DisplacementSpace::object,
+    Mesh torus = test::make_torus(6, 8);
+    torus.subdivision.scheme = SubdivisionScheme::catmark;
+    torus.subdivision.level = 0;
+    add_displaced(scene, torus, DisplacementSpace::object,
                   compose(make_translation({2.5f, 0.5f, 0}), make_scale({-0.5f, 0.6f, 0.7f})), glowing);
     Mesh floor = make_floor(6);
     floor.uvs = {{-1.7f, 3.2f}, {2.9f, 3.1f}, {3.0f, -2.5f}, {-1.6f, -2.4f}};

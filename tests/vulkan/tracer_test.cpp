@@ -20,6 +20,7 @@ struct Case {
     uint32_t rays = 1500;
     uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
+    SubdivisionScheme scheme = SubdivisionScheme::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -35,7 +36,10 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     settings.bottom = c.bottom;
     settings.lod = c.lod;
     settings.bottom_cache_bytes = c.cache_bytes;
-    const std::shared_ptr<const PreparedScene> scene = prepare_scene(make_scene(c.space), settings);
+    Scene source = make_scene(c.space);
+    source.meshes[0].subdivision.scheme = c.scheme;
+    source.meshes[0].subdivision.level = 1;
+    const std::shared_ptr<const PreparedScene> scene = prepare_scene(std::move(source), settings);
     const std::vector<cpu::TraceRay> rays = make_rays(c.rays, 7);
     TracerConfig config;
     config.pair_capacity = c.pair_capacity;
@@ -55,6 +59,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{.name = "tiles", .level = 6}, Case{.name = "auto_level", .level = kAutoLevel},
         Case{.name = "tangent_space", .space = DisplacementSpace::tangent},
         Case{.name = "tangent_auto", .space = DisplacementSpace::tangent, .level = kAutoLevel},
+        Case{.name = "smooth_base", .scheme = SubdivisionScheme::catmark},
+        Case{.name = "smooth_base_tangent_auto",
+             .space = DisplacementSpace::tangent,
+             .level = kAutoLevel,
+             .scheme = SubdivisionScheme::catmark},
+        Case{.name = "smooth_base_tiles_fused",
+             .level = 6,
+             .bottom = BottomForm::fused,
+             .scheme = SubdivisionScheme::catmark},
         Case{.name = "box_leaves", .leaf = LeafKind::box},
         Case{.name = "box_auto", .level = kAutoLevel, .leaf = LeafKind::box},
         Case{.name = "fused", .bottom = BottomForm::fused},

@@ -7,8 +7,11 @@
 #define RELIEF_PATCH_EVALUATION_INL_H
 #endif
 
+#include <optional>
+
 #include "engine/cpu/bottom_tree.h"
 #include "math/lanes-inl.h"
+#include "surface/bicubic.h"
 #include "surface/texels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -133,24 +136,55 @@ HWY_INLINE Lanes16 make_ramp(float begin) {
     return Lanes16(begin) + Lanes16::load(kRamp);
 }
 
-/// Sixteen samples at (u, v) on a patch whose corners are given, by the formula of interior samples.
-HWY_INLINE void evaluate_samples(const Surface& surface, uint8_t tile, const VertexValues (&corner)[4],
+/// A patch unpacked for interior samples.
+struct PatchValues {
+    VertexValues corner[4];
+    std::optional<BicubicBase> base; ///< where it is bicubic
+
+    HWY_INLINE PatchValues(const Surface& surface, uint32_t patch) {
+        const Quad& quad = surface.quads[patch];
+        for (size_t k = 0; k < 4; ++k) corner[k] = read_vertex(surface, quad.vertex[k]);
+        if (surface.controls.empty()) return;
+        base.emplace(
+            std::array<Vec3f, 4>{surface.positions[quad.vertex[0]], surface.positions[quad.vertex[1]],
+                                 surface.positions[quad.vertex[2]], surface.positions[quad.vertex[3]]},
+            surface.controls[patch]);
+    }
+};
+
+/// One coordinate of sixteen samples of a bicubic base.
+HWY_INLINE Lanes16 blend_base(const BicubicBase& base, int axis, const wide::CubicWeights& along,
+                              const wide::CubicWeights& across) {
+    const auto read = [&](size_t column, size_t row)
+                          HWY_ATTR { return Lanes16(get_component(base.columns[column][row], axis)); };
+    Lanes16 point[4];
+    for (size_t column = 0; column < 4; ++column)
+        point[column] =
+            wide::blend_cubic(read(column, 0), read(column, 1), read(column, 2), read(column, 3), across);
+    return wide::blend_cubic(point[0], point[1], point[2], point[3], along);
+}
+
+/// Sixteen samples at (u, v) on a patch, by the formula of interior samples.
+HWY_INLINE void evaluate_samples(const Surface& surface, uint8_t tile, const PatchValues& patch,
                                  const Lanes16& u, const Lanes16& v, Lanes16 (&position)[3]) {
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    const VertexValues(&corner)[4] = patch.corner;
     Lanes16 value[kValueCount];
-    for (int k = 0; k < values; ++k)
+    for (int k = patch.base ? kUv : 0; k < values; ++k)
         value[k] = wide::blend_quad(Lanes16(corner[0].value[k]), Lanes16(corner[1].value[k]),
                                     Lanes16(corner[2].value[k]), Lanes16(corner[3].value[k]), u, v);
+    if (patch.base) {
+        const wide::CubicWeights along = wide::weigh_cubic(u), across = wide::weigh_cubic(v);
+        for (int axis = 0; axis < 3; ++axis) value[axis] = blend_base(*patch.base, axis, along, across);
+    }
     displace(surface, tile, value, position);
 }
 
 /// All rows and columns of the tile but those on a border of the patch, which evaluate_border takes care of
 /// (and may be written here nevertheless).
 HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
-    const Quad& quad = surface.quads[range.patch];
-    const uint8_t tile = surface.tile(quad.vertex[0]);
-    VertexValues corner[4];
-    for (size_t k = 0; k < 4; ++k) corner[k] = read_vertex(surface, quad.vertex[k]);
+    const uint8_t tile = surface.tile(surface.quads[range.patch].vertex[0]);
+    const PatchValues patch(surface, range.patch);
     const Lanes16 inverse(1.0f / float(range.side()));
     const uint32_t n = range.cell_count;
     const uint32_t row_begin = range.cell_y == 0 ? 1 : 0;
@@ -159,7 +193,7 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     for (uint32_t c = 0; c < n; c += 16) {
         const Lanes16 u = make_ramp(float(range.cell_x + c)) * inverse;
         for (uint32_t r = row_begin; r < row_end; ++r) {
-            evaluate_samples(surface, tile, corner, u, Lanes16(float(range.cell_y + r)) * inverse, position);
+            evaluate_samples(surface, tile, patch, u, Lanes16(float(range.cell_y + r)) * inverse, position);
             for (int axis = 0; axis < 3; ++axis)
                 position[axis].store_unaligned(&grid.axis[axis][r * VertexGrid::kPitch + c]);
         }
@@ -168,7 +202,7 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     // The last column by itself: a run of sixteen along each row would be for one sample.
     const Lanes16 u = Lanes16(float(range.cell_x + n)) * inverse;
     for (uint32_t r = row_begin; r < row_end; r += 16) {
-        evaluate_samples(surface, tile, corner, u, make_ramp(float(range.cell_y + r)) * inverse, position);
+        evaluate_samples(surface, tile, patch, u, make_ramp(float(range.cell_y + r)) * inverse, position);
         alignas(64) float point[3][16];
         for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         for (uint32_t lane = 0; lane < 16 && r + lane < row_end; ++lane)
@@ -177,16 +211,35 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     }
 }
 
+/// Sixteen samples of the line of an edge, at s; `controls` lie between its ends where the base is bicubic.
+HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& line,
+                              const std::array<Vec3f, 2>& controls, const Lanes16& s,
+                              Lanes16 (&position)[3]) {
+    const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
+    const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    const bool is_bicubic = !surface.controls.empty();
+    Lanes16 value[kValueCount];
+    for (int k = is_bicubic ? kUv : 0; k < values; ++k)
+        value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), s);
+    if (is_bicubic) {
+        const wide::CubicWeights weights = wide::weigh_cubic(s);
+        for (int axis = 0; axis < 3; ++axis)
+            value[axis] = wide::blend_cubic(
+                Lanes16(first.value[axis]), Lanes16(get_component(controls[0], axis)),
+                Lanes16(get_component(controls[1], axis)), Lanes16(second.value[axis]), weights);
+    }
+    displace(surface, surface.tile(line.first), value, position);
+}
+
 /// Samples of one border of the tile that lies on patch edge `edge`.
 HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge, VertexGrid& grid) {
     const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];
     const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
-    const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
+    const std::array<Vec3f, 2> controls = surface.line_controls(range.patch, edge, line);
     const bool is_row = edge % 2 == 0;
     const bool is_far = edge == 1 || edge == 2;              // at u = 1 or v = 1
     const bool is_against = (edge >= 2) != line.is_reversed; // grid index runs against first -> second
     const uint32_t begin = is_row ? range.cell_x : range.cell_y;
-    const int values = surface.map.is_tangent ? kValueCount : kFrame;
     for (uint32_t c = 0; c <= range.cell_count; c += 16) {
         alignas(64) float s[16], point[3][16];
         bool is_corner[16], has_others = false;
@@ -199,10 +252,8 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
             s[lane] = float(moved) * (1.0f / float(n));
         }
         if (has_others) {
-            Lanes16 value[kValueCount], position[3];
-            for (int k = 0; k < values; ++k)
-                value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), Lanes16::load(s));
-            displace(surface, surface.tile(line.first), value, position);
+            Lanes16 position[3];
+            evaluate_line(surface, line, controls, Lanes16::load(s), position);
             for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         }
         for (uint32_t lane = 0; lane < 16 && c + lane <= range.cell_count; ++lane) {

@@ -21,11 +21,12 @@ using WideVec3 = wide::Vec3;
 
 static_assert(sizeof(VertexData) == 64 && offsetof(VertexData, uv) == 4 * kUv &&
               offsetof(VertexData, frame) == 4 * kFrame);
-static_assert(sizeof(Affine) == 48);
+static_assert(sizeof(Affine) == 48 && sizeof(InnerControls) == 9 * 16);
 
 /// What sixteen hits bring, lane by lane.
 struct HitLanes {
     LaneQuads corner[4][4]; ///< VertexData of the patch's corners, four floats a part
+    LaneQuads controls[9];  ///< InnerControls, four floats a part, where the base is bicubic
     LaneQuads world_from_object[3], object_from_world[3];
     alignas(64) float u[16], v[16], i[16], j[16], side[16], turn[16];
     alignas(64) float is_upper[16], is_seam[4][16]; ///< not 0: true
@@ -80,6 +81,7 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
         for (size_t q = 0; q < 4; ++q)
             load_quads(reinterpret_cast<const char*>(&samples.corners()[k]) + 16 * q, lane,
                        &lanes.corner[k][q], 1);
+    if (!surface.controls.empty()) load_quads(&surface.controls[hit.patch], lane, lanes.controls, 9);
     load_quads(&instance.world_from_object, lane, lanes.world_from_object, 3);
     load_quads(&instance.object_from_world, lane, lanes.object_from_world, 3);
     const PatchLevels levels = unpack_levels(hit.levels);
@@ -97,14 +99,76 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
 }
 
 /// Corners of sixteen patches, and what is interpolated between them.
+/// Bicubic bases of sixteen patches.
+struct BaseLanes {
+    Lanes16 control[16][3]; ///< by number (shared/control_points.h) and axis
+
+    HWY_INLINE void load(const HitLanes& lanes, const Lanes16 (&corners)[4][16]) {
+        Lanes16 inner[36];
+        for (int q = 0; q < 9; ++q)
+            lanes.controls[q].transpose(inner[4 * q], inner[4 * q + 1], inner[4 * q + 2], inner[4 * q + 3]);
+        for (int k = 0; k < 16; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                control[k][axis] = k < 4 ? corners[k][kPosition + axis] : inner[3 * (k - 4) + axis];
+    }
+    HWY_INLINE const Lanes16& at(uint32_t column, uint32_t row, int axis) const {
+        return control[scalar::find_control_point(column, row)][axis];
+    }
+    HWY_INLINE WideVec3 evaluate(const WideVec2& place) const {
+        const wide::CubicWeights along = wide::weigh_cubic(place.x), across = wide::weigh_cubic(place.y);
+        Lanes16 result[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            Lanes16 point[4];
+            for (uint32_t c = 0; c < 4; ++c)
+                point[c] =
+                    wide::blend_cubic(at(c, 0, axis), at(c, 1, axis), at(c, 2, axis), at(c, 3, axis), across);
+            result[axis] = wide::blend_cubic(point[0], point[1], point[2], point[3], along);
+        }
+        return {result[0], result[1], result[2]};
+    }
+    HWY_INLINE WideVec3 differentiate_u(const WideVec2& place) const {
+        const wide::CubicWeights across = wide::weigh_cubic(place.y);
+        Lanes16 result[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            Lanes16 d[3];
+            for (uint32_t c = 0; c < 3; ++c)
+                d[c] = wide::blend_cubic(
+                    at(c + 1, 0, axis) - at(c, 0, axis), at(c + 1, 1, axis) - at(c, 1, axis),
+                    at(c + 1, 2, axis) - at(c, 2, axis), at(c + 1, 3, axis) - at(c, 3, axis), across);
+            result[axis] = wide::blend_slope(d[0], d[1], d[2], place.x);
+        }
+        return {result[0], result[1], result[2]};
+    }
+    HWY_INLINE WideVec3 differentiate_v(const WideVec2& place) const {
+        const wide::CubicWeights along = wide::weigh_cubic(place.x);
+        Lanes16 result[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            Lanes16 d[3];
+            for (uint32_t r = 0; r < 3; ++r)
+                d[r] = wide::blend_cubic(
+                    at(0, r + 1, axis) - at(0, r, axis), at(1, r + 1, axis) - at(1, r, axis),
+                    at(2, r + 1, axis) - at(2, r, axis), at(3, r + 1, axis) - at(3, r, axis), along);
+            result[axis] = wide::blend_slope(d[0], d[1], d[2], place.y);
+        }
+        return {result[0], result[1], result[2]};
+    }
+};
+
 struct CornerLanes {
     Lanes16 value[4][16];
+    bool is_bicubic;
+    BaseLanes base; ///< where it is bicubic
 
-    HWY_INLINE explicit CornerLanes(const HitLanes& lanes) {
+    HWY_INLINE CornerLanes(const HitLanes& lanes, const Surface& surface)
+        : is_bicubic(!surface.controls.empty()) {
         for (int k = 0; k < 4; ++k)
             for (int q = 0; q < 4; ++q)
                 lanes.corner[k][q].transpose(value[k][4 * q], value[k][4 * q + 1], value[k][4 * q + 2],
                                              value[k][4 * q + 3]);
+        if (is_bicubic) base.load(lanes, value);
+    }
+    HWY_INLINE WideVec3 blend_position(const WideVec2& at) const {
+        return is_bicubic ? base.evaluate(at) : blend_vector(kPosition, at);
     }
     HWY_INLINE Lanes16 blend(int k, const WideVec2& at) const {
         return wide::blend_quad(value[0][k], value[1][k], value[2][k], value[3][k], at.x, at.y);
@@ -145,7 +209,7 @@ HWY_INLINE WideVec3 fetch_decoded(const MapLanes& from, const CornerLanes& corne
 
 HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners,
                                         const WideVec2& at) {
-    const WideVec3 base = corners.blend_vector(kPosition, at), d = fetch_decoded(from, corners, at);
+    const WideVec3 base = corners.blend_position(at), d = fetch_decoded(from, corners, at);
     if (!from.map.is_tangent) return base + d;
     const WideVec3 t = corners.blend_vector(kFrame, at), b = corners.blend_vector(kFrame + 3, at),
                    n = corners.blend_vector(kFrame + 6, at);
@@ -228,6 +292,8 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
     const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
     wide::SurfaceDerivative along_u = differentiate(from, corners, {0, 1, 3, 2}, at.y);
     wide::SurfaceDerivative along_v = differentiate(from, corners, {0, 3, 1, 2}, at.x);
+    if (corners.is_bicubic)
+        along_u.base = corners.base.differentiate_u(at), along_v.base = corners.base.differentiate_v(at);
     const Lanes16 zero(0.0f), half_cell = Lanes16(0.5f) / Lanes16::load(lanes.side);
     WideVec3 normal = wide::make_unit(corners.blend_vector(kFrame + 6, at));
     normal = wide::select(normal == WideVec3{zero, zero, zero},
@@ -275,7 +341,7 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
     const cpu::TraceHit& any = batch.hits[batch.order[first]];
     const Surface& surface = batch.scene.surfaces[batch.scene.instances[any.instance].surface];
     const MapLanes from{surface.map, surface.tile(surface.quads[any.patch].vertex[0])};
-    const CornerLanes corners(lanes);
+    const CornerLanes corners(lanes, surface);
     const CellPointLanes cell = make_cell_point(lanes, from, corners);
     const AffineLanes inverse(lanes.object_from_world);
     const WideVec3 smooth = compute_shading_normals(lanes, from, corners);

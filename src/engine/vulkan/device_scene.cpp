@@ -121,6 +121,9 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
         append(arrays.positions, surface.positions);
+        data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
+        for (const InnerControls& controls : surface.controls)
+            arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
         data.first_uv = append(arrays.uvs, surface.uvs);
         data.first_frame = append(arrays.frames, surface.frames);
         data.first_dominant = append(arrays.dominants, surface.dominants);

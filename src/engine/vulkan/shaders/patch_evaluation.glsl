@@ -121,6 +121,51 @@ VertexData blend_corners(VertexData c0, VertexData c1, VertexData c2, VertexData
     return result;
 }
 
+bool is_bicubic(SurfaceData s) { return s.first_control != kNone; }
+
+/// Control point of a bicubic patch (shared/control_points.h).
+vec3 load_control(SurfaceData s, uvec4 quad, uint patch_index, uint number) {
+    if (number < 4u) return load_position(s, quad[number]);
+    return load_position_at(s.first_control + kInnerControlCount * patch_index + number - 4u);
+}
+
+vec3 blend_cubic_vectors(vec3 a, vec3 b, vec3 c, vec3 d, CubicWeights weights) {
+    return vec3(blend_cubic(a.x, b.x, c.x, d.x, weights), blend_cubic(a.y, b.y, c.y, d.y, weights),
+                blend_cubic(a.z, b.z, c.z, d.z, weights));
+}
+
+/// Point (u, v) of a bicubic base.
+vec3 evaluate_base(SurfaceData s, uvec4 quad, uint patch_index, float u, float v) {
+    CubicWeights across = weigh_cubic(v);
+    vec3 point[4];
+    for (uint column = 0u; column < 4u; ++column) {
+        vec3 control[4];
+        for (uint row = 0u; row < 4u; ++row)
+            control[row] = load_control(s, quad, patch_index, find_control_point(column, row));
+        point[column] = blend_cubic_vectors(control[0], control[1], control[2], control[3], across);
+    }
+    return blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_cubic(u));
+}
+
+/// Derivative of a bicubic base along u, or along v where `direction` is 1.
+vec3 differentiate_base(SurfaceData s, uvec4 quad, uint patch_index, vec2 at, uint direction) {
+    CubicWeights weights = weigh_cubic(direction == 0u ? at.y : at.x);
+    vec3 difference[3];
+    for (uint k = 0u; k < 3u; ++k) {
+        vec3 control[4];
+        for (uint c = 0u; c < 4u; ++c) {
+            uint low = direction == 0u ? find_control_point(k, c) : find_control_point(c, k);
+            uint high = direction == 0u ? find_control_point(k + 1u, c) : find_control_point(c, k + 1u);
+            control[c] = load_control(s, quad, patch_index, high) - load_control(s, quad, patch_index, low);
+        }
+        difference[k] = blend_cubic_vectors(control[0], control[1], control[2], control[3], weights);
+    }
+    float along = direction == 0u ? at.x : at.y;
+    return vec3(blend_slope(difference[0].x, difference[1].x, difference[2].x, along),
+                blend_slope(difference[0].y, difference[1].y, difference[2].y, along),
+                blend_slope(difference[0].z, difference[1].z, difference[2].z, along));
+}
+
 struct EdgeLine {
     uint first, second;
     bool is_reversed;
@@ -169,11 +214,13 @@ uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
 struct LinePlace {
     uint first, second;
     float s;
+    uint control;     ///< inner control point beside `first` where the base is bicubic; kNone at a corner
+    uint end_control; ///< beside `second`
 };
 
 LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
     uint vertex = load_dominant(s, quad[k]);
-    return LinePlace(vertex, vertex, 0.0);
+    return LinePlace(vertex, vertex, 0.0, kNone, kNone);
 }
 
 /// A sample of edge i_j_edge.z that is not a corner before it moves.
@@ -185,7 +232,21 @@ LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint pack
     uint k = move_line_sample(find_line_sample(i_j_edge.x, i_j_edge.y, level, edge, line.is_reversed),
                               level - packed_edge_level(packed_levels, edge));
     if (k == 0u || k == n) return find_corner(s, quad, (k == 0u) == line.is_reversed ? (edge + 1u) & 3u : edge);
-    return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)));
+    uint control = 4u + 2u * edge;
+    return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)), control + (line.is_reversed ? 1u : 0u),
+                     control + (line.is_reversed ? 0u : 1u));
+}
+
+/// A sample of the boundary before it is displaced.
+VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace place) {
+    VertexData first = load_vertex(s, place.first);
+    VertexData second = load_vertex(s, place.second);
+    VertexData base = blend_line(first, second, place.s);
+    if (is_bicubic(s) && place.control != kNone)
+        base.position = blend_cubic_vectors(first.position, load_control(s, quad, patch_index, place.control),
+                                            load_control(s, quad, patch_index, place.end_control), second.position,
+                                            weigh_cubic(place.s));
+    return base;
 }
 
 /// Sample (i, j) of a patch whose corners are at hand.
@@ -201,10 +262,11 @@ vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packe
             place = find_corner(s, c.quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
         else
             place = find_edge_place(s, c.quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
-        base = blend_line(load_vertex(s, place.first), load_vertex(s, place.second), place.s);
+        base = evaluate_place(s, c.quad, patch_index, place);
     } else {
         float cell = 1.0 / float(n);
         base = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], float(i) * cell, float(j) * cell);
+        if (is_bicubic(s)) base.position = evaluate_base(s, c.quad, patch_index, float(i) * cell, float(j) * cell);
     }
     return displace(s, base);
 }

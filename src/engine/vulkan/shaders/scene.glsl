@@ -9,6 +9,7 @@
 #include "shared/frame.h"
 #include "shared/texel.h"
 #include "shared/displace.h"
+#include "shared/control_points.h"
 #include "shared/bindings.h"
 #include "shared/device_scene.h"
 
@@ -33,11 +34,13 @@ layout(set = 0, binding = kBindHalfTexels) uniform samplerBuffer half_texels;
 #define kInfinity uintBitsToFloat(0x7f800000u)
 const uint kNoTile = 255u;
 
-vec3 load_position(SurfaceData s, uint vertex) {
-    int first = int(3u * (s.first_vertex + vertex));
+vec3 load_position_at(uint place) {
+    int first = int(3u * place);
     return vec3(texelFetch(positions, first).x, texelFetch(positions, first + 1).x,
                 texelFetch(positions, first + 2).x);
 }
+
+vec3 load_position(SurfaceData s, uint vertex) { return load_position_at(s.first_vertex + vertex); }
 
 vec2 load_uv(SurfaceData s, uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
 

@@ -40,6 +40,10 @@ vec2 find_ends(SurfaceData s, uint patch_index, uint level, float at, uvec2 edge
 vec3 compute_displaced_normal(SurfaceData s, PatchCorners c, uint patch_index, uint level, vec2 at) {
     SurfaceDerivative along_u = differentiate(c.corner[0], c.corner[1], c.corner[3], c.corner[2], at.y);
     SurfaceDerivative along_v = differentiate(c.corner[0], c.corner[3], c.corner[1], c.corner[2], at.x);
+    if (is_bicubic(s)) {
+        along_u.base = differentiate_base(s, c.quad, patch_index, at, 0u);
+        along_v.base = differentiate_base(s, c.quad, patch_index, at, 1u);
+    }
     vec3 normal = make_unit(blend_normals(s, c.quad, at));
     if (normal == vec3(0.0)) normal = make_unit(cross(along_u.base, along_v.base));
     MapData map = maps[s.map];

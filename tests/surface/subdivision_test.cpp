@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "surface/bicubic.h"
+#include "surface/isolate.h"
+#include "surface/limit_patches.h"
+#include "surface/limit_reference.h"
+#include "surface/patch_samples.h"
+#include "surface/smooth_shapes.h"
+#include "surface/subdivide.h"
+
+namespace relief {
+
+namespace {
+
+using test::Shape;
+
+/// What make_surface goes through, with the places of the patches on the mesh.
+struct Subdivided {
+    explicit Subdivided(const Mesh& mesh)
+        : polygons(make_polygons(mesh, Welding::equal_points)),
+          source(polygons, mesh.subdivision),
+          refined(make_refined(source)),
+          patches(make_limit_patches(source, refined)) {}
+
+    test::ReferencePoint find_limit(const test::LimitReference& reference, uint32_t quad, double x,
+                                    double y) const {
+        const QuadPlace& place = refined.places[quad];
+        const std::array<Vec2<double>, 4>& c = place.corners;
+        const Vec2<double> at = (c[0] * (1 - x) + c[1] * x) * (1 - y) + (c[3] * (1 - x) + c[2] * x) * y;
+        return reference.evaluate(place.face, place.part, at.x, at.y);
+    }
+    BicubicBase base(uint32_t quad) const {
+        const auto& points = refined.points[quad];
+        return BicubicBase({patches.positions[points[0]], patches.positions[points[1]],
+                            patches.positions[points[2]], patches.positions[points[3]]},
+                           patches.controls[quad]);
+    }
+    /// Not fitted.
+    bool is_exact(uint32_t quad) const {
+        const std::array<Vec2<double>, 4>& c = refined.places[quad].corners;
+        for (size_t k = 0; k < 4; ++k) {
+            const Vec2<double> side = c[(k + 1) % 4] - c[k];
+            if (!refined.is_regular[refined.points[quad][k]] || (side.x != 0 && side.y != 0)) return false;
+        }
+        return true;
+    }
+    static RefinedMesh make_refined(SubdivisionMesh& source) {
+        RefinedMesh refined = source.refine();
+        isolate_irregular_points(refined, kIsolationDepth);
+        return refined;
+    }
+
+    Polygons polygons;
+    SubdivisionMesh source;
+    RefinedMesh refined;
+    LimitPatches patches;
+};
+
+double distance(const Vec3f& a, const Vec3<double>& b) {
+    const Vec3<double> d = Vec3<double>{a.x, a.y, a.z} - b;
+    return std::sqrt(dot(d, d));
+}
+
+class SubdivisionTest : public testing::TestWithParam<Shape> {};
+
+TEST_P(SubdivisionTest, points_and_normals_lie_on_the_limit_surface) {
+    const Mesh mesh = test::make_shape(GetParam());
+    const Subdivided subdivided(mesh);
+    const test::LimitReference reference(mesh);
+    for (uint32_t quad = 0; quad < subdivided.refined.quad_count(); ++quad)
+        for (size_t k = 0; k < 4; ++k) {
+            const test::ReferencePoint wanted =
+                subdivided.find_limit(reference, quad, k == 1 || k == 2, k >= 2);
+            EXPECT_LT(
+                distance(subdivided.patches.positions[subdivided.refined.points[quad][k]], wanted.position),
+                5e-6);
+            const Vec3f& normal = subdivided.patches.corner_normals[quad][k];
+            if (wanted.sine > 0.1)
+                EXPECT_LT(distance(normal, wanted.normal), 1e-4) << quad << " corner " << k;
+        }
+}
+
+TEST_P(SubdivisionTest, patches_equal_the_limit_surface_at_random_points) {
+    const Mesh mesh = test::make_shape(GetParam());
+    const Subdivided subdivided(mesh);
+    const test::LimitReference reference(mesh);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0, 1);
+    double worst_regular = 0, worst_irregular = 0;
+    int regular_count = 0;
+    for (uint32_t quad = 0; quad < subdivided.refined.quad_count(); ++quad)
+        for (int sample = 0; sample < 50; ++sample) {
+            const float x = unit(random), y = unit(random);
+            const test::ReferencePoint wanted = subdivided.find_limit(reference, quad, double(x), double(y));
+            const Vec3f found = subdivided.base(quad).evaluate(x, y);
+            if (subdivided.is_exact(quad)) {
+                worst_regular = std::max(worst_regular, distance(found, wanted.position));
+                ++regular_count;
+                continue;
+            }
+            // Along the surface the fit may lag behind; off the surface it may not be.
+            const Vec3<double> d = Vec3<double>{found.x, found.y, found.z} - wanted.position;
+            worst_irregular = std::max(worst_irregular, std::fabs(dot(d, wanted.normal)));
+        }
+    EXPECT_GT(regular_count, 0);
+    EXPECT_LT(worst_regular, 3e-6);
+    EXPECT_LT(worst_irregular, 5e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SubdivisionTest,
+                         testing::Values(Shape::cube, Shape::pyramid, Shape::grid, Shape::creased_cube,
+                                         Shape::semi_sharp_cube, Shape::sharp_corner_grid));
+
+} // namespace
+
+} // namespace relief
