@@ -177,8 +177,7 @@ std::string_view GltfFile::find_view(const JsonNode& view) {
     return buffer.substr(offset, size);
 }
 
-GltfFile::Values GltfFile::find_values(const JsonNode& accessor_index, size_t width) {
-    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
     if (accessor.find("sparse")) accessor.fail("is sparse", "export it without sparse accessors");
     const std::optional<JsonNode> view_index = accessor.find("bufferView");
     if (!view_index)
@@ -210,17 +209,19 @@ GltfFile::Values GltfFile::find_values(const JsonNode& accessor_index, size_t wi
     return values;
 }
 
-std::vector<float> GltfFile::read_floats(const JsonNode& accessor_index, size_t width) {
-    const Values values = find_values(accessor_index, width);
-    std::vector<float> result;
-    result.reserve(values.count * width);
+std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, size_t width) {
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    const Values values = find_values(accessor, width);
+    const auto [found, is_new] = floats_.try_emplace(&accessor);
+    if (!is_new) return found->second;
+    found->second.reserve(values.count * width);
     for (size_t i = 0; i < values.count; ++i)
-        for (size_t k = 0; k < width; ++k) result.push_back(values.read_float(i, k));
-    return result;
+        for (size_t k = 0; k < width; ++k) found->second.push_back(values.read_float(i, k));
+    return found->second;
 }
 
 std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
-    const Values values = find_values(accessor_index, 1);
+    const Values values = find_values(resolve(accessor_index, accessors_, "accessor"), 1);
     std::vector<uint32_t> result;
     result.reserve(values.count);
     for (size_t i = 0; i < values.count; ++i) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,12 +32,13 @@ class GltfFile {
                                    const char* what);
 
     /// Values of an accessor, `width` a vertex, whole numbers scaled to [0, 1] or [-1, 1] where it says so.
-    std::vector<float> read_floats(const JsonNode& accessor_index, size_t width);
+    /// They live as long as the file: many parts may share them.
+    std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);
 
   private:
     struct Values;
-    Values find_values(const JsonNode& accessor_index, size_t width);
+    Values find_values(const JsonNode& accessor, size_t width);
     std::string_view find_view(const JsonNode& view);
     std::string_view find_buffer(const JsonNode& index);
     std::string load_buffer(const JsonNode& buffer) const;
@@ -48,7 +50,8 @@ class GltfFile {
     std::string_view text_, glb_buffer_;
     bool has_glb_buffer_ = false;
     std::vector<JsonNode> accessors_, views_, buffers_;
-    std::map<const JsonNode*, std::string> loaded_; ///< bytes of buffers that are not in the GLB file
+    std::map<const JsonNode*, std::string> loaded_;        ///< bytes of buffers that are not in the GLB file
+    std::map<const JsonNode*, std::vector<float>> floats_; ///< of accessors that were read
 };
 
 } // namespace relief

@@ -94,8 +94,8 @@ GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int
     const size_t vertex_count = part.positions.size() / 3;
     const auto read = [&](const std::string& key, size_t width) {
         const auto index = attributes.find(key);
-        if (!index) return std::vector<float>();
-        std::vector<float> values = file.read_floats(*index, width);
+        if (!index) return std::span<const float>();
+        const std::span<const float> values = file.read_floats(*index, width);
         if (values.size() != vertex_count * width)
             index->fail(fmt::format("{} values for {} vertices", values.size() / width, vertex_count),
                         kDamagedHint);
@@ -105,8 +105,6 @@ GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int
     part.tangents = read("TANGENT", 4);
     part.uvs = read(fmt::format("TEXCOORD_{}", uv_set), 2);
     part.uv_set_count = count_uv_sets(attributes);
-    // glTF measures v from the top of an image.
-    for (size_t k = 1; k < part.uvs.size(); k += 2) part.uvs[k] = 1 - part.uvs[k];
     read_faces(file, primitive, mode, part);
     return part;
 }

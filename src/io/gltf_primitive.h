@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "io/gltf_file.h"
@@ -9,10 +10,10 @@
 namespace relief {
 
 struct GltfPrimitive {
-    // Values of the vertices one after another; empty where the part has none of the kind.
-    std::vector<float> positions, normals; ///< 3 a vertex
-    std::vector<float> uvs;                ///< 2 a vertex, v upwards
-    std::vector<float> tangents;           ///< 4 a vertex
+    // Values of the vertices one after another, kept by the file; empty where the part has none of the kind.
+    std::span<const float> positions, normals; ///< 3 a vertex
+    std::span<const float> uvs;                ///< 2 a vertex, v downwards
+    std::span<const float> tangents;           ///< 4 a vertex
     std::vector<uint32_t> face_sizes, corners;
     size_t uv_set_count = 0; ///< TEXCOORD_0 and so on that the part has
 };

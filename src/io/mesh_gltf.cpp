@@ -194,6 +194,7 @@ class GltfBuilder {
 
     /// What a vertex of a part has become in the mesh.
     struct Corner {
+        uint32_t copy = 0; ///< of which part, counted from 1: parts may share vertices by the million
         uint32_t position = kNoIndex, uv = kNoIndex, normal = kNoIndex;
         std::array<float, 4> tangent{};
     };
@@ -202,14 +203,15 @@ class GltfBuilder {
         const VectorTransform vectors(world_from_node);
         if (mesh_.position_indices.size() + part.corners.size() >= kNoIndex)
             fail("has more than 2^32 corners with all its copies", "split the file");
-        std::vector<Corner> corners(part.positions.size() / 3);
+        corners_.resize(std::max(corners_.size(), part.positions.size() / 3));
+        ++copy_count_;
         size_t begin = 0;
         for (const uint32_t size : part.face_sizes) {
             // A mirror turns the winding round; the corners are walked backwards to keep the outside outside.
             for (uint32_t k = 0; k < size; ++k) {
                 const uint32_t vertex = part.corners[begin + (vectors.is_mirrored() ? size - 1 - k : k)];
-                Corner& corner = corners[vertex];
-                if (corner.position == kNoIndex) corner = weld(part, vertex, world_from_node, vectors);
+                Corner& corner = corners_[vertex];
+                if (corner.copy != copy_count_) corner = weld(part, vertex, world_from_node, vectors);
                 add_corner(corner);
             }
             mesh_.face_sizes.push_back(size);
@@ -224,15 +226,17 @@ class GltfBuilder {
         if (has_tangents_) mesh_.tangents.push_back(corner.tangent);
     }
 
-    Corner weld(const GltfPrimitive& part, uint32_t vertex, const Affine& world_from_node,
+    Corner weld(const GltfPrimitive& part, size_t vertex, const Affine& world_from_node,
                 const VectorTransform& vectors) {
-        const auto load = [vertex](const std::vector<float>& values, size_t width) {
+        const auto load = [vertex](std::span<const float> values, size_t width) {
             const float* at = values.data() + vertex * width;
             return Vec3f{at[0], at[1], at[2]};
         };
         Corner corner;
+        corner.copy = copy_count_;
         corner.position = positions_.add(transform_point(world_from_node, load(part.positions, 3)));
-        if (with_uv_ > 0) corner.uv = uvs_.add({part.uvs[2 * vertex], part.uvs[2 * vertex + 1]});
+        if (with_uv_ > 0)
+            corner.uv = uvs_.add({part.uvs[2 * vertex], 1 - part.uvs[2 * vertex + 1]}); // v from the top
         Vec3f normal{};
         if (!part.normals.empty()) normal = vectors.carry_normal(load(part.normals, 3));
         if (has_normals_) corner.normal = normals_.add(normal);
@@ -254,6 +258,8 @@ class GltfBuilder {
     UvWelder uvs_;
     std::vector<Instance> instances_;
     std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
+    std::vector<Corner> corners_;                                 ///< by vertex
+    uint32_t copy_count_ = 0;
     int with_uv_ = 0, without_uv_ = 0;
     size_t most_uv_sets_ = 0;
     bool has_normals_ = true, has_tangents_ = true;
