@@ -111,9 +111,6 @@ Scene make_clay_scene(Mesh mesh) {
     Scene scene;
     scene.source = mesh.source;
     scene.meshes.push_back(std::move(mesh));
-    Subdivision& subdivision = scene.meshes.front().subdivision;
-    if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
-    if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     Material clay;
     clay.name = "clay";
     clay.base_color = {0.75f, 0.55f, 0.45f};
@@ -148,6 +145,9 @@ Mesh make_map_plane() {
 
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
     Scene scene = make_clay_scene(load_mesh(mesh));
+    Subdivision& subdivision = scene.meshes.front().subdivision;
+    if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
+    if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     AssetCache assets("");
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
     const Vec3f view = frame_scene(scene);
