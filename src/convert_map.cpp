@@ -155,17 +155,27 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
     Displacement result = to;
     result.name = from.name, result.is_udim = from.is_udim, result.wrap = from.wrap;
+    result.dilate = from.dilate;
     result.tiles.clear();
     std::optional<Surface> surface;
     if (uses_frames(from) != uses_frames(to)) surface = make_framed_surface(from, *mesh);
     for (size_t k = 0; k < from.tiles.size(); ++k) {
-        const Texture& source = *from.tiles[k].texture;
+        // That of the surface is filled around its islands.
+        const Texture& source = surface ? *surface->map.tiles[k].texture : *from.tiles[k].texture;
         Field field = decode_all(from, source);
         if (surface) field = change_space(from, *surface, uint8_t(k), field);
         if (from.flip_v != to.flip_v) turn_rows(field, source.width);
         result.tiles.push_back({from.tiles[k].udim, encode_all(to, source, field)});
     }
     return result;
+}
+
+std::string format_map_axes(const AxisMap& axes, DisplacementSpace space) {
+    const char* letters = space == DisplacementSpace::tangent ? "tbn" : "xyz";
+    std::string text;
+    for (size_t c = 0; c < 3; ++c)
+        text += fmt::format("{}{}{}", c > 0 ? "," : "", axes.sign[c] < 0 ? "-" : "", letters[axes.axis[c]]);
+    return text;
 }
 
 float find_largest_displacement(const Displacement& map) {

@@ -150,6 +150,20 @@ void add_plain(const Mesh& source, const Object& object, Mesh& mesh) {
     }
 }
 
+/// The faces of a subdivided mesh that is not displaced.
+Mesh make_smooth_mesh(const Mesh& source) {
+    const Surface surface = make_surface(source, nullptr, Affine{});
+    Mesh mesh;
+    mesh.positions = surface.positions, mesh.uvs = surface.uvs;
+    for (const Quad& quad : surface.quads) {
+        mesh.face_sizes.push_back(quad.is_triangle() ? 3 : 4);
+        mesh.position_indices.insert(mesh.position_indices.end(), quad.vertex.begin(),
+                                     quad.vertex.begin() + mesh.face_sizes.back());
+    }
+    if (!mesh.uvs.empty()) mesh.uv_indices = mesh.position_indices;
+    return mesh;
+}
+
 void check_room(uint64_t patches, int level) {
     const uint64_t quads = patches << (2 * level);
     const uint64_t bytes = quads * kBytesPerQuad;
@@ -171,7 +185,8 @@ Mesh make_displaced_mesh(const Scene& scene, int level) {
     for (const Object& object : scene.objects) {
         const Mesh& source = scene.meshes[object.mesh];
         if (object.displacement == kNoIndex) {
-            add_plain(source, object, mesh);
+            const bool is_smooth = source.subdivision.scheme != SubdivisionScheme::none;
+            add_plain(is_smooth ? make_smooth_mesh(source) : source, object, mesh);
             continue;
         }
         const Surface surface = make_surface(source, &scene.displacements[object.displacement],

@@ -31,6 +31,8 @@ struct ConvertOptions {
     std::vector<std::string> from_given, to_given;
     std::optional<int> level;
     std::optional<MapSamples> samples;
+    std::optional<std::string> subdivision;
+    std::optional<int> subdivision_level;
 };
 
 enum class FileKind { map, mesh, scene };
@@ -52,23 +54,14 @@ std::string format_factors(const Vec3f& v) {
     return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("{:g},{:g},{:g}", v.x, v.y, v.z);
 }
 
-std::string format_axes(const Displacement& map) {
-    const char* letters = map.space == DisplacementSpace::tangent ? "tbn" : "xyz";
-    std::string text;
-    for (size_t c = 0; c < 3; ++c)
-        text += fmt::format("{}{}{}", c > 0 ? "," : "", map.axes.sign[c] < 0 ? "-" : "",
-                            letters[map.axes.axis[c]]);
-    return text;
-}
-
 /// What to tell the program that reads the new map.
 std::string describe(const Displacement& map) {
     const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
                         : map.space == DisplacementSpace::object ? "object"
                                                                  : "world";
-    return fmt::format("--space {} --axes {} --midlevel {} --vdm-scale {}{}", space, format_axes(map),
-                       format_factors(map.midlevel), format_factors(map.scale),
-                       map.flip_v ? " --flip-v" : "");
+    return fmt::format("--space {} --axes {} --midlevel {} --vdm-scale {}{}", space,
+                       format_map_axes(map.axes, map.space), format_factors(map.midlevel),
+                       format_factors(map.scale), map.flip_v ? " --flip-v" : "");
 }
 
 /// Two digits, not below `value`.
@@ -133,6 +126,8 @@ Scene load_surface(const ConvertOptions& options) {
     MeshSceneOptions scene;
     scene.displacement_map = options.displacement_map;
     scene.map = options.from;
+    scene.subdivision = options.subdivision;
+    scene.subdivision_level = options.subdivision_level;
     return load_mesh_scene(options.input, scene);
 }
 
@@ -140,7 +135,9 @@ int convert_surface(const ConvertOptions& options) {
     if (!options.to_given.empty())
         refuse(options.to_given.front() + " goes with a map to be written", options.output, "");
     const bool is_mesh = get_kind(options.input) == FileKind::mesh;
-    if (is_mesh && options.displacement_map.empty()) {
+    if (options.subdivision_level && !options.subdivision)
+        refuse("--subdivision-level says nothing without a scheme", options.input, "--subdivision catmark");
+    if (is_mesh && options.displacement_map.empty() && !options.subdivision) {
         if (options.level || !options.from_given.empty())
             refuse((options.level ? std::string("--level") : options.from_given.front()) +
                        " goes with --vdm MAP",
@@ -149,8 +146,8 @@ int convert_surface(const ConvertOptions& options) {
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }
-    if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty()))
-        refuse("a scene file says itself what its maps mean", options.input, "");
+    if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
+        refuse("a scene file says itself what its meshes and maps are", options.input, "");
     const Scene scene = load_surface(options);
     print_warnings(scene.warnings);
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel));
@@ -179,6 +176,30 @@ int run_convert(const ConvertOptions& options) {
     return convert_surface(options);
 }
 
+void add_surface_options(CLI::App& verb, ConvertOptions& options) {
+    const char* const kGroup = "With a mesh or a scene, to write its surface";
+    const auto add = [&](const char* name, const char* value, const std::string& help, auto set) {
+        verb.add_option_function<std::string>(name, set, help)->type_name(value)->group(kGroup);
+    };
+    add("--vdm", "MAP", "the map of a mesh",
+        [&](const std::string& text) { options.displacement_map = text; });
+    add("--level", "N", fmt::format("2^N quads a side of each displaced patch; default {}", kUsualLevel),
+        [&](const std::string& text) { options.level = int(parse_integer("--level", text, 0, kMaxLevel)); });
+    add("--subdivision", "NAME", "of a mesh: catmark, bilinear, none (default)",
+        [&](const std::string& text) { options.subdivision = text; });
+    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 2",
+        [&](const std::string& text) {
+            options.subdivision_level =
+                int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
+        });
+}
+
+void set_samples(ConvertOptions& options, const std::string& text) {
+    constexpr std::array<std::pair<std::string_view, MapSamples>, 3> words{
+        {{"half", MapSamples::float16}, {"float", MapSamples::float32}, {"uint16", MapSamples::uint16}}};
+    options.samples = parse_word("--samples", text, words);
+}
+
 } // namespace
 
 Command add_convert(CLI::App& verb) {
@@ -188,26 +209,11 @@ Command add_convert(CLI::App& verb) {
         ->type_name("FILE");
     verb.add_option("--mesh", options->mesh, "the mesh of a map, to go between tangent and object space")
         ->type_name("MESH");
-    verb.add_option("--vdm", options->displacement_map, "the map of a mesh, to write the displaced surface")
-        ->type_name("MAP");
     verb.add_option_function<std::string>(
-            "--level",
-            [options](const std::string& text) {
-                options->level = int(parse_integer("--level", text, 0, kMaxLevel));
-            },
-            fmt::format("2^N quads a side of each displaced patch; default {}", kUsualLevel))
-        ->type_name("N");
-    verb.add_option_function<std::string>(
-            "--samples",
-            [options](const std::string& text) {
-                constexpr std::array<std::pair<std::string_view, MapSamples>, 3> words{
-                    {{"half", MapSamples::float16},
-                     {"float", MapSamples::float32},
-                     {"uint16", MapSamples::uint16}}};
-                options->samples = parse_word("--samples", text, words);
-            },
+            "--samples", [options](const std::string& text) { set_samples(*options, text); },
             "of the map written: half, float, uint16; default by file")
         ->type_name("NAME");
+    add_surface_options(verb, *options);
     add_map_options(verb, options->from, {"What the map means", "--from,--preset", "", &options->from_given});
     add_map_options(verb, options->to, {"What the new map shall mean", "--to", "to-", &options->to_given});
     return [options] { return run_convert(*options); };

@@ -112,6 +112,22 @@ TEST_F(Convert, a_displaced_surface_is_written_as_quads) {
     EXPECT_EQ(scene.output, "wrote scene.obj: 8 vertices, 2 faces\n") << scene.errors;
 }
 
+TEST_F(Convert, a_subdivided_mesh_is_written_smooth) {
+    write("cube.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+                      "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    ASSERT_EQ(
+        run({"convert", "cube.obj", "--subdivision", "catmark", "--subdivision-level", "3", "-o", "ball.ply"})
+            .exit_code,
+        0);
+    const Mesh ball = load_mesh(folder_ / "ball.ply");
+    EXPECT_EQ(ball.face_sizes.size(), 6u * 64);
+    for (const Vec3f& p : ball.positions) {
+        const float radius = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+        EXPECT_GT(radius, 0.5f); // corners of the limit surface of a cube lie at half of its corners
+        EXPECT_LT(radius, 1.0f);
+    }
+}
+
 TEST_F(Convert, options_that_say_nothing_here_are_refused) {
     expect_refused({"convert", "bump.exr"}, "one file in and one file out");
     expect_refused({"convert", "bump.exr", "-o", "bump.ply"}, "a map alone is no surface");
@@ -121,6 +137,7 @@ TEST_F(Convert, options_that_say_nothing_here_are_refused) {
     expect_refused({"convert", "plane.obj", "--axes", "t,b,n", "-o", "m.obj"}, "--axes goes with --vdm");
     expect_refused({"convert", "plane.obj", "--to", "mudbox", "-o", "m.obj"}, "--to goes with a map");
     expect_refused({"convert", "plane.obj", "--samples", "half", "-o", "m.obj"}, "--samples goes with a map");
+    expect_refused({"convert", "plane.obj", "--subdivision-level", "1", "-o", "m.obj"}, "without a scheme");
     expect_refused({"convert", "plane.obj", "-o", "m.exr"}, "written as .obj or .ply");
     expect_refused({"convert", "bump.exr", "--to-scale", "0", "-o", "m.exr"}, "scale of 0");
 }
