@@ -8,6 +8,7 @@
 #include "map_mistakes.h"
 #include "map_survey.h"
 #include "mesh_survey.h"
+#include "relief/convert.h"
 #include "relief/inspect.h"
 
 namespace relief {
@@ -42,14 +43,6 @@ const char* get_space_name(DisplacementSpace space) {
         break;
     }
     return "world";
-}
-
-std::string format_axes(const AxisMap& axes, DisplacementSpace space) {
-    const char* letters = space == DisplacementSpace::tangent ? "tbn" : "xyz";
-    std::string text;
-    for (size_t c = 0; c < 3; ++c)
-        text += fmt::format("{}{}{}", c > 0 ? "," : "", axes.sign[c] < 0 ? "-" : "", letters[axes.axis[c]]);
-    return text;
 }
 
 /// What was said of the midlevel, if anything: 0 of floats around 0.5, or of integers, is a default.
@@ -105,7 +98,7 @@ std::string describe_looks(const MapSurvey& survey, const MapConvention& convent
             convention.space.is_clear ? "tangent space, axes not clear" : "not clear from the values alone";
     } else {
         text = fmt::format("{} space, axes {}, midlevel {:g}", get_space_name(space),
-                           format_axes(convention.axes.value, space), survey.midlevel[0]);
+                           format_map_axes(convention.axes.value, space), survey.midlevel[0]);
         if (space == DisplacementSpace::tangent) {
             const std::string presets = list_presets(convention.axes.value);
             if (!presets.empty()) text += " (presets " + presets + ")";
@@ -131,7 +124,7 @@ void describe_convention(const Displacement& map, MapMeaning meaning, const MapS
                                           convention.space.reason)});
     facts.push_back({"axes", fmt::format("{}: {}",
                                          convention.axes.is_clear
-                                             ? format_axes(convention.axes.value, convention.space.value)
+                                             ? format_map_axes(convention.axes.value, convention.space.value)
                                              : "not clear",
                                          convention.axes.reason)});
     facts.push_back({"looks_like", describe_looks(survey, convention)});

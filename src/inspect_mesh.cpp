@@ -82,6 +82,7 @@ void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result
          {"open_edges", fmt::format("{}", shape.open_edges)},
          {"bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x,
                                 box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z)},
+         {"base", describe_base(mesh)},
          {"normals", mesh.normal_indices.empty() ? "none" : "in the file"},
          {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file"}});
 }

@@ -13,6 +13,7 @@
 #include "engine/prepared_scene.h"
 #include "engine/tessellate.h"
 #include "film/film.h"
+#include "mesh_survey.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "validate_settings.h"
@@ -66,7 +67,9 @@ void add_mesh_findings(const Mesh& mesh, const Displacement* map, Inspection& re
 void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection& result) {
     std::set<uint32_t> displaced;
     for (const auto& [map, mesh] : pairs) {
-        displaced.insert(mesh);
+        if (displaced.insert(mesh).second)
+            result.facts.push_back({fmt::format("mesh.{}.base", scene.meshes.at(mesh).name),
+                                    describe_base(scene.meshes.at(mesh))});
         add_mesh_findings(scene.meshes.at(mesh), &scene.displacements.at(map), result);
     }
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 constexpr double kClearRatio = 1.5; ///< by how much the best must be ahead of the next
+constexpr double kOneSided = 0.5;   ///< least one-sidedness of a channel along the normal
 
 /// The channel along the normal: sculpts rise more than they slide, so its mean is the most one-sided.
 struct NormalChannel {
@@ -28,7 +29,6 @@ struct NormalChannel {
 };
 
 NormalChannel find_normal_channel(const MapSurvey& survey) {
-    constexpr double kOneSided = 0.5;
     std::array<double, 3> strength{};
     for (size_t c = 0; c < 3; ++c) strength[c] = std::fabs(survey.channels[c].mean - survey.midlevel[c]);
     NormalChannel best;
@@ -92,6 +92,34 @@ void guess_tangent_axes(const Displacement& map, const MapSurvey& survey, MapCon
         "as that of the next channel",
         kChannelNames[normal.channel], normal.sign < 0 ? ", backwards" : "", std::min(normal.ratio, 99.0));
     if (!map.is_udim && survey.bad_count == 0) guess_order_on_plane(map, normal, result);
+}
+
+/// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
+/// normal, not its sign: that is taken from a mean which is far to one side.
+void refine_by_seams(const std::vector<SeamSample>& seams, const MapSurvey& survey, MapConvention& result) {
+    std::array<double, 3> gaps{1e9, 1e9, 1e9};
+    std::array<AxisMap, 3> best;
+    for (size_t channel = 0; channel < 3; ++channel)
+        for (int choice = 0; choice < 8; ++choice) {
+            NormalChannel normal;
+            normal.channel = channel, normal.sign = survey.channels[channel].one_sided < -kOneSided ? -1 : 1;
+            const AxisMap axes = make_axes(normal, choice);
+            const double gap = measure_tangent_gap(seams, axes);
+            // Turned by quarters, t and b close as well: the usual order stays unless another is clearly
+            // better.
+            if (gap * (choice == 0 ? 1 : kClearRatio) < gaps[channel])
+                gaps[channel] = gap, best[channel] = axes;
+        }
+    const auto channel = size_t(std::min_element(gaps.begin(), gaps.end()) - gaps.begin());
+    const double next = std::min(gaps[(channel + 1) % 3], gaps[(channel + 2) % 3]);
+    if (!(kClearRatio * gaps[channel] < next)) return;
+    if (result.axes.is_clear && result.axes.value.axis[channel] == 2) return; // told already, with its order
+    result.axes = {
+        best[channel], true,
+        fmt::format("{} is along the normal: so the uv seams close to {:.0f} % of the movement, with "
+                    "another channel to {:.0f} %",
+                    kChannelNames[channel], 100 * gaps[channel], 100 * next)};
+    result.is_order_clear = false;
 }
 
 /// Object space: the order under which the surface moves most along its normals.
@@ -184,11 +212,14 @@ void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh&
         return;
     }
     const MapSamples samples = sample_map(*surface);
-    if (!guess_space_by_seams(samples, result)) guess_space_by_normals(samples, survey, result);
-    if (result.space.value == DisplacementSpace::object)
+    const bool is_by_seams = guess_space_by_seams(samples, result);
+    if (!is_by_seams) guess_space_by_normals(samples, survey, result);
+    if (result.space.value == DisplacementSpace::object) {
         guess_object_axes(samples, result);
-    else
-        guess_tangent_axes(map, survey, result);
+        return;
+    }
+    guess_tangent_axes(map, survey, result);
+    if (is_by_seams) refine_by_seams(samples.seams, survey, result);
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "math/vec.h"
 #include "mesh_points.h"
 
@@ -65,6 +67,20 @@ void count_edges(const std::vector<HalfEdge>& edges, MeshShape& shape) {
 }
 
 } // namespace
+
+std::string describe_base(const Mesh& mesh) {
+    const Subdivision& subdivision = mesh.subdivision;
+    if (subdivision.scheme == SubdivisionScheme::none)
+        return "the mesh as it is, level 0: a map baked against another level needs that level's mesh, or "
+               "subdivision";
+    const int side = 1 << subdivision.level;
+    return fmt::format("{}, level {}: {} x {} patches a quad; uv {}, boundary {}, {} creases {}",
+                       subdivision.scheme == SubdivisionScheme::catmark ? "catmark limit surface"
+                                                                        : "bilinear",
+                       subdivision.level, side, side, subdivision.uv == UvRule::smooth ? "smooth" : "linear",
+                       subdivision.boundary == BoundaryRule::edge_only ? "edge-only" : "edge-and-corner",
+                       mesh.creases.size(), subdivision.creases == CreaseRule::obey ? "obeyed" : "ignored");
+}
 
 MeshFaults find_mesh_faults(const Mesh& mesh) {
     MeshFaults faults;

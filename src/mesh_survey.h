@@ -42,6 +42,9 @@ struct MeshFaults {
     bool is_sound() const { return bad_indices == 0 && !bad_position && !bad_uv && !has_bad_counts; }
 };
 
+/// What of a mesh is displaced, for people: "catmark, level 2: 4 x 4 patches a quad, ...".
+std::string describe_base(const Mesh& mesh);
+
 MeshFaults find_mesh_faults(const Mesh& mesh);
 
 /// Both for meshes without faults only; the second with uvs.

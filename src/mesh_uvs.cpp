@@ -33,33 +33,50 @@ class FaceSets {
 /// Cells of unit squares of the uv plane, each with the number of faces over its middle.
 class Coverage {
   public:
+    /// `side`: cells a unit.
+    explicit Coverage(int side) : side_(side) {}
     void add(const Vec2f& a, const Vec2f& b, const Vec2f& c);
     double measure_overlap() const;
 
   private:
-    static constexpr int kSide = 512;          ///< cells a unit
-    static constexpr size_t kSquares = 256;    ///< so many are looked at
-    static constexpr float kLargest = 8;       ///< units; a triangle that is larger is left out
-    static constexpr double kBudget = 1 << 27; ///< cells looked at, so that no mesh takes long
+    static constexpr size_t kSquares = 256; ///< so many are looked at
 
+    int64_t find_square(int64_t cell) const {
+        return cell >= 0 ? cell / side_ : -((-cell + side_ - 1) / side_);
+    }
     void count(int64_t x, int64_t y) {
-        const auto floor_divide = [](int64_t value) {
-            return value >= 0 ? value / kSide : -((-value + kSide - 1) / kSide);
-        };
-        const std::pair<int64_t, int64_t> square{floor_divide(x), floor_divide(y)};
+        const std::pair<int64_t, int64_t> square{find_square(x), find_square(y)};
         auto found = squares_.find(square);
         if (found == squares_.end()) {
             if (squares_.size() == kSquares) return;
-            found = squares_.emplace(square, std::vector<uint8_t>(size_t(kSide) * kSide)).first;
+            found = squares_.emplace(square, std::vector<uint8_t>(size_t(side_) * size_t(side_))).first;
         }
-        uint8_t& cell =
-            found->second[size_t(y - square.second * kSide) * kSide + size_t(x - square.first * kSide)];
+        const int64_t column = x - square.first * side_, row = y - square.second * side_;
+        uint8_t& cell = found->second[size_t(row * side_ + column)];
         if (cell < 255) ++cell;
     }
 
+    int side_;
     std::map<std::pair<int64_t, int64_t>, std::vector<uint8_t>> squares_;
-    double looked_at_ = 0;
 };
+
+constexpr double kMostCells = 1 << 24; ///< looked at or a little more, so that no mesh takes long
+
+struct UvBox {
+    Vec2f low, high;
+    double area() const { return double(high.x - low.x) * double(high.y - low.y); }
+    /// Farther out, or larger, nothing is counted.
+    bool is_countable() const {
+        constexpr float kLargest = 8, kFarthest = 1e6f;
+        return high.x - low.x <= kLargest && high.y - low.y <= kLargest && low.x >= -kFarthest &&
+               low.y >= -kFarthest && high.x <= kFarthest && high.y <= kFarthest;
+    }
+};
+
+UvBox make_uv_box(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+    return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}};
+}
 
 /// Counts a middle on an edge for one of the two triangles beside it only.
 bool is_inside(double ax, double ay, double bx, double by, double x, double y) {
@@ -68,21 +85,15 @@ bool is_inside(double ax, double ay, double bx, double by, double x, double y) {
 }
 
 void Coverage::add(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
-    const float low_x = std::min({a.x, b.x, c.x}), high_x = std::max({a.x, b.x, c.x});
-    const float low_y = std::min({a.y, b.y, c.y}), high_y = std::max({a.y, b.y, c.y});
-    constexpr float kFarthest = 1e6f;
-    if (high_x - low_x > kLargest || high_y - low_y > kLargest || low_x < -kFarthest || low_y < -kFarthest ||
-        high_x > kFarthest || high_y > kFarthest)
-        return;
-    looked_at_ += (double(high_x - low_x) * kSide + 2) * (double(high_y - low_y) * kSide + 2);
-    if (looked_at_ > kBudget) return;
-    std::array<std::array<double, 2>, 3> p = {{{double(a.x) * kSide, double(a.y) * kSide},
-                                               {double(b.x) * kSide, double(b.y) * kSide},
-                                               {double(c.x) * kSide, double(c.y) * kSide}}};
+    const UvBox box = make_uv_box(a, b, c);
+    if (!box.is_countable()) return;
+    const double side = side_;
+    std::array<std::array<double, 2>, 3> p = {
+        {{a.x * side, a.y * side}, {b.x * side, b.y * side}, {c.x * side, c.y * side}}};
     const double area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
     if (area < 0) std::swap(p[1], p[2]);
-    for (int64_t y = int64_t(std::floor(low_y * kSide)); y <= int64_t(high_y * kSide) + 1; ++y)
-        for (int64_t x = int64_t(std::floor(low_x * kSide)); x <= int64_t(high_x * kSide) + 1; ++x) {
+    for (auto y = int64_t(std::floor(box.low.y * side)); double(y) <= box.high.y * side; ++y)
+        for (auto x = int64_t(std::floor(box.low.x * side)); double(x) <= box.high.x * side; ++x) {
             const double mx = double(x) + 0.5, my = double(y) + 0.5;
             if (is_inside(p[0][0], p[0][1], p[1][0], p[1][1], mx, my) &&
                 is_inside(p[1][0], p[1][1], p[2][0], p[2][1], mx, my) &&
@@ -130,6 +141,30 @@ void note_place(const Mesh& mesh, size_t first, uint32_t size, MeshUvs& result) 
         ++result.crossing_faces;
 }
 
+/// Calls `visit` with the corners of triangles that make up the faces.
+template <class Visit> void visit_uv_triangles(const Mesh& mesh, const Visit& visit) {
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        const auto uv = [&](uint32_t k) { return mesh.uvs[mesh.uv_indices[first + k]]; };
+        for (uint32_t k = 2; k < size; ++k) visit(uv(0), uv(k - 1), uv(k));
+        first += size;
+    }
+}
+
+double measure_overlap(const Mesh& mesh) {
+    constexpr double kFinest = 512, kCoarsest = 4;
+    double area = 0;
+    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+        const UvBox box = make_uv_box(a, b, c);
+        if (box.is_countable()) area += box.area();
+    });
+    const double side =
+        area > 0 ? std::clamp(std::floor(std::sqrt(kMostCells / area)), kCoarsest, kFinest) : kFinest;
+    Coverage coverage{int(side)};
+    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) { coverage.add(a, b, c); });
+    return coverage.measure_overlap();
+}
+
 /// Faces that share an edge with both uvs and lie the same way round are of one island.
 FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
     const std::vector<uint32_t> points = number_uv_points(mesh);
@@ -155,7 +190,6 @@ FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
 MeshUvs survey_uvs(const Mesh& mesh) {
     MeshUvs result;
     result.low = result.high = mesh.uvs[mesh.uv_indices.front()];
-    Coverage coverage;
     std::vector<double> areas;
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
@@ -163,8 +197,6 @@ MeshUvs survey_uvs(const Mesh& mesh) {
         result.mirrored_faces += areas.back() < 0;
         result.flat_faces += areas.back() == 0;
         note_place(mesh, first, size, result);
-        const auto uv = [&](uint32_t k) { return mesh.uvs[mesh.uv_indices[first + k]]; };
-        for (uint32_t k = 2; k < size; ++k) coverage.add(uv(0), uv(k - 1), uv(k));
         first += size;
     }
     FaceSets sets = join_islands(mesh, areas);
@@ -172,7 +204,7 @@ MeshUvs survey_uvs(const Mesh& mesh) {
     for (uint32_t face = 0; face < areas.size(); ++face) area_of_island[sets.find(face)] += areas[face];
     result.islands = area_of_island.size();
     for (const auto& [island, area] : area_of_island) result.mirrored_islands += area < 0;
-    result.overlap = coverage.measure_overlap();
+    result.overlap = measure_overlap(mesh);
     return result;
 }
 

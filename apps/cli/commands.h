@@ -13,6 +13,7 @@ using Command = std::function<int()>;
 
 Command add_render(CLI::App& verb);
 Command add_inspect(CLI::App& verb);
+Command add_convert(CLI::App& verb);
 Command add_scene(CLI::App& verb);
 Command add_compare(CLI::App& verb);
 Command add_merge(CLI::App& verb);

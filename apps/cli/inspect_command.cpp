@@ -190,7 +190,8 @@ Command add_inspect(CLI::App& verb) {
         ->type_name("FILE");
     verb.add_flag("--json", options->is_json, "print a JSON object");
     verb.add_flag("--strict", options->is_strict, "exit 6 when there are warnings");
-    add_map_options(verb, options->map, {"What a map means, where it is known", &options->map_only});
+    add_map_options(verb, options->map,
+                    {"What a map means, where it is known", "--preset", "", &options->map_only});
     return [options] { return run_inspect(*options); };
 }
 

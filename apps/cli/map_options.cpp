@@ -23,42 +23,69 @@ Vec3f parse_factors(const std::string& option, const std::string& text) {
     return {all, all, all};
 }
 
-void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& place) {
-    const auto add = [&](const char* name, const char* value, const char* help,
-                         std::function<void(const std::string&)> set) {
-        verb.add_option_function<std::string>(
+namespace {
+
+/// Adds options of one place.
+class MapOptionAdder {
+  public:
+    MapOptionAdder(CLI::App& verb, const MapOptionPlace& place) : verb_(verb), place_(place) {}
+
+    void add(const std::string& name, const char* value, const char* help,
+             const std::function<void(const std::string&)>& set) {
+        verb_
+            .add_option_function<std::string>(
                 name,
-                [given = place.given, name, set](const std::string& text) {
-                    if (given) given->push_back(name);
+                [given = place_.given, spoken = name.substr(0, name.find(',')),
+                 set](const std::string& text) {
+                    if (given) given->push_back(spoken);
                     set(text);
                 },
                 help)
             ->type_name(value)
-            ->group(place.group);
-    };
-    const auto add_text = [&](const char* name, const char* value, const char* help,
-                              std::optional<std::string>& text) {
+            ->group(place_.group);
+    }
+    void add_text(const std::string& name, const char* value, const char* help,
+                  std::optional<std::string>& text) {
         add(name, value, help, [&text](const std::string& given) { text = given; });
-    };
-    add("--preset", "NAME", "what wrote the map: blender-brush, mudbox, ...",
-        [&options](const std::string& text) { options.preset = text; });
-    add_text("--type", "NAME", "vector or height", options.type);
-    add_text("--space", "NAME", "tangent, object or world", options.space);
-    add_text("--axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...", options.axes);
-    add_text("--encoding", "NAME", "float, or signed: 0..1 means -1..1", options.encoding);
-    add("--midlevel", "F|F,F,F", "value that means no displacement",
-        [&options](const std::string& text) { options.midlevel = parse_factors("--midlevel", text); });
-    add("--vdm-scale", "F|F,F,F", "factor on the displacement",
-        [&options](const std::string& text) { options.scale = parse_factors("--vdm-scale", text); });
-    add_text("--wrap", "NAME", "clamp (default), repeat, mirror or black", options.wrap);
-    verb.add_flag_callback(
-            "--flip-v",
-            [&options, given = place.given] {
-                options.flip_v = true;
-                if (given) given->push_back("--flip-v");
-            },
-            "row 0 of the map is v = 0")
-        ->group(place.group);
+    }
+    void add_factors(const std::string& name, const char* help, std::optional<Vec3f>& factors) {
+        add(name, "F|F,F,F", help,
+            [&factors, name](const std::string& text) { factors = parse_factors(name, text); });
+    }
+    void add_flag(const std::string& name, const char* help, bool& flag) {
+        verb_
+            .add_flag_callback(
+                name,
+                [given = place_.given, name, &flag] {
+                    flag = true;
+                    if (given) given->push_back(name);
+                },
+                help)
+            ->group(place_.group);
+    }
+
+  private:
+    CLI::App& verb_;
+    const MapOptionPlace& place_;
+};
+
+} // namespace
+
+void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& place) {
+    MapOptionAdder adder(verb, place);
+    const bool is_target = !place.prefix.empty();
+    const std::string start = "--" + place.prefix;
+    adder.add(place.preset, "NAME", "the program: blender-brush, mudbox, ...",
+              [&options](const std::string& text) { options.preset = text; });
+    adder.add_text(start + "type", "NAME", "vector or height", options.type);
+    adder.add_text(start + "space", "NAME", "tangent, object or world", options.space);
+    adder.add_text(start + "axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...", options.axes);
+    adder.add_text(start + "encoding", "NAME", "float, or signed: 0..1 means -1..1", options.encoding);
+    adder.add_factors(start + "midlevel", "value that means no displacement", options.midlevel);
+    adder.add_factors(is_target ? "--to-scale" : "--vdm-scale", "factor on the displacement", options.scale);
+    if (!is_target)
+        adder.add_text("--wrap", "NAME", "clamp (default), repeat, mirror or black", options.wrap);
+    adder.add_flag(start + "flip-v", "row 0 of the map is v = 0", options.flip_v);
 }
 
 } // namespace relief::cli

@@ -13,11 +13,14 @@ namespace relief::cli {
 /// Where the options stand in the help, and who is told which of them were given.
 struct MapOptionPlace {
     std::string group;
+    std::string preset = "--preset";           ///< names of the option for the preset
+    std::string prefix;                        ///< of the other names: "to-" makes --to-axes
     std::vector<std::string>* given = nullptr; ///< may be null
 };
 
-/// Adds --preset, --type, --space, --axes, --encoding, --midlevel, --vdm-scale, --wrap and --flip-v.
-/// `options` and `place.given` must outlive the parsing.
+/// Adds the option for the preset, --type, --space, --axes, --encoding, --midlevel, --vdm-scale, --wrap and
+/// --flip-v; with a prefix --PREFIXscale for the scale, and no wrap. `options` and `place.given` must outlive
+/// the parsing.
 void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& place);
 
 /// "F" or "F,F,F". Throws Error{usage}.

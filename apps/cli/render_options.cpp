@@ -97,7 +97,7 @@ void add_mesh_options(CLI::App& verb, RenderOptions& o) {
                  int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
          });
     mesh("--env", "MAP", "environment picture", [&o](const std::string& text) { o.mesh.environment = text; });
-    add_map_options(verb, o.mesh.map, {kMeshGroup, &o.mesh_only});
+    add_map_options(verb, o.mesh.map, {kMeshGroup, "--preset", "", &o.mesh_only});
 }
 
 void add_level_options(CLI::App& verb, RenderOptions& o) {

@@ -32,6 +32,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     };
     add("render", "Render a scene file, or a mesh alone", add_render);
     add("inspect", "Tell what a scene, mesh or map is, what it costs, what is wrong with it", add_inspect);
+    add("convert", "Maps to other conventions, meshes and displaced surfaces to other files", add_convert);
     add("scene", "Write a sample scene", add_scene);
     add("compare", "Difference of two pictures; exit 7 where it is above the threshold", add_compare);
     add("merge", "Join tiles and sample ranges of one picture", add_merge);

@@ -34,6 +34,22 @@ struct MapOptions {
 Displacement load_map(const std::filesystem::path& file, const MapOptions& options,
                       std::vector<std::string>& warnings);
 
+/// What the options say of a map, without its tiles: as load_map does for a file of floats.
+Displacement make_map_meaning(const MapOptions& options);
+
+/// Samples of a map file that is written.
+enum class MapSamples { float16, float32, uint16 };
+
+/// Writes the tiles of a map by the extension of the name: .exr (float16 or float32) or .png (uint16, which
+/// keeps [0, 1] only). A map with tiles takes a name with <UDIM>, <UVTILE> or <uvtile>; folders must be
+/// there. Files appear whole or not at all. Throws Error{usage} for another extension, samples that it does
+/// not hold, or a name with a token too many or too few; Error{bad_input} for values that do not fit.
+void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples);
+
+/// Writes .obj, or .ply (binary): faces as they are, with uvs. Throws Error{usage} for another extension,
+/// Error{bad_input} for a mesh that is not sound, Error{failed}.
+void write_mesh(const Mesh& mesh, const std::filesystem::path& file);
+
 /// For the plain name of a file that is one tile of several that lie in its folder ("head.1001.exr"): the
 /// name with the token that takes them all ("head.<UDIM>.exr"). Else empty.
 std::string find_tile_pattern(const std::filesystem::path& file);

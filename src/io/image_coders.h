@@ -22,6 +22,8 @@ template <class Value> using FillRow = std::function<void(int y, std::vector<Val
 
 /// Three bytes a pixel, sRGB.
 void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
+/// Six bytes a pixel, the high one of each value first; without a tag of colour, as data.
+void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
 /// Radiance RGBE: three mantissas and a common exponent, run lengths.
 void encode_hdr(int width, int height, const FillRow<Vec3f>& fill_row, CheckedFile& file);
 

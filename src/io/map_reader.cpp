@@ -1,4 +1,4 @@
-// load_map: a displacement map without a scene file.
+// load_map and make_map_meaning: a displacement map without a scene file.
 #include <iterator>
 
 #include "io/asset_cache.h"
@@ -14,5 +14,7 @@ Displacement load_map(const std::filesystem::path& file, const MapOptions& optio
     std::move(assets.warnings().begin(), assets.warnings().end(), std::back_inserter(warnings));
     return map;
 }
+
+Displacement make_map_meaning(const MapOptions& options) { return make_displacement_values(options); }
 
 } // namespace relief

@@ -14,8 +14,6 @@ namespace relief {
 
 namespace {
 
-constexpr size_t kPixelBytes = 3;
-
 void append_uint32(std::vector<uint8_t>& bytes, uint32_t value) {
     for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(uint8_t(value >> shift));
 }
@@ -82,39 +80,53 @@ int predict_paeth(int left, int up, int up_left) {
 }
 
 /// Type 4, Paeth: rendered pictures change little from pixel to pixel.
-void filter_row(const std::vector<uint8_t>& row, const std::vector<uint8_t>& row_above,
+void filter_row(const std::vector<uint8_t>& row, const std::vector<uint8_t>& row_above, size_t pixel_bytes,
                 std::vector<uint8_t>& filtered) {
     filtered = {4};
     for (size_t x = 0; x < row.size(); ++x) {
-        const int left = x >= kPixelBytes ? row[x - kPixelBytes] : 0;
-        const int up_left = x >= kPixelBytes ? row_above[x - kPixelBytes] : 0;
+        const int left = x >= pixel_bytes ? row[x - pixel_bytes] : 0;
+        const int up_left = x >= pixel_bytes ? row_above[x - pixel_bytes] : 0;
         filtered.push_back(uint8_t(row[x] - predict_paeth(left, row_above[x], up_left)));
     }
 }
 
-} // namespace
-
-void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
+void write_start(CheckedFile& file, int width, int height, uint8_t bits) {
     constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-    constexpr std::array<uint8_t, 5> kEightBitColours = {8, 2, 0, 0, 0};
-    constexpr std::array<uint8_t, 1> kPerceptual = {0};
     file.write(kSignature.data(), kSignature.size());
     std::vector<uint8_t> header;
     append_uint32(header, uint32_t(width));
     append_uint32(header, uint32_t(height));
-    header.insert(header.end(), kEightBitColours.begin(), kEightBitColours.end());
+    const std::array<uint8_t, 5> kind = {bits, 2, 0, 0, 0}; // colours
+    header.insert(header.end(), kind.begin(), kind.end());
     write_chunk(file, "IHDR", header);
-    write_chunk(file, "sRGB", kPerceptual);
+}
+
+void write_rows(CheckedFile& file, const Vec2<int>& size, size_t pixel_bytes,
+                const FillRow<uint8_t>& fill_row) {
     DataStream data(file);
-    std::vector<uint8_t> row(size_t(width) * kPixelBytes), row_above(row.size()), filtered;
-    for (int y = 0; y < height; ++y) {
+    std::vector<uint8_t> row(size_t(size.x) * pixel_bytes), row_above(row.size()), filtered;
+    for (int y = 0; y < size.y; ++y) {
         fill_row(y, row);
-        filter_row(row, row_above, filtered);
+        filter_row(row, row_above, pixel_bytes, filtered);
         data.add(filtered);
         row.swap(row_above);
     }
     data.finish();
     write_chunk(file, "IEND", {});
+}
+
+} // namespace
+
+void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
+    constexpr std::array<uint8_t, 1> kPerceptual = {0};
+    write_start(file, width, height, 8);
+    write_chunk(file, "sRGB", kPerceptual);
+    write_rows(file, {width, height}, 3, fill_row);
+}
+
+void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
+    write_start(file, width, height, 16);
+    write_rows(file, {width, height}, 6, fill_row);
 }
 
 } // namespace relief

@@ -1,6 +1,5 @@
 // save_scene: scene.json with meshes as OBJ and maps as EXR beside it.
 #include <cctype>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -10,7 +9,7 @@
 #include "io/file_system.h"
 #include "io/image_coders.h"
 #include "io/json_node.h"
-#include "io/obj_tags.h"
+#include "io/mesh_writer.h"
 #include "io/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -46,30 +45,7 @@ std::string make_file_stem(std::string name) {
     return name;
 }
 
-std::string format_obj(const Mesh& mesh) {
-    std::string text;
-    const auto out = std::back_inserter(text);
-    for (const Vec3f& p : mesh.positions) fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
-    const bool has_uvs = !mesh.uv_indices.empty(), has_normals = !mesh.normal_indices.empty();
-    if (has_uvs)
-        for (const Vec2f& uv : mesh.uvs) fmt::format_to(out, "vt {:.9g} {:.9g}\n", uv.x, uv.y);
-    if (has_normals)
-        for (const Vec3f& n : mesh.normals) fmt::format_to(out, "vn {:.9g} {:.9g} {:.9g}\n", n.x, n.y, n.z);
-    size_t corner = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        text += 'f';
-        for (uint32_t k = 0; k < size; ++k, ++corner) {
-            fmt::format_to(out, " {}", mesh.position_indices[corner] + 1);
-            if (has_uvs) fmt::format_to(out, "/{}", mesh.uv_indices[corner] + 1);
-            if (has_normals)
-                fmt::format_to(out, "{}/{}", has_uvs ? "" : "/", mesh.normal_indices[corner] + 1);
-        }
-        text += '\n';
-    }
-    return text + format_obj_creases(mesh.creases);
-}
-
-void write_map(const Texture& texture, const std::filesystem::path& file) {
+void write_texels(const Texture& texture, const std::filesystem::path& file) {
     write_checked(file, [&](CheckedFile& stream) { encode_exr(texture, stream); });
 }
 
@@ -98,7 +74,7 @@ class SceneWriter {
         std::string& file = files_[texture.get()];
         if (file.empty()) {
             file = "maps/" + map_names_.make_unique(make_file_stem(name)) + ".exr";
-            write_map(*texture, folder_ / file);
+            write_texels(*texture, folder_ / file);
         }
         return file;
     }
@@ -157,7 +133,7 @@ class SceneWriter {
         if (!map.is_udim) return add_map(map.tiles.front().texture, name);
         const std::string stem = "maps/" + map_names_.make_unique(make_file_stem(name));
         for (const MapTile& tile : map.tiles)
-            write_map(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
+            write_texels(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
         return stem + ".<UDIM>.exr";
     }
 

@@ -50,14 +50,22 @@ std::optional<int> read_columns(std::string_view text, int first) {
     return tile <= kLastTile ? std::optional<int>(tile) : std::nullopt;
 }
 
+std::string format_columns(int udim, int first) {
+    return fmt::format("u{}_v{}", (udim - kFirstTile) % kColumns + first,
+                       (udim - kFirstTile) / kColumns + first);
+}
+
 struct TileToken {
     std::string_view text;
     std::optional<int> (*read)(std::string_view);
+    std::string (*format)(int);
 };
 constexpr std::array<TileToken, 3> kTokens = {
-    {{"<UDIM>", read_udim},
-     {"<UVTILE>", [](std::string_view text) { return read_columns(text, 1); }},
-     {"<uvtile>", [](std::string_view text) { return read_columns(text, 0); }}}};
+    {{"<UDIM>", read_udim, [](int udim) { return fmt::format("{}", udim); }},
+     {"<UVTILE>", [](std::string_view text) { return read_columns(text, 1); },
+      [](int udim) { return format_columns(udim, 1); }},
+     {"<uvtile>", [](std::string_view text) { return read_columns(text, 0); },
+      [](int udim) { return format_columns(udim, 0); }}}};
 
 const TileToken* find_token(const std::string& name) {
     for (const TileToken& token : kTokens)
@@ -126,6 +134,13 @@ std::vector<std::pair<int, fs::path>> find_tiles(const fs::path& pattern) {
                                                            tiles[k].second.filename().string()),
                                                pattern.string(), "keep one of them"});
     return tiles;
+}
+
+fs::path make_tile_name(const fs::path& pattern, int udim) {
+    std::string name = pattern.filename().string();
+    if (const TileToken* token = find_token(name))
+        name.replace(name.find(token->text), token->text.size(), token->format(udim));
+    return pattern.parent_path() / name;
 }
 
 std::string find_tile_pattern(const fs::path& file) {

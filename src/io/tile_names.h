@@ -16,4 +16,7 @@ bool has_tile_token(const std::string& file);
 /// Throws bad_input when there is none, more than a map may have, or two of one number.
 std::vector<std::pair<int, std::filesystem::path>> find_tiles(const std::filesystem::path& pattern);
 
+/// The name of tile `udim` for a name with a token.
+std::filesystem::path make_tile_name(const std::filesystem::path& pattern, int udim);
+
 } // namespace relief

@@ -1,0 +1,222 @@
+// convert: maps to other conventions, meshes to other files, displaced surfaces to plain meshes.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "exit_codes.h"
+#include "map_options.h"
+#include "relief/convert.h"
+#include "relief/error.h"
+#include "relief/io.h"
+#include "relief/render.h"
+#include "values.h"
+
+namespace relief::cli {
+
+namespace {
+
+constexpr int kUsualLevel = 5;
+
+struct ConvertOptions {
+    std::string input, output, mesh, displacement_map;
+    MapOptions from, to;
+    std::vector<std::string> from_given, to_given;
+    std::optional<int> level;
+    std::optional<MapSamples> samples;
+    std::optional<std::string> subdivision;
+    std::optional<int> subdivision_level;
+};
+
+enum class FileKind { map, mesh, scene };
+
+FileKind get_kind(const std::string& file) {
+    if (is_mesh_file(file)) return FileKind::mesh;
+    return get_lower_extension(file) == ".json" ? FileKind::scene : FileKind::map;
+}
+
+[[noreturn]] void refuse(const std::string& message, const std::string& where, const std::string& hint) {
+    throw Error(ErrorKind::usage, {message, where, hint});
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
+}
+
+std::string format_factors(const Vec3f& v) {
+    return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("{:g},{:g},{:g}", v.x, v.y, v.z);
+}
+
+/// What to tell the program that reads the new map.
+std::string describe(const Displacement& map) {
+    const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
+                        : map.space == DisplacementSpace::object ? "object"
+                                                                 : "world";
+    return fmt::format("--space {} --axes {} --midlevel {} --vdm-scale {}{}", space,
+                       format_map_axes(map.axes, map.space), format_factors(map.midlevel),
+                       format_factors(map.scale), map.flip_v ? " --flip-v" : "");
+}
+
+/// Two digits, not below `value`.
+float round_up(float value) {
+    if (!(value > 0)) return 1;
+    const double step = std::pow(10.0, std::floor(std::log10(double(value))) - 1);
+    return float(std::ceil(double(value) / step - 1e-6) * step);
+}
+
+/// The meaning of the new map: what is said, and for the rest that of the old one; integers take what they
+/// can hold.
+Displacement make_target(const ConvertOptions& options, const Displacement& from, const Mesh* mesh,
+                         MapSamples samples) {
+    MapOptions said = options.to;
+    if (!said.space && !said.axes && said.preset.empty())
+        said.space = from.space == DisplacementSpace::tangent  ? "tangent"
+                     : from.space == DisplacementSpace::object ? "object"
+                                                               : "world";
+    const bool keeps_axes = !said.axes && said.preset.empty();
+    Displacement to = make_map_meaning(said);
+    if (keeps_axes && to.space == from.space) to.axes = from.axes;
+    if (!said.type) to.type = from.type;
+    const auto is_given = [&](const char* name) {
+        return std::find(options.to_given.begin(), options.to_given.end(), name) != options.to_given.end();
+    };
+    if (!is_given("--to-flip-v")) to.flip_v = from.flip_v;
+    if (samples != MapSamples::uint16) return to;
+    if (!said.midlevel && !said.encoding) to.midlevel = {0.5f, 0.5f, 0.5f};
+    if (said.scale || said.encoding) return to;
+    const float scale = round_up(2 * find_largest_displacement(convert_map(from, to, mesh)));
+    to.scale = {scale, scale, scale};
+    return to;
+}
+
+MapSamples choose_samples(const ConvertOptions& options, const Displacement& from) {
+    if (options.samples) return *options.samples;
+    if (get_lower_extension(options.output) == ".png") return MapSamples::uint16;
+    const bool is_half = std::all_of(from.tiles.begin(), from.tiles.end(), [](const MapTile& tile) {
+        return tile.texture->source_type == SampleType::float16;
+    });
+    return is_half ? MapSamples::float16 : MapSamples::float32;
+}
+
+int convert_map_file(const ConvertOptions& options) {
+    if (options.level) refuse("--level goes with a mesh to be written", options.output, "-o MESH.ply");
+    std::vector<std::string> warnings;
+    const Displacement from = load_map(options.input, options.from, warnings);
+    print_warnings(warnings);
+    std::optional<Mesh> mesh;
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
+    const MapSamples samples = choose_samples(options, from);
+    const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
+    const Displacement converted =
+        convert_map(from, make_target(options, from, mesh_or_null, samples), mesh_or_null);
+    write_map(converted, options.output, samples);
+    fmt::print("wrote {}: {}\n", options.output, describe(converted));
+    return kExitDone;
+}
+
+Scene load_surface(const ConvertOptions& options) {
+    if (get_kind(options.input) == FileKind::scene) return load_scene(options.input);
+    MeshSceneOptions scene;
+    scene.displacement_map = options.displacement_map;
+    scene.map = options.from;
+    scene.subdivision = options.subdivision;
+    scene.subdivision_level = options.subdivision_level;
+    return load_mesh_scene(options.input, scene);
+}
+
+int convert_surface(const ConvertOptions& options) {
+    if (!options.to_given.empty())
+        refuse(options.to_given.front() + " goes with a map to be written", options.output, "");
+    const bool is_mesh = get_kind(options.input) == FileKind::mesh;
+    if (options.subdivision_level && !options.subdivision)
+        refuse("--subdivision-level says nothing without a scheme", options.input, "--subdivision catmark");
+    if (is_mesh && options.displacement_map.empty() && !options.subdivision) {
+        if (options.level || !options.from_given.empty())
+            refuse((options.level ? std::string("--level") : options.from_given.front()) +
+                       " goes with --vdm MAP",
+                   options.input, "a plain mesh is written as it is");
+        write_mesh(load_mesh(options.input), options.output);
+        fmt::print("wrote {}\n", options.output);
+        return kExitDone;
+    }
+    if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
+        refuse("a scene file says itself what its meshes and maps are", options.input, "");
+    const Scene scene = load_surface(options);
+    print_warnings(scene.warnings);
+    const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel));
+    write_mesh(mesh, options.output);
+    fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
+               mesh.face_sizes.size());
+    return kExitDone;
+}
+
+int run_convert(const ConvertOptions& options) {
+    if (options.input.empty() || options.output.empty())
+        refuse("one file in and one file out are needed", "", "relief convert IN -o OUT");
+    check_text_writable(options.output);
+    const FileKind input = get_kind(options.input);
+    if (input == FileKind::map) {
+        if (is_mesh_file(options.output))
+            refuse("a map alone is no surface", options.input, "relief convert MESH --vdm MAP -o OUT.ply");
+        if (!options.displacement_map.empty())
+            refuse("--vdm goes with a mesh", options.input, "name the mesh by --mesh");
+        return convert_map_file(options);
+    }
+    if (!options.mesh.empty() || options.samples)
+        refuse(std::string(options.mesh.empty() ? "--samples" : "--mesh") + " goes with a map", options.input,
+               "");
+    if (!is_mesh_file(options.output)) refuse("a mesh is written as .obj or .ply", options.output, "");
+    return convert_surface(options);
+}
+
+void add_surface_options(CLI::App& verb, ConvertOptions& options) {
+    const char* const kGroup = "With a mesh or a scene, to write its surface";
+    const auto add = [&](const char* name, const char* value, const std::string& help, auto set) {
+        verb.add_option_function<std::string>(name, set, help)->type_name(value)->group(kGroup);
+    };
+    add("--vdm", "MAP", "the map of a mesh",
+        [&](const std::string& text) { options.displacement_map = text; });
+    add("--level", "N", fmt::format("2^N quads a side of each displaced patch; default {}", kUsualLevel),
+        [&](const std::string& text) { options.level = int(parse_integer("--level", text, 0, kMaxLevel)); });
+    add("--subdivision", "NAME", "of a mesh: catmark, bilinear, none (default)",
+        [&](const std::string& text) { options.subdivision = text; });
+    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 2",
+        [&](const std::string& text) {
+            options.subdivision_level =
+                int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
+        });
+}
+
+void set_samples(ConvertOptions& options, const std::string& text) {
+    constexpr std::array<std::pair<std::string_view, MapSamples>, 3> words{
+        {{"half", MapSamples::float16}, {"float", MapSamples::float32}, {"uint16", MapSamples::uint16}}};
+    options.samples = parse_word("--samples", text, words);
+}
+
+} // namespace
+
+Command add_convert(CLI::App& verb) {
+    const auto options = std::make_shared<ConvertOptions>();
+    verb.add_option("input", options->input, "map, mesh or scene file")->type_name("MAP|MESH|SCENE");
+    verb.add_option("-o", options->output, "map (.exr, .png of 16 bits) or mesh (.obj, .ply)")
+        ->type_name("FILE");
+    verb.add_option("--mesh", options->mesh, "the mesh of a map, to go between tangent and object space")
+        ->type_name("MESH");
+    verb.add_option_function<std::string>(
+            "--samples", [options](const std::string& text) { set_samples(*options, text); },
+            "of the map written: half, float, uint16; default by file")
+        ->type_name("NAME");
+    add_surface_options(verb, *options);
+    add_map_options(verb, options->from, {"What the map means", "--from,--preset", "", &options->from_given});
+    add_map_options(verb, options->to, {"What the new map shall mean", "--to", "to-", &options->to_given});
+    return [options] { return run_convert(*options); };
+}
+
+} // namespace relief::cli

@@ -1,0 +1,189 @@
+// convert_map: texel by texel from one convention to another.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "math/vec.h"
+#include "relief/convert.h"
+#include "relief/error.h"
+#include "surface/texels.h"
+#include "texel_frames.h"
+
+namespace relief {
+
+namespace {
+
+constexpr int kMargin = 8; ///< texels beside the faces that take over the nearest displacement
+
+[[noreturn]] void refuse(const Displacement& map, const char* message, const char* hint) {
+    throw Error(ErrorKind::usage, {message, fmt::format("displacement '{}'", map.name), hint});
+}
+
+/// Spaces that a map may be turned between; a height is along the normal.
+bool uses_frames(const Displacement& map) {
+    return map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
+}
+
+void check_kinds(const Displacement& from, const Displacement& to, const Mesh* mesh) {
+    if (to.type == DisplacementType::height && from.type != DisplacementType::height)
+        refuse(from, "vectors do not fit into a height map", "leave the type as vector");
+    if (uses_frames(from) != uses_frames(to) && !mesh)
+        refuse(from, "tangent and object space differ by the frames of a mesh, and none is given",
+               "name the mesh that the map is for");
+    const bool has_world = from.space == DisplacementSpace::world || to.space == DisplacementSpace::world;
+    if (has_world && from.space != to.space)
+        refuse(from, "world space depends on where an object stands", "use object space");
+}
+
+Vec3f decode(const Displacement& map, const std::array<float, 3>& texel) {
+    if (map.type == DisplacementType::height) return {0, 0, (texel[0] - map.midlevel.x) * map.scale.x};
+    Vec3f d;
+    for (size_t c = 0; c < 3; ++c) {
+        const int k = int(c);
+        set_component(d, map.axes.axis[c],
+                      (texel[c] - get_component(map.midlevel, k)) * get_component(map.scale, k) *
+                          float(map.axes.sign[c]));
+    }
+    return d;
+}
+
+std::array<float, 3> encode(const Displacement& map, const Vec3f& d) {
+    if (map.type == DisplacementType::height) {
+        const float value = d.z / map.scale.x + map.midlevel.x;
+        return {value, value, value};
+    }
+    std::array<float, 3> texel;
+    for (size_t c = 0; c < 3; ++c) {
+        const int k = int(c);
+        texel[c] =
+            get_component(d, map.axes.axis[c]) * float(map.axes.sign[c]) / get_component(map.scale, k) +
+            get_component(map.midlevel, k);
+    }
+    return texel;
+}
+
+/// Displacements of all texels, row by row.
+using Field = std::vector<Vec3f>;
+
+Field decode_all(const Displacement& map, const Texture& texture) {
+    Field field;
+    field.reserve(size_t(texture.width) * texture.height);
+    for (uint32_t y = 0; y < texture.height; ++y)
+        for (uint32_t x = 0; x < texture.width; ++x) field.push_back(decode(map, read_texel(texture, x, y)));
+    return field;
+}
+
+Vec3f to_object(const FrameMatrix& frame, const Vec3f& d) {
+    return frame[0] * d.x + frame[1] * d.y + frame[2] * d.z;
+}
+
+/// The (t, b, n) that the frame turns into `d`; zero where the frame has collapsed.
+Vec3f to_tangent(const FrameMatrix& frame, const Vec3f& d) {
+    const Vec3f bn = cross(frame[1], frame[2]), nt = cross(frame[2], frame[0]),
+                tb = cross(frame[0], frame[1]);
+    const float determinant = dot(frame[0], bn);
+    if (determinant == 0) return {};
+    return Vec3f{dot(bn, d), dot(nt, d), dot(tb, d)} / determinant;
+}
+
+/// One texel more around what is known: the mean of its known neighbours.
+void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t height) {
+    const std::vector<uint8_t> before = is_known;
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+            const size_t at = size_t(y) * width + x;
+            if (before[at]) continue;
+            Vec3f sum;
+            int count = 0;
+            for (uint32_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, height - 1); ++j)
+                for (uint32_t i = x > 0 ? x - 1 : 0; i <= std::min(x + 1, width - 1); ++i)
+                    if (before[size_t(j) * width + i]) sum += field[size_t(j) * width + i], ++count;
+            if (count == 0) continue;
+            field[at] = sum / float(count);
+            is_known[at] = 1;
+        }
+}
+
+Field change_space(const Displacement& from, const Surface& surface, uint8_t tile, const Field& field) {
+    const Texture& texture = *surface.map.tiles[tile].texture;
+    Field changed(field.size());
+    std::vector<uint8_t> is_known(field.size());
+    visit_texel_frames(surface, tile, [&](uint32_t x, uint32_t y, const FrameMatrix& frame) {
+        const size_t at = size_t(y) * texture.width + x;
+        changed[at] = uses_frames(from) ? to_object(frame, field[at]) : to_tangent(frame, field[at]);
+        is_known[at] = 1;
+    });
+    for (int k = 0; k < kMargin; ++k) grow(changed, is_known, texture.width, texture.height);
+    return changed;
+}
+
+/// Rows the other way up.
+void turn_rows(Field& field, uint32_t width) {
+    for (size_t low = 0, high = field.size() / width - 1; low < high; ++low, --high)
+        std::swap_ranges(field.begin() + ptrdiff_t(low * width), field.begin() + ptrdiff_t((low + 1) * width),
+                         field.begin() + ptrdiff_t(high * width));
+}
+
+std::shared_ptr<const Texture> encode_all(const Displacement& to, const Texture& source, const Field& field) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = source.width, texture->height = source.height;
+    texture->channel_count = to.type == DisplacementType::height ? 1 : 3;
+    texture->file = source.file;
+    texture->floats.reserve(4 * field.size());
+    for (const Vec3f& d : field) {
+        const std::array<float, 3> texel = encode(to, d);
+        texture->floats.insert(texture->floats.end(), {texel[0], texel[1], texel[2], 1.0f});
+    }
+    return texture;
+}
+
+/// The surface with tangent frames, whose tiles are those of `from`.
+Surface make_framed_surface(const Displacement& from, const Mesh& mesh) {
+    Displacement framed = from;
+    framed.type = DisplacementType::vector, framed.space = DisplacementSpace::tangent;
+    return make_surface(mesh, &framed, Affine{});
+}
+
+} // namespace
+
+Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh) {
+    check_kinds(from, to, mesh);
+    if (to.scale.x == 0 || to.scale.y == 0 || to.scale.z == 0)
+        refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
+    Displacement result = to;
+    result.name = from.name, result.is_udim = from.is_udim, result.wrap = from.wrap;
+    result.dilate = from.dilate;
+    result.tiles.clear();
+    std::optional<Surface> surface;
+    if (uses_frames(from) != uses_frames(to)) surface = make_framed_surface(from, *mesh);
+    for (size_t k = 0; k < from.tiles.size(); ++k) {
+        // That of the surface is filled around its islands.
+        const Texture& source = surface ? *surface->map.tiles[k].texture : *from.tiles[k].texture;
+        Field field = decode_all(from, source);
+        if (surface) field = change_space(from, *surface, uint8_t(k), field);
+        if (from.flip_v != to.flip_v) turn_rows(field, source.width);
+        result.tiles.push_back({from.tiles[k].udim, encode_all(to, source, field)});
+    }
+    return result;
+}
+
+std::string format_map_axes(const AxisMap& axes, DisplacementSpace space) {
+    const char* letters = space == DisplacementSpace::tangent ? "tbn" : "xyz";
+    std::string text;
+    for (size_t c = 0; c < 3; ++c)
+        text += fmt::format("{}{}{}", c > 0 ? "," : "", axes.sign[c] < 0 ? "-" : "", letters[axes.axis[c]]);
+    return text;
+}
+
+float find_largest_displacement(const Displacement& map) {
+    float largest = 0;
+    for (const MapTile& tile : map.tiles)
+        for (const Vec3f& d : decode_all(map, *tile.texture))
+            largest = std::max({largest, std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    return largest;
+}
+
+} // namespace relief
