@@ -91,7 +91,7 @@ void add_mesh_options(CLI::App& verb, RenderOptions& o) {
          [&o](const std::string& text) { o.mesh.displacement_map = text; });
     mesh("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
          [&o](const std::string& text) { o.mesh.subdivision = text; });
-    mesh("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 2",
+    mesh("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 3",
          [&o](const std::string& text) {
              o.mesh.subdivision_level =
                  int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));

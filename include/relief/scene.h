@@ -43,7 +43,7 @@ struct Subdivision {
     SubdivisionScheme scheme = SubdivisionScheme::none;
     /// Every quad becomes 2^level x 2^level patches, [0, kMaxSubdivisionLevel]; a mesh with faces that are
     /// not quads is subdivided at least once.
-    int level = 2;
+    int level = 3;
     UvRule uv = UvRule::smooth;
     BoundaryRule boundary = BoundaryRule::edge_and_corner;
     CreaseRule creases = CreaseRule::obey;

@@ -11,9 +11,9 @@ namespace relief {
 namespace {
 
 /// Samples a side of an edge or patch that is fitted.
-constexpr int kFitCount = 7;
+constexpr int kFitCount = 5;
 /// Rounds of fitting and moving the samples' places.
-constexpr int kFitPasses = 8;
+constexpr int kFitPasses = 4;
 constexpr double kSmallestSine = 0.1;
 constexpr double kNearby = 1.0 / 16; // of a cell
 

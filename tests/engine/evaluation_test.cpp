@@ -78,8 +78,7 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
     }
 }
 
-void expect_definition(const Displacement& displacement,
-                       SubdivisionScheme scheme = SubdivisionScheme::none) {
+void expect_definition(const Displacement& displacement, SubdivisionScheme scheme = SubdivisionScheme::none) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
     scene.meshes[0].subdivision.scheme = scheme;
     scene.meshes[0].subdivision.level = 0;

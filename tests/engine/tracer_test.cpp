@@ -100,6 +100,7 @@ struct Case {
     DisplacementSpace space;
     int level;
     uint32_t bias;
+    SubdivisionScheme scheme = SubdivisionScheme::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -113,6 +114,8 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     settings.height = 60;
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), c.space));
+    scene.meshes[0].subdivision.scheme = c.scheme;
+    scene.meshes[0].subdivision.level = 1;
     scene.camera.from = {2.5f, 0.4f, 0.6f};
     scene.camera.to = {0, 0, 0};
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
@@ -142,20 +145,20 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, TracerTest,
-                         testing::Values(Case{"object0", DisplacementSpace::object, 0, 0},
-                                         Case{"object1", DisplacementSpace::object, 1, 0},
-                                         Case{"object2", DisplacementSpace::object, 2, 0},
-                                         Case{"tangent3", DisplacementSpace::tangent, 3, 0},
-                                         Case{"object4", DisplacementSpace::object, 4, 0},
-                                         Case{"tangent5", DisplacementSpace::tangent, 5, 0},
-                                         Case{"object6", DisplacementSpace::object, 6, 0},
-                                         Case{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
-                                         Case{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
-                                         Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1}),
-                         [](const testing::TestParamInfo<Case>& info) {
-                             return std::string(info.param.name);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Levels, TracerTest,
+    testing::Values(
+        Case{"object0", DisplacementSpace::object, 0, 0}, Case{"object1", DisplacementSpace::object, 1, 0},
+        Case{"object2", DisplacementSpace::object, 2, 0}, Case{"tangent3", DisplacementSpace::tangent, 3, 0},
+        Case{"object4", DisplacementSpace::object, 4, 0}, Case{"tangent5", DisplacementSpace::tangent, 5, 0},
+        Case{"object6", DisplacementSpace::object, 6, 0},
+        Case{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
+        Case{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
+        Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1},
+        Case{"smooth_tangent2", DisplacementSpace::tangent, 2, 0, SubdivisionScheme::catmark},
+        Case{"smooth_object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1,
+             SubdivisionScheme::catmark}),
+    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& settings) {
     return prepare_scene(test::make_body_scene(test::make_torus(6, 9),

@@ -11,7 +11,7 @@ struct ExactResults {
     uint hash, pixel_seed;
     UintPair sobol;
     uint unit, cell, cell_column, cell_row, cell_is_upper;
-    uint blend_quad, filter_texels, decode_row, carried; ///< bits of floats that decide topology
+    uint blend_quad, blend_cubic, filter_texels, decode_row, carried; ///< bits of floats that decide topology
 };
 
 struct WarpResults {
@@ -88,6 +88,8 @@ FN ExactResults run_exact(FormulaInput from) {
     r.cell_is_upper = cell_is_upper(r.cell);
     r.blend_quad =
         floatBitsToUint(blend_quad(from.u[0], from.u[1], from.u[2], from.u[3], from.u[4], from.u[5]));
+    r.blend_cubic =
+        floatBitsToUint(blend_cubic(from.u[0], from.u[1], from.u[2], from.u[3], weigh_cubic(from.u[4])));
     r.filter_texels =
         floatBitsToUint(filter_texels(from.u[6], from.u[7], from.u[8], from.u[9], from.u[10], from.u[11]));
     r.decode_row =
