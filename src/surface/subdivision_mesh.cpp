@@ -110,6 +110,21 @@ CreaseLists list_creases(const Polygons& polygons) {
     return lists;
 }
 
+/// Fails where a face comes back to one of its points: OpenSubdiv would follow its edges in circles.
+void check_faces(const Polygons& polygons) {
+    std::vector<uint32_t> points;
+    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+        points.assign(polygons.points.begin() + polygons.starts[face],
+                      polygons.points.begin() + polygons.starts[face + 1]);
+        std::sort(points.begin(), points.end());
+        if (std::adjacent_find(points.begin(), points.end()) == points.end()) continue;
+        throw Error(ErrorKind::bad_input,
+                    {"cannot be subdivided: the face comes back to one of its points",
+                     fmt::format("{}, face {}", polygons.where, polygons.source_faces[face]),
+                     "cut the face in two"});
+    }
+}
+
 /// Fails where OpenSubdiv does not take the topology.
 RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivision, const UvTopology& uvs,
                             const CreaseLists& creases) {
@@ -232,6 +247,7 @@ struct SubdivisionMesh::Implementation {
     std::optional<Factory> factory;
 
     void check_edges(const Polygons& polygons) const;
+    void check_points(const Polygons& polygons) const;
     void check_creases(const Polygons& polygons) const;
     int get_depth(uint32_t face) const;
     std::vector<CellOrigin> find_origins() const;
@@ -259,6 +275,27 @@ void SubdivisionMesh::Implementation::check_edges(const Polygons& polygons) cons
     }
 }
 
+/// OpenSubdiv 3.5 makes no limit surface beside such points, with creases around it goes astray.
+void SubdivisionMesh::Implementation::check_points(const Polygons& polygons) const {
+    const osd::Far::TopologyLevel base = refiner->GetLevel(0);
+    for (int point = 0; point < base.GetNumVertices(); ++point) {
+        const bool is_pinched = base.IsVertexNonManifold(point);
+        const bool is_between_two = !polygons.creases.empty() && !base.IsVertexBoundary(point) &&
+                                    base.GetVertexEdges(point).size() == 2;
+        if (!is_pinched && !is_between_two) continue;
+        const Vec3f& p = polygons.positions[uint32_t(point)];
+        const osd::Far::ConstIndexArray faces = base.GetVertexFaces(point);
+        throw Error(
+            ErrorKind::bad_input,
+            {fmt::format("cannot be subdivided: {} at ({}, {}, {})",
+                         is_pinched ? "parts that share no edge meet" : "two faces share both of their edges",
+                         p.x, p.y, p.z),
+             fmt::format("{}, face {}", where,
+                         faces.size() > 0 ? polygons.source_faces[uint32_t(faces[0])] : 0),
+             is_pinched ? "move the parts a little apart, or join them" : "dissolve the point"});
+    }
+}
+
 void SubdivisionMesh::Implementation::check_creases(const Polygons& polygons) const {
     const osd::Far::TopologyLevel base = refiner->GetLevel(0);
     for (const Crease& crease : polygons.creases)
@@ -273,6 +310,7 @@ void SubdivisionMesh::Implementation::check_creases(const Polygons& polygons) co
 SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& subdivision)
     : implementation_(std::make_unique<Implementation>()) {
     Implementation& self = *implementation_;
+    check_faces(polygons);
     self.where = polygons.where;
     self.uvs = join_uvs(polygons);
     for (const Vec3f& p : polygons.positions) self.positions.insert(self.positions.end(), {p.x, p.y, p.z});
@@ -284,6 +322,7 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     const CreaseLists creases = list_creases(polygons);
     self.refiner = make_refiner(polygons, subdivision, self.uvs, creases);
     self.check_edges(polygons);
+    self.check_points(polygons);
     self.check_creases(polygons);
     Factory::Options options;
     const int steps = std::min(self.level + kStepsBeyond, kMostSteps);
