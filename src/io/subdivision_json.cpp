@@ -87,9 +87,7 @@ void read_subdivision(const JsonNode& node, Mesh& mesh) {
     if (const auto creases = node.find("creases")) read_creases(*creases, mesh);
 }
 
-bool has_subdivision(const Mesh& mesh) {
-    return !(mesh.subdivision == Subdivision{});
-}
+bool has_subdivision(const Mesh& mesh) { return !(mesh.subdivision == Subdivision{}); }
 
 Json write_subdivision(const Mesh& mesh) {
     const Subdivision& subdivision = mesh.subdivision;
