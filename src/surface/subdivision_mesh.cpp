@@ -279,19 +279,19 @@ void SubdivisionMesh::Implementation::check_edges(const Polygons& polygons) cons
 void SubdivisionMesh::Implementation::check_points(const Polygons& polygons) const {
     const osd::Far::TopologyLevel base = refiner->GetLevel(0);
     for (int point = 0; point < base.GetNumVertices(); ++point) {
+        const osd::Far::ConstIndexArray faces = base.GetVertexFaces(point);
+        if (faces.size() == 0) continue; // joined with another, or never used
         const bool is_pinched = base.IsVertexNonManifold(point);
         const bool is_between_two = !polygons.creases.empty() && !base.IsVertexBoundary(point) &&
                                     base.GetVertexEdges(point).size() == 2;
         if (!is_pinched && !is_between_two) continue;
         const Vec3f& p = polygons.positions[uint32_t(point)];
-        const osd::Far::ConstIndexArray faces = base.GetVertexFaces(point);
         throw Error(
             ErrorKind::bad_input,
             {fmt::format("cannot be subdivided: {} at ({}, {}, {})",
                          is_pinched ? "parts that share no edge meet" : "two faces share both of their edges",
                          p.x, p.y, p.z),
-             fmt::format("{}, face {}", where,
-                         faces.size() > 0 ? polygons.source_faces[uint32_t(faces[0])] : 0),
+             fmt::format("{}, face {}", where, polygons.source_faces[uint32_t(faces[0])]),
              is_pinched ? "move the parts a little apart, or join them" : "dissolve the point"});
     }
 }
