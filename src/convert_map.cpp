@@ -155,7 +155,7 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
     Displacement result = to;
     result.name = from.name, result.is_udim = from.is_udim, result.wrap = from.wrap;
-    result.dilate = from.dilate;
+    result.dilate = from.dilate, result.filter = from.filter, result.autobump = from.autobump;
     result.tiles.clear();
     std::optional<Surface> surface;
     if (uses_frames(from) != uses_frames(to)) surface = make_framed_surface(from, *mesh);

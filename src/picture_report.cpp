@@ -9,7 +9,12 @@ namespace relief {
 void count_scene(const PreparedScene& scene, Statistics& statistics) {
     statistics.meshes = scene.mesh_count;
     statistics.instances = scene.instances.size();
-    std::vector<const Texture*> seen;
+    std::vector<const void*> seen;
+    const auto is_new = [&](const void* part) {
+        if (!part || std::find(seen.begin(), seen.end(), part) != seen.end()) return false;
+        seen.push_back(part);
+        return true;
+    };
     for (const Surface& surface : scene.surfaces) {
         for (const Quad& quad : surface.quads) {
             if (surface.has_displacement)
@@ -18,8 +23,8 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
                 statistics.triangles += quad.is_triangle() ? 1 : 2;
         }
         for (const DisplacementMap::Tile& tile : surface.map.tiles) {
-            if (std::find(seen.begin(), seen.end(), tile.texture.get()) != seen.end()) continue;
-            seen.push_back(tile.texture.get());
+            if (is_new(tile.mips.get())) statistics.displacement_bytes += tile.mips->byte_count();
+            if (!is_new(tile.texture.get())) continue;
             statistics.displacement_texels += uint64_t(tile.texture->width) * tile.texture->height;
             statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
         }

@@ -85,7 +85,7 @@ struct Session::Implementation {
         prepare_s = timer.seconds();
     }
 
-    /// The scene's textures may be shared with whoever made it, so each is copied; one after another, since
+    /// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one after another, since
     /// the last user of the old one is often here.
     void own_maps() {
         std::map<const Texture*, const Texture*> copy_of;
@@ -153,8 +153,16 @@ struct Session::Implementation {
         const TexelRectangle changed = named.gutter.follow(
             *map.texture, {edit.x, edit.y, edit.x + edit.texels.width - 1, edit.y + edit.texels.height - 1});
         map.pyramid->update(*map.texture, changed);
+        std::map<const MipChain*, std::vector<TexelRectangle>> rectangles{{nullptr, {changed}}};
+        for (const PreparedMap& user : prepared->maps) {
+            if (user.texture != named.texture || !user.mips || rectangles.contains(user.mips.get())) continue;
+            std::vector<TexelRectangle>& all = rectangles[user.mips.get()];
+            all = user.mips->update(*map.texture, changed);
+            all.insert(all.begin(), changed);
+        }
         visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
-            changes.push_back({index, find_touched_patches(surface, tile, changed)});
+            const std::vector<TexelRectangle>& all = rectangles.at(surface.map.tiles[tile].mips.get());
+            changes.push_back({index, find_touched_patches(surface, tile, all)});
         });
     }
 
@@ -168,6 +176,7 @@ struct Session::Implementation {
         std::vector<SurfaceChange> changes;
         for (PreparedMap* map : copies) paint(edit, *map, changes);
         update_levels(changes);
+        update_mips(changes);
         if (!engine->follow(changes)) {
             engine.reset(); // a device need not hold both
             engine = make_engine(prepared, settings);
@@ -179,6 +188,17 @@ struct Session::Implementation {
         report.seconds = timer.seconds();
         prepare_s += report.seconds;
         return report;
+    }
+
+    /// Other levels may ask for other copies of the map, also in patches beside those that changed.
+    void update_mips(std::vector<SurfaceChange>& changes) {
+        for (SurfaceChange& change : changes) {
+            Surface& surface = prepared->surfaces[change.surface];
+            const std::vector<uint32_t> mips = choose_scene_mips(*prepared, change.surface);
+            for (size_t patch = 0; patch < mips.size(); ++patch)
+                if (mips[patch] != surface.mips[patch]) change.is_changed[patch] = 1;
+            surface.mips = mips;
+        }
     }
 
     void update_levels(const std::vector<SurfaceChange>& changes) {

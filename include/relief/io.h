@@ -22,10 +22,10 @@ Scene load_scene(const std::filesystem::path& file);
 /// docs/formats.md lists the names.
 struct MapOptions {
     std::string preset; ///< empty: none
-    std::optional<std::string> type, space, axes, encoding, wrap;
+    std::optional<std::string> type, space, axes, encoding, wrap, filter;
     std::optional<Vec3f> midlevel, scale; ///< a channel each; of the values after the encoding
     bool flip_v = false;
-    bool dilate = true; ///< see Displacement
+    bool dilate = true, autobump = false; ///< see Displacement
 };
 
 /// The tiles of a map and what they mean. `file` may hold <UDIM>, <UVTILE> or <uvtile>. Values that are not

@@ -70,6 +70,8 @@ struct Mesh {
 enum class DisplacementType { vector, height };
 enum class DisplacementSpace { tangent, object, world };
 enum class WrapMode { clamp, repeat, mirror, black };
+/// What a sample of the surface reads: the map as it is, or a copy whose texels are as large as the cells.
+enum class MapFilter { none, mip };
 
 /// Signed permutation: channel c of the map moves along axis[c] (0, 1, 2 = t, b, n or x, y, z) times sign[c].
 struct AxisMap {
@@ -98,6 +100,9 @@ struct Displacement {
     WrapMode wrap = WrapMode::clamp;
     /// Texels between uv islands that hold the background's value take that of their neighbours inside.
     bool dilate = true;
+    MapFilter filter = MapFilter::none;
+    /// Shading normals keep the map's detail that is finer than the cells.
+    bool autobump = false;
     std::vector<MapTile> tiles;
 };
 

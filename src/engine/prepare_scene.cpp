@@ -12,6 +12,7 @@
 #include "engine/tessellate.h"
 #include "relief/error.h"
 #include "surface/displacement_map.h"
+#include "surface/patch_mips.h"
 
 namespace relief {
 
@@ -71,10 +72,32 @@ std::vector<PreparedMap> prepare_maps(Scene& scene) {
                 gutter.apply(*filled);
                 tile.texture = std::move(filled);
             }
-            maps.push_back({displacement.name, tile.udim, tile.texture, std::move(gutter), source});
+            std::shared_ptr<MipChain> mips;
+            if (displacement.filter == MapFilter::mip && !meshes.empty()) {
+                OutsideTexels outside;
+                if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
+                mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
+            }
+            maps.push_back(
+                {displacement.name, tile.udim, tile.texture, std::move(gutter), std::move(mips), source});
         }
     }
     return maps;
+}
+
+/// Hands the copies of maps to the surfaces of their displacements.
+void share_mips(const Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
+                PreparedScene& prepared) {
+    std::vector<size_t> first_map(scene.displacements.size(), 0);
+    for (size_t k = 1; k < first_map.size(); ++k)
+        first_map[k] = first_map[k - 1] + scene.displacements[k - 1].tiles.size();
+    for (const auto& [key, surface] : surface_of_key) {
+        const uint32_t displacement = std::get<1>(key);
+        if (displacement == kNoIndex) continue;
+        std::vector<DisplacementMap::Tile>& tiles = prepared.surfaces[surface].map.tiles;
+        for (size_t k = 0; k < tiles.size(); ++k)
+            tiles[k].mips = prepared.maps[first_map[displacement] + k].mips;
+    }
 }
 
 /// Frees the polygons of meshes that no later surface needs.
@@ -108,6 +131,13 @@ void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_o
 
 } // namespace
 
+std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
+    std::vector<const LevelField*> levels;
+    for (const Instance& instance : scene.instances)
+        if (instance.surface == surface) levels.push_back(instance.levels.get());
+    return choose_mips(scene.surfaces[surface], levels);
+}
+
 std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
     validate_scene(scene);
     auto prepared = std::make_shared<PreparedScene>();
@@ -131,6 +161,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     }
     prepared->maps = prepare_maps(scene);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
+    share_mips(scene, surface_of_key, *prepared);
 
     prepared->levels = make_level_config(scene, settings);
     parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
@@ -140,6 +171,8 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
                 prepared->surfaces[instance.surface], instance.world_from_object, prepared->levels));
         }
     });
+    for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
+        prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
     if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());
     return prepared;
 }

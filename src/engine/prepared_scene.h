@@ -11,6 +11,7 @@
 #include "relief/scene.h"
 #include "surface/gutter.h"
 #include "surface/level_field.h"
+#include "surface/mip_chain.h"
 #include "surface/surface.h"
 
 namespace relief {
@@ -29,8 +30,9 @@ struct PreparedMap {
     std::string displacement;
     int udim = 1001;
     std::shared_ptr<const Texture> texture;
-    GutterFill gutter;            ///< worked into the texture already
-    const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
+    GutterFill gutter;              ///< worked into the texture already
+    std::shared_ptr<MipChain> mips; ///< of that texture; null: not filtered
+    const void* source = nullptr;   ///< names the scene's image; those of one image may hold different copies
 };
 
 struct PreparedScene {
@@ -47,6 +49,9 @@ struct PreparedScene {
     LevelFieldConfig levels;   ///< what the instances' levels were computed with
     std::vector<std::string> warnings;
 };
+
+/// Chooses the copies of maps that the surfaces read, by the levels of their instances.
+std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 
 /// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are
 /// used.

@@ -20,6 +20,8 @@ constexpr std::array<std::pair<std::string_view, DisplacementSpace>, 3> kSpaces 
     {{"tangent", DisplacementSpace::tangent},
      {"object", DisplacementSpace::object},
      {"world", DisplacementSpace::world}}};
+constexpr std::array<std::pair<std::string_view, MapFilter>, 2> kFilters = {
+    {{"none", MapFilter::none}, {"mip", MapFilter::mip}}};
 constexpr std::array<std::pair<std::string_view, WrapMode>, 4> kWraps = {{{"clamp", WrapMode::clamp},
                                                                           {"repeat", WrapMode::repeat},
                                                                           {"mirror", WrapMode::mirror},
@@ -93,6 +95,10 @@ DisplacementType parse_displacement_type(std::string_view text) {
 DisplacementSpace parse_displacement_space(std::string_view text) {
     return find_name(NameTable<DisplacementSpace>(kSpaces), text, "space");
 }
+MapFilter parse_map_filter(std::string_view text) {
+    return find_name(NameTable<MapFilter>(kFilters), text, "filter");
+}
+
 WrapMode parse_wrap_mode(std::string_view text) {
     return find_name(NameTable<WrapMode>(kWraps), text, "wrap");
 }
@@ -108,6 +114,7 @@ MapEncoding parse_encoding(std::string_view text) {
 std::string_view get_name(MapEncoding encoding) {
     return find_value(NameTable<MapEncoding>(kEncodings), encoding);
 }
+std::string_view get_name(MapFilter filter) { return find_value(NameTable<MapFilter>(kFilters), filter); }
 std::string_view get_name(WrapMode wrap) { return find_value(NameTable<WrapMode>(kWraps), wrap); }
 
 AxisText parse_axes(std::string_view text) {

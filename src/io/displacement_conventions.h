@@ -39,10 +39,12 @@ const MapPreset& find_preset(std::string_view name);
 DisplacementType parse_displacement_type(std::string_view text);
 DisplacementSpace parse_displacement_space(std::string_view text);
 WrapMode parse_wrap_mode(std::string_view text);
+MapFilter parse_map_filter(std::string_view text);
 MapEncoding parse_encoding(std::string_view text);
 std::string_view get_name(DisplacementType type);
 std::string_view get_name(DisplacementSpace space);
 std::string_view get_name(WrapMode wrap);
+std::string_view get_name(MapFilter filter);
 std::string_view get_name(MapEncoding encoding);
 
 } // namespace relief

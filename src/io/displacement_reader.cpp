@@ -91,6 +91,8 @@ Displacement make_displacement_values(const MapOptions& options) {
     map.scale = options.scale.value_or(Vec3f{1, 1, 1});
     map.flip_v = options.flip_v;
     map.dilate = options.dilate;
+    if (options.filter) map.filter = parse_map_filter(*options.filter);
+    map.autobump = options.autobump;
     if (options.midlevel)
         map.midlevel = *options.midlevel;
     else if (preset && preset->midlevel && !options.encoding)

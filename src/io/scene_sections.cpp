@@ -173,6 +173,8 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     const auto as_bool = [](const JsonNode& n) { return n.as_bool(); };
     read_optional(node, "flip_v", options.flip_v, as_bool);
     read_optional(node, "dilate", options.dilate, as_bool);
+    read_optional(node, "filter", options.filter, as_text);
+    read_optional(node, "autobump", options.autobump, as_bool);
     return node.with_place([&] { return make_displacement(request, assets); });
 }
 

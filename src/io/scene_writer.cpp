@@ -150,6 +150,8 @@ class SceneWriter {
             node["scale"] = to_json(map.scale);
             node["flip_v"] = map.flip_v;
             node["dilate"] = map.dilate;
+            node["filter"] = std::string(get_name(map.filter));
+            node["autobump"] = map.autobump;
             node["wrap"] = std::string(get_name(map.wrap));
         }
     }

@@ -8,6 +8,7 @@
 #include "shared/constants.h"
 #include "shared/exact.h"
 #include "shared/levels.h"
+#include "shared/mips.h"
 #include "shared/frame.h"
 #include "shared/texel.h"
 #include "shared/object_ray.h"

@@ -30,6 +30,7 @@ struct SurfaceData {
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced
     uint first_control;       ///< of positions, in vertices: twelve a patch; kNone: bilinear patches
+    uint first_mip;           ///< of override_bits: a word a patch (mips.h); kNone: the map itself everywhere
 };
 
 /// d = matrix (texel - midlevel).
@@ -39,7 +40,7 @@ struct MapData {
     uint wrap;
     uint flip_v;
     uint is_tangent;
-    uint first_tile; ///< index into textures
+    uint first_tile; ///< index into textures; copies of the tiles follow, one after another
     uint tile_count;
 };
 

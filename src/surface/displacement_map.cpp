@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "surface/mip_chain.h"
 
 namespace relief {
 
@@ -43,6 +44,13 @@ std::array<Vec3f, 3> make_matrix(const Displacement& displacement, const Affine&
 
 } // namespace
 
+DisplacementMap::ImageView DisplacementMap::image(uint8_t tile, uint32_t mip) const {
+    const Tile& own = tiles[tile];
+    if (mip == 0 || !own.mips) return {*own.texture, *own.pyramid};
+    const MipChain::Copy& copy = own.mips->copy(mip);
+    return {*copy.texture, *copy.pyramid};
+}
+
 std::shared_ptr<const BoundsPyramid>
 PyramidCache::get_or_build(const std::shared_ptr<const Texture>& texture) {
     {
@@ -79,6 +87,8 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     map.midlevel = displacement.midlevel;
     map.wrap = displacement.wrap;
     map.flip_v = displacement.flip_v;
+    map.is_filtered = displacement.filter == MapFilter::mip;
+    map.has_autobump = displacement.autobump;
     map.is_tangent =
         displacement.type == DisplacementType::height || displacement.space == DisplacementSpace::tangent;
     if (displacement.type == DisplacementType::height) map.midlevel = {displacement.midlevel.x, 0, 0};
@@ -89,7 +99,7 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     for (const MapTile& tile : displacement.tiles) {
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
-        map.tiles.push_back({tile.udim, tile.texture, pyramids.get_or_build(tile.texture)});
+        map.tiles.push_back({tile.udim, tile.texture, pyramids.get_or_build(tile.texture), nullptr});
         const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
         check_reach(displacement.name, map, tile.texture->file,
                     map.tiles.back().pyramid->query(0, 0, int64_t(tile.texture->width) - 1,

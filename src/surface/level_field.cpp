@@ -83,7 +83,7 @@ int choose_middle_level(const Surface& surface, const PatchSamples& samples, con
 
 PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& world_from_object,
                           const LevelFieldConfig& config) {
-    const PatchSamples samples(surface, patch);
+    const PatchSamples samples(surface, patch, PatchSamples::Filtering::none);
     PatchLevels levels;
     levels.patch = uint8_t(choose_middle_level(surface, samples, world_from_object, config));
     for (int edge = 0; edge < 4; ++edge) {

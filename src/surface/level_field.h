@@ -21,8 +21,9 @@ struct LevelFieldConfig {
 class LevelField {
   public:
     /// The level of an edge depends on the edge alone (its line, its displaced length, the transform, the
-    /// view): finest such that a cell is at most `pixel_error` pixels at the nearest point, never finer than
-    /// one cell a texel, never above kMaxLevel. Undisplaced surfaces have level 0.
+    /// view; whatever filter the map has): finest such that a cell is at most `pixel_error` pixels at the
+    /// nearest point, never finer than one cell a texel, never above kMaxLevel. Undisplaced surfaces have
+    /// level 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 

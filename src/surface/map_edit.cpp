@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "surface/mip_chain.h"
 #include "surface/texels.h"
 #include "surface/wrapped_range.h"
 
@@ -22,15 +23,22 @@ bool overlaps(const WrappedRange& range, int64_t first, int64_t last) {
     return false;
 }
 
-/// Tells whether what lies between some vertices of one tile reads from a rectangle.
+/// Tells whether what lies between some vertices of one tile reads what has changed.
 class Footprint {
   public:
-    Footprint(const DisplacementMap& map, uint8_t tile, const TexelRectangle& changed)
+    Footprint(const DisplacementMap& map, uint8_t tile, std::span<const TexelRectangle> changed)
         : map_(map), tile_(tile), changed_(changed) {}
 
-    bool is_touched(const Surface& surface, std::span<const uint32_t> vertices) const {
+    /// In the map itself or in its copy `mip`.
+    bool is_touched(const Surface& surface, std::span<const uint32_t> vertices, uint32_t mip) const {
         if (surface.tile(vertices[0]) != tile_) return false;
-        const Texture& texture = *map_.tiles[tile_].texture;
+        return is_copy_touched(surface, vertices, 0) || (mip > 0 && is_copy_touched(surface, vertices, mip));
+    }
+
+  private:
+    bool is_copy_touched(const Surface& surface, std::span<const uint32_t> vertices, uint32_t mip) const {
+        const Texture& texture = map_.image(tile_, mip).texture;
+        const TexelRectangle& changed = changed_[std::min(size_t(mip), changed_.size() - 1)];
         double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
         for (const uint32_t vertex : vertices) {
             const Vec2f& uv = surface.uvs[vertex];
@@ -39,11 +47,10 @@ class Footprint {
             low_x = std::min(low_x, x), high_x = std::max(high_x, x);
             low_y = std::min(low_y, y), high_y = std::max(high_y, y);
         }
-        return reads(low_x, high_x, texture.width, changed_.x0, changed_.x1) &&
-               reads(low_y, high_y, texture.height, changed_.y0, changed_.y1);
+        return reads(low_x, high_x, texture.width, changed.x0, changed.x1) &&
+               reads(low_y, high_y, texture.height, changed.y0, changed.y1);
     }
 
-  private:
     bool reads(double low, double high, int64_t size, int64_t first, int64_t last) const {
         const WrappedRange range = wrap_range(int64_t(std::floor(low)) - kSlackTexels,
                                               int64_t(std::ceil(high)) + kSlackTexels, size, map_.wrap);
@@ -52,20 +59,26 @@ class Footprint {
 
     const DisplacementMap& map_;
     uint8_t tile_;
-    TexelRectangle changed_;
+    std::span<const TexelRectangle> changed_;
 };
 
 /// The patch itself, and where its edges and corners belong to other vertices, those.
 bool is_patch_touched(const Surface& surface, const Footprint& footprint, uint32_t patch) {
     const Quad& quad = surface.quads[patch];
-    if (footprint.is_touched(surface, quad.vertex)) return true;
+    const auto get_mip = [&](uint32_t place) {
+        return scalar::packed_mip(surface.packed_mips(patch), place);
+    };
+    if (footprint.is_touched(surface, quad.vertex, get_mip(scalar::kMipInside))) return true;
+    const bool has_copies = !surface.mips.empty();
     for (int k = 0; k < 4; ++k) {
         const uint32_t dominant = surface.dominant(quad.vertex[k]);
-        if (dominant != quad.vertex[k] && footprint.is_touched(surface, {&dominant, 1})) return true;
-        if (!surface.is_seam(patch, k)) continue;
+        if ((has_copies || dominant != quad.vertex[k]) &&
+            footprint.is_touched(surface, {&dominant, 1}, get_mip(scalar::kMipCorners + uint32_t(k))))
+            return true;
+        if (!has_copies && !surface.is_seam(patch, k)) continue;
         const Surface::EdgeLine line = surface.edge_line(patch, k);
         const uint32_t ends[] = {line.first, line.second};
-        if (footprint.is_touched(surface, ends)) return true;
+        if (footprint.is_touched(surface, ends, get_mip(scalar::kMipEdges + uint32_t(k)))) return true;
     }
     return false;
 }
@@ -88,7 +101,7 @@ void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y)
 }
 
 std::vector<uint8_t> find_touched_patches(const Surface& surface, uint8_t tile,
-                                          const TexelRectangle& changed) {
+                                          std::span<const TexelRectangle> changed) {
     std::vector<uint8_t> touched(surface.patch_count());
     const Footprint footprint(surface.map, tile, changed);
     parallel_for("patches of an edit", touched.size(), 1024, [&](size_t begin, size_t end) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "surface/surface.h"
@@ -12,9 +13,10 @@ namespace relief {
 /// target holds such.
 void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y);
 
-/// One byte a patch: 1 where the displacement of any of its samples, or the level of one of its edges, may
-/// read a texel of the rectangle (inside the map) of tile `tile`.
+/// One byte a patch: 1 where the displacement of any of its samples, its normals, or the level of one of its
+/// edges may read a texel that has changed in tile `tile`: one rectangle for each image, the map itself first
+/// and then its copies, if it has any.
 std::vector<uint8_t> find_touched_patches(const Surface& surface, uint8_t tile,
-                                          const TexelRectangle& changed);
+                                          std::span<const TexelRectangle> changed);
 
 } // namespace relief

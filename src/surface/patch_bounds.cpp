@@ -62,10 +62,10 @@ Corner blend_line(const Corner& a, const Corner& b, double s) {
     return corner;
 }
 
-/// What one tile's displacement is bounded with, and the sizes that rounding errors grow with.
+/// What the displacement by one image is bounded with, and the sizes that rounding errors grow with.
 struct Footprint {
     const DisplacementMap* map;
-    uint8_t tile;
+    uint8_t tile, mip;
     double largest_position = 0, largest_u = 0, largest_v = 0;
 
     void include(const Vec3f& p) {
@@ -88,12 +88,12 @@ std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, d
 
 /// Range of the raw channels over a rectangle of texels: from the texels themselves where they are few, since
 /// the blocks of the pyramid would widen a small rectangle to twice its size.
-ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::Tile& tile,
+ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::ImageView& image,
                         const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const Texture& texture = *tile.texture;
+    const Texture& texture = image.texture;
     if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
-        return tile.pyramid->query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+        return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
     const bool is_inside =
         columns[0] >= 0 && rows[0] >= 0 && columns[1] < texture.width && rows[1] < texture.height;
     if (is_inside)
@@ -122,12 +122,12 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     const DisplacementMap& map = *footprint.map;
     const Interval nothing{0, 0};
     if (footprint.tile >= map.tiles.size()) return {nothing, nothing, nothing};
-    const DisplacementMap::Tile& tile = map.tiles[footprint.tile];
+    const DisplacementMap::ImageView image = map.image(footprint.tile, footprint.mip);
     const Interval row = map.flip_v ? v : Interval{1 - v.high, 1 - v.low};
-    const auto columns = find_texels(u, footprint.largest_u, tile.texture->width);
-    const auto rows = find_texels(row, footprint.largest_v, tile.texture->height);
+    const auto columns = find_texels(u, footprint.largest_u, image.texture.width);
+    const auto rows = find_texels(row, footprint.largest_v, image.texture.height);
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const ChannelRange range = find_range(map, tile, columns, rows);
+    const ChannelRange range = find_range(map, image, columns, rows);
     std::array<Interval, 3> values;
     for (int c = 0; c < 3; ++c) {
         const Interval raw{range.low[c], range.high[c]};
@@ -182,7 +182,8 @@ struct PatchBase {
     const BicubicBase* bicubic; ///< or null
 
     PatchBase(const Surface& surface, const PatchSamples& samples)
-        : footprint{&surface.map, samples.corners()[0].tile}, bicubic(samples.base()) {
+        : footprint{&surface.map, samples.corners()[0].tile, samples.corners()[0].mip},
+          bicubic(samples.base()) {
         for (int k = 0; k < 4; ++k) {
             footprint.include(samples.corners()[k]);
             corners[k] = make_corner(samples.corners()[k]);
@@ -210,7 +211,7 @@ void extend_by_part(std::array<Interval, 3>& bounds, const PatchBase& base,
 /// Extends `bounds` by the samples of edge k between s0 and s1 of its line.
 void extend_by_line(std::array<Interval, 3>& bounds, const PatchSamples& samples, const DisplacementMap& map,
                     int k, const std::array<double, 2>& s0_s1) {
-    Footprint footprint{&map, samples.first_of_line(k).tile};
+    Footprint footprint{&map, samples.first_of_line(k).tile, samples.first_of_line(k).mip};
     footprint.include(samples.first_of_line(k)), footprint.include(samples.second_of_line(k));
     const Corner first = make_corner(samples.first_of_line(k)),
                  second = make_corner(samples.second_of_line(k));
@@ -228,7 +229,7 @@ void extend_by_line(std::array<Interval, 3>& bounds, const PatchSamples& samples
 int choose_part_count(const Footprint& footprint, const std::array<VertexData, 4>& corners) {
     const DisplacementMap& map = *footprint.map;
     if (footprint.tile >= map.tiles.size()) return 1;
-    const Texture& texture = *map.tiles[footprint.tile].texture;
+    const Texture& texture = map.image(footprint.tile, footprint.mip).texture;
     Interval u, v;
     for (const VertexData& corner : corners) u.extend(corner.uv.x), v.extend(corner.uv.y);
     const double texels = std::max((u.high - u.low) * texture.width, (v.high - v.low) * texture.height);

@@ -22,9 +22,9 @@ Vec3f blend_quad(const Vec3f& c0, const Vec3f& c1, const Vec3f& c2, const Vec3f&
 
 } // namespace
 
-Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv) {
+Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip) {
     if (tile >= map.tiles.size()) return {};
-    const Texture& texture = *map.tiles[tile].texture;
+    const Texture& texture = map.image(tile, mip).texture;
     const float x = uv.x * float(texture.width) - 0.5f;
     const float y = (map.flip_v ? uv.y : 1.0f - uv.y) * float(texture.height) - 0.5f;
     const float x0 = floor_texel(x), y0 = floor_texel(y);
@@ -56,10 +56,11 @@ VertexData load_vertex(const Surface& surface, uint32_t vertex) {
     return data;
 }
 
-Vec3f displace(const DisplacementMap& map, uint8_t tile, const Vec3f& base, const Vec2f& uv,
-               const Frame& frame) {
+Vec3f displace(const DisplacementMap& map, const VertexData& sample) {
+    const Vec3f& base = sample.position;
+    const Frame& frame = sample.frame;
     if (map.tiles.empty()) return base;
-    const Vec3f d = fetch_displacement(map, tile, uv);
+    const Vec3f d = fetch_displacement(map, sample.tile, sample.uv, sample.mip);
     if (!map.is_tangent) return base + d;
     return {base.x + scalar::carry_through_frame(d.x, d.y, d.z, frame.t.x, frame.b.x, frame.n.x),
             base.y + scalar::carry_through_frame(d.x, d.y, d.z, frame.t.y, frame.b.y, frame.n.y),
@@ -77,7 +78,7 @@ VertexData blend_corners(const std::array<VertexData, 4>& c, float u, float v) {
     result.frame.t = blend_vectors(c[0].frame.t, c[1].frame.t, c[2].frame.t, c[3].frame.t);
     result.frame.b = blend_vectors(c[0].frame.b, c[1].frame.b, c[2].frame.b, c[3].frame.b);
     result.frame.n = blend_vectors(c[0].frame.n, c[1].frame.n, c[2].frame.n, c[3].frame.n);
-    result.tile = c[0].tile;
+    result.tile = c[0].tile, result.mip = c[0].mip;
     return result;
 }
 
@@ -87,28 +88,38 @@ VertexData blend_line(const VertexData& a, const VertexData& b, float s) {
     result.uv = {scalar::blend(a.uv.x, b.uv.x, s), scalar::blend(a.uv.y, b.uv.y, s)};
     result.frame = {blend(a.frame.t, b.frame.t, s), blend(a.frame.b, b.frame.b, s),
                     blend(a.frame.n, b.frame.n, s)};
-    result.tile = a.tile;
+    result.tile = a.tile, result.mip = a.mip;
     return result;
 }
 
-PatchSamples::PatchSamples(const Surface& surface, uint32_t patch) : map_(&surface.map) {
+PatchSamples::PatchSamples(const Surface& surface, uint32_t patch, Filtering filtering) : map_(&surface.map) {
     const Quad& quad = surface.quads[patch];
-    for (int k = 0; k < 4; ++k) corners_[k] = load_vertex(surface, quad.vertex[k]);
+    const uint32_t mips = filtering == Filtering::none ? 0 : surface.packed_mips(patch);
+    const auto load = [&](uint32_t vertex, uint32_t place) {
+        VertexData data = load_vertex(surface, vertex);
+        data.mip = uint8_t(scalar::packed_mip(mips, place));
+        return data;
+    };
+    const uint8_t own_mip = uint8_t(scalar::packed_mip(mips, scalar::kMipInside));
+    for (int k = 0; k < 4; ++k) corners_[k] = load(quad.vertex[k], scalar::kMipInside);
     if (!surface.frames.empty() && !surface.map.is_tangent)
         for (int k = 0; k < 4; ++k) corners_[k].frame.n = unpack_normal(surface.frames[quad.vertex[k]]);
     for (int k = 0; k < 4; ++k) {
         const uint32_t own[2] = {quad.vertex[k], quad.vertex[(k + 1) & 3]};
         const uint32_t dominant = surface.dominant(own[0]);
-        is_corner_foreign_[k] = dominant != own[0];
-        dominants_[k] = is_corner_foreign_[k] ? load_vertex(surface, dominant) : corners_[k];
+        const uint32_t corner_place = scalar::kMipCorners + uint32_t(k);
+        is_corner_foreign_[k] = dominant != own[0] || scalar::packed_mip(mips, corner_place) != own_mip;
+        dominants_[k] = is_corner_foreign_[k] ? load(dominant, corner_place) : corners_[k];
 
         const Surface::EdgeLine line = surface.edge_line(patch, k);
         const int start = line.is_reversed ? 1 : 0;
         lines_[k].is_reversed = line.is_reversed;
-        lines_[k].is_foreign = line.first != own[start] || line.second != own[1 - start];
-        lines_[k].first = lines_[k].is_foreign ? load_vertex(surface, line.first) : corners_[(k + start) & 3];
+        const uint32_t edge_place = scalar::kMipEdges + uint32_t(k);
+        lines_[k].is_foreign = line.first != own[start] || line.second != own[1 - start] ||
+                               scalar::packed_mip(mips, edge_place) != own_mip;
+        lines_[k].first = lines_[k].is_foreign ? load(line.first, edge_place) : corners_[(k + start) & 3];
         lines_[k].second =
-            lines_[k].is_foreign ? load_vertex(surface, line.second) : corners_[(k + 1 - start) & 3];
+            lines_[k].is_foreign ? load(line.second, edge_place) : corners_[(k + 1 - start) & 3];
         lines_[k].controls = surface.line_controls(patch, k, line);
     }
     if (surface.controls.empty()) return;
@@ -117,10 +128,7 @@ PatchSamples::PatchSamples(const Surface& surface, uint32_t patch) : map_(&surfa
                   surface.controls[patch]);
 }
 
-Vec3f PatchSamples::corner(int k) const {
-    const VertexData& vertex = dominants_[k];
-    return displace(*map_, vertex.tile, vertex.position, vertex.uv, vertex.frame);
-}
+Vec3f PatchSamples::corner(int k) const { return displace(*map_, dominants_[k]); }
 
 Vec3f PatchSamples::edge(int k, float s) const {
     const Line& line = lines_[k];
@@ -128,13 +136,13 @@ Vec3f PatchSamples::edge(int k, float s) const {
     if (base_)
         sample.position = blend_cubic(line.first.position, line.controls[0], line.controls[1],
                                       line.second.position, scalar::weigh_cubic(s));
-    return displace(*map_, sample.tile, sample.position, sample.uv, sample.frame);
+    return displace(*map_, sample);
 }
 
 Vec3f PatchSamples::interior(float u, float v) const {
     VertexData sample = blend_corners(corners_, u, v);
     if (base_) sample.position = base_->evaluate(u, v);
-    return displace(*map_, sample.tile, sample.position, sample.uv, sample.frame);
+    return displace(*map_, sample);
 }
 
 const PatchSamples& PatchSamplesCache::get(const Surface& surface, uint32_t patch) {

@@ -19,20 +19,19 @@ struct alignas(16) VertexData {
     Vec3f position{};
     Vec2f uv{};
     Frame frame{};
-    uint8_t tile = 0;
+    uint8_t tile = 0, mip = 0;
 };
 
 VertexData load_vertex(const Surface& surface, uint32_t vertex);
 
-/// `base` moved by the displacement at `uv` of `tile`, through `frame` where the map is tangent. Where the
-/// tile has no map the displacement is (0, 0, 0) and takes the same way.
-Vec3f displace(const DisplacementMap& map, uint8_t tile, const Vec3f& base, const Vec2f& uv,
-               const Frame& frame);
+/// The sample's position moved by the displacement at its uv, through its frame where the map is tangent.
+/// Where the tile has no map the displacement is (0, 0, 0) and takes the same way.
+Vec3f displace(const DisplacementMap& map, const VertexData& sample);
 
 /// Bilinear position, uv and frame (not renormalised) at (u, v) of corners 0..3.
 VertexData blend_corners(const std::array<VertexData, 4>& corners, float u, float v);
 
-/// Same on the line from `a` to `b` at `s`; the tile is that of `a`.
+/// Same on the line from `a` to `b` at `s`; tile and mip are those of `a`.
 VertexData blend_line(const VertexData& a, const VertexData& b, float s);
 
 /// Sample of an edge, counted from the start of its line in [0, 2^patch_level], after its move onto the
@@ -43,7 +42,8 @@ inline uint32_t move_edge_sample(uint32_t k, int patch_level, int edge_level) {
 
 class PatchSamples {
   public:
-    PatchSamples(const Surface& surface, uint32_t patch);
+    enum class Filtering { as_surface, none };
+    PatchSamples(const Surface& surface, uint32_t patch, Filtering filtering = Filtering::as_surface);
 
     /// Displaced point of corner k, of its dominant vertex.
     Vec3f corner(int k) const;
@@ -57,9 +57,11 @@ class PatchSamples {
     int line_start(int k) const { return lines_[k].is_reversed ? (k + 1) & 3 : k; }
     int line_end(int k) const { return lines_[k].is_reversed ? k : (k + 1) & 3; }
     bool is_line_reversed(int k) const { return lines_[k].is_reversed; }
-    /// True where the line of edge k is not between the patch's own corners.
+    /// True where the line of edge k is not between the patch's own corners, or reads another copy of the
+    /// map.
     bool is_line_foreign(int k) const { return lines_[k].is_foreign; }
-    /// True where corner k is displaced by another vertex than the patch's own.
+    /// True where corner k is displaced by another vertex than the patch's own, or by another copy of the
+    /// map.
     bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }
 
     /// Their frames hold the unit normal whether the map is tangent or not; zero on a surface without frames.

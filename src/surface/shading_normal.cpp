@@ -62,13 +62,16 @@ Vec3f compute_shading_normal(const Surface& surface, const PatchSamples& samples
     Vec3f normal = normalize(blend_normals({c[0].frame.n, c[1].frame.n, c[2].frame.n, c[3].frame.n}, {u, v}));
     if (normal == Vec3f{}) normal = normalize(cross(along_u.base, along_v.base));
 
+    const uint32_t mips = surface.packed_mips(patch), normal_mip = scalar::choose_normal_mip(mips);
+    const uint32_t normal_level = scalar::choose_normal_level(mips, uint32_t(level));
     const auto fetch = [&](float at_u, float at_v) {
         const Vec2f uv{scalar::blend_quad(c[0].uv.x, c[1].uv.x, c[2].uv.x, c[3].uv.x, at_u, at_v),
                        scalar::blend_quad(c[0].uv.y, c[1].uv.y, c[2].uv.y, c[3].uv.y, at_u, at_v)};
-        return fetch_displacement(surface.map, c[0].tile, uv);
+        return fetch_displacement(surface.map, c[0].tile, uv, normal_mip);
     };
     const auto find_ends = [&](float at, int low_edge, int high_edge) {
-        return scalar::find_difference_ends(at, 0.5f / float(1u << level), surface.is_seam(patch, low_edge),
+        return scalar::find_difference_ends(at, 0.5f / float(1u << normal_level),
+                                            surface.is_seam(patch, low_edge),
                                             surface.is_seam(patch, high_edge));
     };
     const Vec2f ends_u = find_ends(u, 3, 1), ends_v = find_ends(v, 0, 2);

@@ -50,6 +50,8 @@ Frame unpack_frame(const PackedFrame& packed);
 /// The normal of unpack_frame alone.
 Vec3f unpack_normal(const PackedFrame& packed);
 
+class MipChain;
+
 /// How raw texel values become a displacement: d = matrix (value - midlevel), in (t, b, n) or object (x, y,
 /// z).
 struct DisplacementMap {
@@ -57,6 +59,12 @@ struct DisplacementMap {
         int udim = 1001;
         std::shared_ptr<const Texture> texture;
         std::shared_ptr<const BoundsPyramid> pyramid;
+        std::shared_ptr<const MipChain> mips; ///< null: the map is not filtered
+    };
+    /// An image of the map.
+    struct ImageView {
+        const Texture& texture;
+        const BoundsPyramid& pyramid;
     };
     std::vector<Tile> tiles;
     std::array<Vec3f, 3> matrix; ///< rows; signed permutation, scale and (world space) the object's inverse
@@ -64,6 +72,10 @@ struct DisplacementMap {
     WrapMode wrap = WrapMode::clamp;
     bool flip_v = false;
     bool is_tangent = false; ///< d is (t, b, n) and goes through the frame
+    bool is_filtered = false, has_autobump = false;
+
+    /// Copy `mip` of a tile that exists; 0 is the tile's own image.
+    ImageView image(uint8_t tile, uint32_t mip) const;
 };
 
 /// The control points of a bicubic patch beside its corners (shared/control_points.h less 4). Those of an
@@ -80,6 +92,7 @@ struct Surface {
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     std::vector<Quad> quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
+    std::vector<uint32_t> mips;          ///< one a patch (shared/mips.h), or empty: the map itself everywhere
     std::vector<EdgeOverride> overrides;
     std::vector<uint64_t> override_bits; ///< one bit a patch edge that stands in `overrides`; empty: none
     DisplacementMap map;                 ///< no tiles: undisplaced
@@ -90,6 +103,7 @@ struct Surface {
 
     uint32_t patch_count() const { return uint32_t(quads.size()); }
     uint32_t dominant(uint32_t vertex) const { return dominants.empty() ? vertex : dominants[vertex]; }
+    uint32_t packed_mips(uint32_t patch) const { return mips.empty() ? 0 : mips[patch]; }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
     /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a
@@ -164,8 +178,8 @@ Surface make_surface(const Mesh& mesh, const Displacement* displacement, const A
 Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i,
                       uint32_t j);
 
-/// Displacement vector (object space, before frames: raw d) at a local uv of a tile, bilinear.
-Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv);
+/// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile, bilinear.
+Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip = 0);
 
 /// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
 /// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex

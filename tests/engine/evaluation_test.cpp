@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <set>
 
 #include "engine/cpu/kernels.h"
 #include "engine/prepared_scene.h"
@@ -78,14 +79,18 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
     }
 }
 
-void expect_definition(const Displacement& displacement, SubdivisionScheme scheme = SubdivisionScheme::none) {
+void expect_definition(const Displacement& displacement, SubdivisionScheme scheme = SubdivisionScheme::none,
+                       bool has_mips = false) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
+    scene.camera.from = {1.6f, 0.1f, 0.1f};
     scene.meshes[0].subdivision.scheme = scheme;
     scene.meshes[0].subdivision.level = 0;
     RenderSettings settings;
-    settings.level = 0;
+    settings.level = has_mips ? kAutoLevel : 0;
+    settings.height = 60;
     const auto prepared = prepare_scene(scene, settings);
     const Surface& surface = prepared->surfaces[0];
+    if (has_mips) EXPECT_GT(std::set(surface.mips.begin(), surface.mips.end()).size(), 4u);
     const PatchLevels cases[] = {{0, {0, 0, 0, 0}}, {1, {1, 0, 1, 0}}, {2, {2, 1, 0, 2}}, {3, {3, 1, 2, 0}},
                                  {4, {2, 4, 3, 4}}, {5, {5, 3, 0, 4}}, {6, {4, 6, 5, 2}}, {7, {7, 7, 3, 6}}};
     for (const Isa isa : test::machine_isas())
@@ -123,6 +128,17 @@ TEST(Evaluation, is_the_definition_for_half_maps_height_maps_and_missing_tiles) 
     displacement.is_udim = true;
     displacement.tiles[0].udim = 1002; // the mesh lies on 1001: nothing is displaced
     expect_definition(displacement);
+}
+
+TEST(Evaluation, is_the_definition_of_filtered_maps) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const SubdivisionScheme scheme : {SubdivisionScheme::none, SubdivisionScheme::catmark}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(510, 301, 0.1f, 3), space);
+            displacement.wrap = WrapMode::repeat, displacement.filter = MapFilter::mip;
+            expect_definition(displacement, scheme, true);
+            if (testing::Test::HasFatalFailure()) return;
+        }
 }
 
 TEST(Evaluation, is_the_definition_on_bicubic_patches) {

@@ -32,6 +32,7 @@ struct Case {
     int level;
     Placement placement;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    MapFilter filter = MapFilter::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -52,6 +53,10 @@ const Case kCases[] = {
      Placement::instances, SubdivisionScheme::catmark},
     {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
      SubdivisionScheme::catmark},
+    {"filtered_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, MapFilter::mip},
+    {"filtered_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::none, MapFilter::mip},
 };
 
 uint64_t ray_count() {
@@ -103,6 +108,7 @@ Scene make_scene(const Case& c) {
         std::move(mesh),
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),
                                 c.space));
+    scene.displacements[0].filter = c.filter;
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
     scene.camera.from = c.body == Body::sphere ? Vec3f{0.75f, 0.1f, 0.2f} : Vec3f{1.2f, 0.1f, 0.1f};
     if (c.placement == Placement::instances)

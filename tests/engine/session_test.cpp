@@ -83,6 +83,27 @@ TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
         }
 }
 
+TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
+    for (const bool has_autobump : {false, true}) {
+        Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+        fresh.displacements[0].filter = MapFilter::mip, fresh.displacements[0].autobump = has_autobump;
+        RenderSettings settings = make_settings();
+        settings.pixel_error = 4;
+        Session session(fresh, settings);
+        Image before = session.render().image;
+        for (const MapEdit& edit : {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.3f)}) {
+            session.edit(edit);
+            bake(fresh, edit);
+            Image after = session.render().image;
+            expect_same(after, render(fresh, settings).image);
+            EXPECT_GT(count_differing(before, after), 100u);
+            before = after;
+        }
+        fresh.displacements[0].filter = MapFilter::none, fresh.displacements[0].autobump = false;
+        EXPECT_GT(count_differing(before, render(fresh, settings).image), 100u) << "nothing was filtered";
+    }
+}
+
 TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
     const auto expect_follows = [](const RenderSettings& settings) {
         Scene fresh = make_torus_scene(DisplacementSpace::tangent);

@@ -96,6 +96,17 @@ TEST(SurfacePoints, are_the_same_many_at_once_and_one_by_one) {
         }
 }
 
+TEST(SurfacePoints, are_the_same_on_filtered_maps_with_detail_in_the_normals) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const bool has_autobump : {false, true}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(640, 480, 0.15f, 3), space);
+            displacement.filter = MapFilter::mip, displacement.autobump = has_autobump;
+            expect_same_points(displacement);
+            if (testing::Test::HasFailure()) return;
+        }
+}
+
 TEST(SurfacePoints, are_the_same_where_a_tile_has_no_map) {
     Displacement displacement =
         test::make_displacement(test::make_random_map(40, 30, 0.1f, 9), DisplacementSpace::tangent);

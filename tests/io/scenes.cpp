@@ -54,7 +54,8 @@ TEST_F(SceneFiles, every_field_is_read) {
       "materials": {"clay": {"base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metallic": 1, "ior": 1.3,
         "emission": [1, 2, 3], "base_color_texture": "color.png", "roughness_texture": "color.png"}},
       "displacements": {"ear": {"type": "vector", "file": "map.exr", "preset": "mudbox", "midlevel": 0.25,
-        "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror", "dilate": false}},
+        "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror", "dilate": false, "filter": "mip",
+        "autobump": true}},
       "meshes": {"plane": {"file": "plane.obj"}},
       "objects": [{"name": "o", "mesh": "plane", "displacement": "ear", "material": "clay",
         "transform": {"translate": [1, 2, 3], "rotate_degrees": [0, 90, 0], "scale": 2}}],
@@ -73,6 +74,8 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(map.scale, (Vec3f{1, 2, 3}));
     EXPECT_TRUE(map.flip_v);
     EXPECT_FALSE(map.dilate);
+    EXPECT_EQ(map.filter, MapFilter::mip);
+    EXPECT_TRUE(map.autobump);
     EXPECT_EQ(map.wrap, WrapMode::mirror);
     EXPECT_EQ(scene.objects.at(0).world_from_object.translation, (Vec3f{1, 2, 3}));
     EXPECT_EQ(scene.objects[0].world_from_object.rows[0], (Vec3f{0, 0, 2}));

@@ -21,6 +21,7 @@ struct Case {
     uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    MapFilter filter = MapFilter::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -39,6 +40,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     Scene source = make_scene(c.space);
     source.meshes[0].subdivision.scheme = c.scheme;
     source.meshes[0].subdivision.level = 1;
+    source.displacements[0].filter = c.filter;
     const std::shared_ptr<const PreparedScene> scene = prepare_scene(std::move(source), settings);
     const std::vector<cpu::TraceRay> rays = make_rays(c.rays, 7);
     TracerConfig config;
@@ -68,6 +70,11 @@ INSTANTIATE_TEST_SUITE_P(
              .level = 6,
              .bottom = BottomForm::fused,
              .scheme = SubdivisionScheme::catmark},
+        Case{.name = "filtered_level_2", .level = 2, .filter = MapFilter::mip},
+        Case{.name = "filtered_tangent_auto",
+             .space = DisplacementSpace::tangent,
+             .level = kAutoLevel,
+             .filter = MapFilter::mip},
         Case{.name = "box_leaves", .leaf = LeafKind::box},
         Case{.name = "box_auto", .level = kAutoLevel, .leaf = LeafKind::box},
         Case{.name = "fused", .bottom = BottomForm::fused},

@@ -63,10 +63,16 @@ HWY_INLINE bool is_within(const int32_t (&index)[16], int32_t end) {
     return is_within;
 }
 
+/// Image of a map that sixteen samples read.
+struct MapImage {
+    uint8_t tile;
+    uint32_t mip;
+};
+
 /// Raw channels r, g, b at sixteen uvs, bilinear.
-HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes16& u, const Lanes16& v,
-                          Lanes16 (&raw)[3]) {
-    const Texture& texture = *map.tiles[tile].texture;
+HWY_INLINE void fetch_raw(const DisplacementMap& map, const MapImage& image, const Lanes16& u,
+                          const Lanes16& v, Lanes16 (&raw)[3]) {
+    const Texture& texture = map.image(image.tile, image.mip).texture;
     const int32_t width = int32_t(texture.width), height = int32_t(texture.height);
     const Lanes16 half(0.5f);
     const Lanes16 x = u * Lanes16(float(width)) - half;
@@ -102,11 +108,11 @@ HWY_INLINE void fetch_raw(const DisplacementMap& map, uint8_t tile, const Lanes1
 }
 
 /// Displaced positions of sixteen samples whose interpolated values are given.
-HWY_INLINE void displace(const Surface& surface, uint8_t tile, const Lanes16 (&value)[kValueCount],
+HWY_INLINE void displace(const Surface& surface, const MapImage& image, const Lanes16 (&value)[kValueCount],
                          Lanes16 (&position)[3]) {
     const DisplacementMap& map = surface.map;
     Lanes16 raw[3], d[3];
-    fetch_raw(map, tile, value[kUv], value[kUv + 1], raw);
+    fetch_raw(map, image, value[kUv], value[kUv + 1], raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
     raw[2] = raw[2] - Lanes16(map.midlevel.z);
@@ -165,7 +171,7 @@ HWY_INLINE Lanes16 blend_base(const BicubicBase& base, int axis, const wide::Cub
 }
 
 /// Sixteen samples at (u, v) on a patch, by the formula of interior samples.
-HWY_INLINE void evaluate_samples(const Surface& surface, uint8_t tile, const PatchValues& patch,
+HWY_INLINE void evaluate_samples(const Surface& surface, const MapImage& image, const PatchValues& patch,
                                  const Lanes16& u, const Lanes16& v, Lanes16 (&position)[3]) {
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
     const VertexValues(&corner)[4] = patch.corner;
@@ -177,13 +183,14 @@ HWY_INLINE void evaluate_samples(const Surface& surface, uint8_t tile, const Pat
         const wide::CubicWeights along = wide::weigh_cubic(u), across = wide::weigh_cubic(v);
         for (int axis = 0; axis < 3; ++axis) value[axis] = blend_base(*patch.base, axis, along, across);
     }
-    displace(surface, tile, value, position);
+    displace(surface, image, value, position);
 }
 
 /// All rows and columns of the tile but those on a border of the patch, which evaluate_border takes care of
 /// (and may be written here nevertheless).
 HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
-    const uint8_t tile = surface.tile(surface.quads[range.patch].vertex[0]);
+    const MapImage image{surface.tile(surface.quads[range.patch].vertex[0]),
+                         scalar::packed_mip(surface.packed_mips(range.patch), scalar::kMipInside)};
     const PatchValues patch(surface, range.patch);
     const Lanes16 inverse(1.0f / float(range.side()));
     const uint32_t n = range.cell_count;
@@ -193,7 +200,7 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     for (uint32_t c = 0; c < n; c += 16) {
         const Lanes16 u = make_ramp(float(range.cell_x + c)) * inverse;
         for (uint32_t r = row_begin; r < row_end; ++r) {
-            evaluate_samples(surface, tile, patch, u, Lanes16(float(range.cell_y + r)) * inverse, position);
+            evaluate_samples(surface, image, patch, u, Lanes16(float(range.cell_y + r)) * inverse, position);
             for (int axis = 0; axis < 3; ++axis)
                 position[axis].store_unaligned(&grid.axis[axis][r * VertexGrid::kPitch + c]);
         }
@@ -202,7 +209,7 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     // The last column by itself: a run of sixteen along each row would be for one sample.
     const Lanes16 u = Lanes16(float(range.cell_x + n)) * inverse;
     for (uint32_t r = row_begin; r < row_end; r += 16) {
-        evaluate_samples(surface, tile, patch, u, make_ramp(float(range.cell_y + r)) * inverse, position);
+        evaluate_samples(surface, image, patch, u, make_ramp(float(range.cell_y + r)) * inverse, position);
         alignas(64) float point[3][16];
         for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         for (uint32_t lane = 0; lane < 16 && r + lane < row_end; ++lane)
@@ -211,9 +218,10 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     }
 }
 
-/// Sixteen samples of the line of an edge, at s; `controls` lie between its ends where the base is bicubic.
+/// Sixteen samples of the line of an edge that reads copy `mip` of the map, at s; `controls` lie between its
+/// ends where the base is bicubic.
 HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& line,
-                              const std::array<Vec3f, 2>& controls, const Lanes16& s,
+                              const std::array<Vec3f, 2>& controls, uint32_t mip, const Lanes16& s,
                               Lanes16 (&position)[3]) {
     const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
@@ -228,7 +236,7 @@ HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& l
                 Lanes16(first.value[axis]), Lanes16(get_component(controls[0], axis)),
                 Lanes16(get_component(controls[1], axis)), Lanes16(second.value[axis]), weights);
     }
-    displace(surface, surface.tile(line.first), value, position);
+    displace(surface, {surface.tile(line.first), mip}, value, position);
 }
 
 /// Samples of one border of the tile that lies on patch edge `edge`.
@@ -236,6 +244,8 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
     const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];
     const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
     const std::array<Vec3f, 2> controls = surface.line_controls(range.patch, edge, line);
+    const uint32_t mip =
+        scalar::packed_mip(surface.packed_mips(range.patch), scalar::kMipEdges + uint32_t(edge));
     const bool is_row = edge % 2 == 0;
     const bool is_far = edge == 1 || edge == 2;              // at u = 1 or v = 1
     const bool is_against = (edge >= 2) != line.is_reversed; // grid index runs against first -> second
@@ -253,7 +263,7 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
         }
         if (has_others) {
             Lanes16 position[3];
-            evaluate_line(surface, line, controls, Lanes16::load(s), position);
+            evaluate_line(surface, line, controls, mip, Lanes16::load(s), position);
             for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         }
         for (uint32_t lane = 0; lane < 16 && c + lane <= range.cell_count; ++lane) {

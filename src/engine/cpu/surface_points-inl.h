@@ -28,7 +28,7 @@ struct HitLanes {
     LaneQuads corner[4][4]; ///< VertexData of the patch's corners, four floats a part
     LaneQuads controls[9];  ///< InnerControls, four floats a part, where the base is bicubic
     LaneQuads world_from_object[3], object_from_world[3];
-    alignas(64) float u[16], v[16], i[16], j[16], side[16], turn[16];
+    alignas(64) float u[16], v[16], i[16], j[16], side[16], normal_side[16], turn[16];
     alignas(64) float is_upper[16], is_seam[4][16]; ///< not 0: true
     alignas(64) float vertex_u[3][16], vertex_v[3][16];
     alignas(64) float foreign[3][3][16]; ///< vertex, axis: where the vertex is not the patch's own
@@ -88,6 +88,8 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
     lanes.u[lane] = hit.u, lanes.v[lane] = hit.v;
     lanes.i[lane] = hit.i, lanes.j[lane] = hit.j;
     lanes.side[lane] = float(1u << levels.patch);
+    lanes.normal_side[lane] =
+        float(1u << scalar::choose_normal_level(surface.packed_mips(hit.patch), levels.patch));
     lanes.turn[lane] = instance.is_mirrored ? -1.0f : 1.0f;
     lanes.is_upper[lane] = hit.is_upper ? 1.0f : 0.0f;
     for (int edge = 0; edge < 4; ++edge)
@@ -186,17 +188,17 @@ struct CornerLanes {
     }
 };
 
-/// Map of the sixteen patches.
+/// Map of the sixteen patches: the image inside of them, and the one that their normals read.
 struct MapLanes {
     const DisplacementMap& map;
-    uint8_t tile;
+    MapImage inside, normals;
 };
 
 /// Decoded displacement at a place of each patch.
-HWY_INLINE WideVec3 fetch_decoded(const MapLanes& from, const CornerLanes& corners, const WideVec2& at) {
-    const DisplacementMap& map = from.map;
+HWY_INLINE WideVec3 fetch_decoded(const DisplacementMap& map, const MapImage& image,
+                                  const CornerLanes& corners, const WideVec2& at) {
     Lanes16 raw[3];
-    fetch_raw(map, from.tile, corners.blend(kUv, at), corners.blend(kUv + 1, at), raw);
+    fetch_raw(map, image, corners.blend(kUv, at), corners.blend(kUv + 1, at), raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
     raw[2] = raw[2] - Lanes16(map.midlevel.z);
@@ -209,7 +211,7 @@ HWY_INLINE WideVec3 fetch_decoded(const MapLanes& from, const CornerLanes& corne
 
 HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners,
                                         const WideVec2& at) {
-    const WideVec3 base = corners.blend_position(at), d = fetch_decoded(from, corners, at);
+    const WideVec3 base = corners.blend_position(at), d = fetch_decoded(from.map, from.inside, corners, at);
     if (!from.map.is_tangent) return base + d;
     const WideVec3 t = corners.blend_vector(kFrame, at), b = corners.blend_vector(kFrame + 3, at),
                    n = corners.blend_vector(kFrame + 6, at);
@@ -294,14 +296,15 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
     wide::SurfaceDerivative along_v = differentiate(from, corners, {0, 3, 1, 2}, at.x);
     if (corners.is_bicubic)
         along_u.base = corners.base.differentiate_u(at), along_v.base = corners.base.differentiate_v(at);
-    const Lanes16 zero(0.0f), half_cell = Lanes16(0.5f) / Lanes16::load(lanes.side);
+    const Lanes16 zero(0.0f), half_cell = Lanes16(0.5f) / Lanes16::load(lanes.normal_side);
     WideVec3 normal = wide::make_unit(corners.blend_vector(kFrame + 6, at));
     normal = wide::select(normal == WideVec3{zero, zero, zero},
                           wide::make_unit(wide::cross(along_u.base, along_v.base)), normal);
     const auto is_seam = [&](int edge) HWY_ATTR { return wide::is_set(lanes.is_seam[edge]); };
     const WideVec2 ends_u = wide::find_difference_ends(at.x, half_cell, is_seam(3), is_seam(1));
     const WideVec2 ends_v = wide::find_difference_ends(at.y, half_cell, is_seam(0), is_seam(2));
-    const auto fetch = [&](const WideVec2& place) HWY_ATTR { return fetch_decoded(from, corners, place); };
+    const auto fetch = [&](const WideVec2& place)
+                           HWY_ATTR { return fetch_decoded(from.map, from.normals, corners, place); };
     along_u.displacement = (fetch({ends_u.y, at.y}) - fetch({ends_u.x, at.y})) / (ends_u.y - ends_u.x);
     along_v.displacement = (fetch({at.x, ends_v.y}) - fetch({at.x, ends_v.x})) / (ends_v.y - ends_v.x);
     if (!from.map.is_tangent)
@@ -332,7 +335,7 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
     HitLanes lanes;
     if (count < 16) {
         std::memset(&lanes, 0, sizeof lanes);
-        for (float& side : lanes.side) side = 1;
+        for (size_t lane = 0; lane < 16; ++lane) lanes.side[lane] = lanes.normal_side[lane] = 1;
     }
     for (LaneMask& mask : lanes.is_foreign) mask = 0;
     for (size_t lane = 0; lane < count; ++lane)
@@ -340,7 +343,11 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
 
     const cpu::TraceHit& any = batch.hits[batch.order[first]];
     const Surface& surface = batch.scene.surfaces[batch.scene.instances[any.instance].surface];
-    const MapLanes from{surface.map, surface.tile(surface.quads[any.patch].vertex[0])};
+    const uint8_t tile = surface.tile(surface.quads[any.patch].vertex[0]);
+    const uint32_t mips = surface.packed_mips(any.patch);
+    const MapLanes from{surface.map,
+                        {tile, scalar::packed_mip(mips, scalar::kMipInside)},
+                        {tile, scalar::choose_normal_mip(mips)}};
     const CornerLanes corners(lanes, surface);
     const CellPointLanes cell = make_cell_point(lanes, from, corners);
     const AffineLanes inverse(lanes.object_from_world);

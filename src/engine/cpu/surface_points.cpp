@@ -44,14 +44,16 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
                                     : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
 }
 
-/// Hits of one key go to the SIMD kernel together.
+/// Hits of one key read the same image and go to the SIMD kernel together.
 constexpr uint32_t kAlone = kNoIndex;
 
 uint32_t make_key(const PreparedScene& scene, const TraceHit& hit) {
     const uint32_t index = scene.instances[hit.instance].surface;
     const Surface& surface = scene.surfaces[index];
     if (!can_batch_points(surface, hit.patch)) return kAlone;
-    return index << 8 | surface.tile(surface.quads[hit.patch].vertex[0]);
+    if (index >= 1u << 21) return kAlone;
+    const uint32_t mip = scalar::packed_mip(surface.packed_mips(hit.patch), scalar::kMipInside);
+    return index << 11 | mip << 8 | surface.tile(surface.quads[hit.patch].vertex[0]);
 }
 
 /// The same through a cache; null on a surface without displacement.

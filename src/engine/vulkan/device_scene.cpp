@@ -8,6 +8,7 @@
 #include "engine/vulkan/shader_table.h"
 #include "engine/vulkan/texel_store.h"
 #include "structures/tree_links.h"
+#include "surface/mip_chain.h"
 
 namespace relief::vulkan {
 
@@ -88,7 +89,11 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
         tables_.textures.push_back(store.add(texture));
     };
     for (const Surface& surface : scene.surfaces)
-        for (const DisplacementMap::Tile& tile : surface.map.tiles) add(tile.texture);
+        for (const DisplacementMap::Tile& tile : surface.map.tiles) {
+            add(tile.texture);
+            for (uint32_t mip = 1; tile.mips && mip <= tile.mips->count(); ++mip)
+                add(tile.mips->copy(mip).texture);
+        }
     for (const Material& material : scene.materials) {
         add(material.base_color_texture);
         add(material.roughness_texture);
@@ -109,10 +114,12 @@ void DeviceScene::add_map(const Surface& surface) {
     // Tiles of a map follow one another, so those that another map has too are listed again.
     data.first_tile = uint32_t(tables_.textures.size());
     data.tile_count = uint32_t(map.tiles.size());
-    for (const DisplacementMap::Tile& tile : map.tiles) {
-        const scalar::TextureData texture = tables_.textures[texture_index(tile.texture.get())];
-        tables_.textures.push_back(texture);
-    }
+    for (uint32_t mip = 0; mip <= (map.is_filtered ? scalar::kMaxMip : 0); ++mip)
+        for (size_t tile = 0; tile < map.tiles.size(); ++tile) {
+            const Texture& image = map.image(uint8_t(tile), mip).texture;
+            const scalar::TextureData texture = tables_.textures[texture_index(&image)];
+            tables_.textures.push_back(texture);
+        }
     tables_.maps.push_back(data);
 }
 
@@ -140,6 +147,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
             arrays.override_bits.push_back(uint32_t(word));
             arrays.override_bits.push_back(uint32_t(word >> 32));
         }
+        data.first_mip = append(arrays.override_bits, surface.mips);
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
         if (surface.has_displacement) add_map(surface);
         tables_.surfaces.push_back(data);

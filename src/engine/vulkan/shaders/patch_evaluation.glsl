@@ -40,10 +40,10 @@ vec3 decode_displacement(MapData map, vec3 value) {
                 decode_row(raw.x, raw.y, raw.z, map.row2.x, map.row2.y, map.row2.z));
 }
 
-/// Displacement at a local uv of a tile, bilinear; zero where the tile has no map.
-vec3 fetch_displacement(MapData map, uint tile, vec2 uv) {
+/// Displacement at a local uv of copy `mip` of a tile, bilinear; zero where the tile has no map.
+vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     if (tile >= map.tile_count) return vec3(0.0);
-    TextureData texture_data = textures[map.first_tile + tile];
+    TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
     int width = int(texture_data.width);
     int height = int(texture_data.height);
     precise float x = uv.x * float(width) - 0.5;
@@ -67,11 +67,11 @@ vec3 fetch_displacement(MapData map, uint tile, vec2 uv) {
     return decode_displacement(map, value);
 }
 
-/// The displaced point of interpolated values.
-vec3 displace(SurfaceData s, VertexData base) {
+/// The displaced point of interpolated values, by copy `mip` of the map.
+vec3 displace(SurfaceData s, VertexData base, uint mip) {
     if (s.map == kNone) return base.position;
     MapData map = maps[s.map];
-    vec3 d = fetch_displacement(map, base.tile, base.uv);
+    vec3 d = fetch_displacement(map, base.tile, mip, base.uv);
     if (map.is_tangent == 0u) return add_exact(base.position, d);
     vec3 offset = vec3(carry_through_frame(d.x, d.y, d.z, base.t.x, base.b.x, base.n.x),
                        carry_through_frame(d.x, d.y, d.z, base.t.y, base.b.y, base.n.y),
@@ -99,12 +99,14 @@ VertexData blend_line(VertexData a, VertexData b, float s) {
 /// The four corners of a patch, its own vertices.
 struct PatchCorners {
     uvec4 quad;
+    uint mips; ///< packed
     VertexData corner[4];
 };
 
 PatchCorners load_corners(SurfaceData s, uint patch_index) {
     PatchCorners corners;
     corners.quad = load_quad(s, patch_index);
+    corners.mips = load_mips(s, patch_index);
     for (uint k = 0u; k < 4u; ++k) corners.corner[k] = load_vertex(s, corners.quad[k]);
     return corners;
 }
@@ -216,11 +218,12 @@ struct LinePlace {
     float s;
     uint control;     ///< inner control point beside `first` where the base is bicubic; kNone at a corner
     uint end_control; ///< beside `second`
+    uint mip_place;   ///< of the patch's mips
 };
 
 LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
     uint vertex = load_dominant(s, quad[k]);
-    return LinePlace(vertex, vertex, 0.0, kNone, kNone);
+    return LinePlace(vertex, vertex, 0.0, kNone, kNone, kMipCorners + k);
 }
 
 /// A sample of edge i_j_edge.z that is not a corner before it moves.
@@ -234,7 +237,7 @@ LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint pack
     if (k == 0u || k == n) return find_corner(s, quad, (k == 0u) == line.is_reversed ? (edge + 1u) & 3u : edge);
     uint control = 4u + 2u * edge;
     return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)), control + (line.is_reversed ? 1u : 0u),
-                     control + (line.is_reversed ? 0u : 1u));
+                     control + (line.is_reversed ? 0u : 1u), kMipEdges + edge);
 }
 
 /// A sample of the boundary before it is displaced.
@@ -256,6 +259,7 @@ vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packe
     bool is_on_u_edge = j == 0u || j == n;
     bool is_on_v_edge = i == 0u || i == n;
     VertexData base;
+    uint mip_place = kMipInside;
     if (is_on_u_edge || is_on_v_edge) {
         LinePlace place;
         if (is_on_u_edge && is_on_v_edge)
@@ -263,12 +267,13 @@ vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packe
         else
             place = find_edge_place(s, c.quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
         base = evaluate_place(s, c.quad, patch_index, place);
+        mip_place = place.mip_place;
     } else {
         float cell = 1.0 / float(n);
         base = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], float(i) * cell, float(j) * cell);
         if (is_bicubic(s)) base.position = evaluate_base(s, c.quad, patch_index, float(i) * cell, float(j) * cell);
     }
-    return displace(s, base);
+    return displace(s, base, packed_mip(c.mips, mip_place));
 }
 
 /// Sample (i, j) of a patch at its levels, object space: the definition of the surface.

@@ -6,6 +6,7 @@
 #include "shared/constants.h"
 #include "shared/exact.h"
 #include "shared/levels.h"
+#include "shared/mips.h"
 #include "shared/frame.h"
 #include "shared/texel.h"
 #include "shared/displace.h"
@@ -68,6 +69,11 @@ bool is_seam(SurfaceData s, uint patch_index, uint edge) {
     uint patch_edge = 4u * patch_index + edge;
     uint word = texelFetch(override_bits, int(s.first_override_word + (patch_edge >> 5u))).x;
     return ((word >> (patch_edge & 31u)) & 1u) != 0u;
+}
+
+/// Which copies of its map a patch reads.
+uint load_mips(SurfaceData s, uint patch_index) {
+    return s.first_mip == kNone ? 0u : texelFetch(override_bits, int(s.first_mip + patch_index)).x;
 }
 
 /// Packed levels of a patch of an instance, bias 0.

@@ -47,13 +47,14 @@ vec3 compute_displaced_normal(SurfaceData s, PatchCorners c, uint patch_index, u
     vec3 normal = make_unit(blend_normals(s, c.quad, at));
     if (normal == vec3(0.0)) normal = make_unit(cross(along_u.base, along_v.base));
     MapData map = maps[s.map];
-    vec2 ends_u = find_ends(s, patch_index, level, at.x, uvec2(3u, 1u));
-    vec2 ends_v = find_ends(s, patch_index, level, at.y, uvec2(0u, 2u));
+    uint normal_level = choose_normal_level(c.mips, level);
+    vec2 ends_u = find_ends(s, patch_index, normal_level, at.x, uvec2(3u, 1u));
+    vec2 ends_v = find_ends(s, patch_index, normal_level, at.y, uvec2(0u, 2u));
     vec2 places[5] = {at, vec2(ends_u.x, at.y), vec2(ends_u.y, at.y), vec2(at.x, ends_v.x), vec2(at.x, ends_v.y)};
     vec3 displacements[5];
     for (uint k = 0u; k < 5u; ++k) {
         VertexData place = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], places[k].x, places[k].y);
-        displacements[k] = fetch_displacement(map, place.tile, place.uv);
+        displacements[k] = fetch_displacement(map, place.tile, choose_normal_mip(c.mips), place.uv);
     }
     along_u.displacement = (displacements[2] - displacements[1]) / (ends_u.y - ends_u.x);
     along_v.displacement = (displacements[4] - displacements[3]) / (ends_v.y - ends_v.x);
