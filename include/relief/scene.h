@@ -21,12 +21,13 @@ inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
+inline constexpr float kInfiniteSharpness = 10; ///< of a crease
 
 /// Semi-sharp edge of a subdivided mesh (DeRose, Kass and Truong 1998), between two positions; a sharp point
 /// where `first` and `second` are the same.
 struct Crease {
     uint32_t first = 0, second = 0;
-    float sharpness = 0; ///< >= 0; 10 and above stays sharp for ever
+    float sharpness = 0; ///< >= 0; kInfiniteSharpness and above stays sharp for ever
     friend bool operator==(const Crease&, const Crease&) = default;
 };
 

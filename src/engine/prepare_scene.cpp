@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "engine/prepared_scene.h"
@@ -46,6 +48,28 @@ LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& set
     config.pixel_angle =
         float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
     return config;
+}
+
+/// Semi-sharp creases that have not worn off at the level of their mesh are fitted, not exact.
+void warn_of_creases(const Scene& scene, std::vector<std::string>& warnings) {
+    for (const Mesh& mesh : scene.meshes) {
+        const Subdivision& subdivision = mesh.subdivision;
+        if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey)
+            continue;
+        float sharpest = 0;
+        for (const Crease& crease : mesh.creases)
+            if (crease.sharpness < kInfiniteSharpness) sharpest = std::max(sharpest, crease.sharpness);
+        const int level = int(std::ceil(sharpest));
+        if (level <= subdivision.level) continue;
+        std::string message = fmt::format("mesh '{}': creases of sharpness {:g} are narrower than the "
+                                          "patches of subdivision level {} and fitted by "
+                                          "them",
+                                          mesh.name, sharpest, subdivision.level);
+        message += level <= kMaxSubdivisionLevel
+                       ? fmt::format("; level {} shows them as they are", level)
+                       : fmt::format("; sharpness {:g} makes them sharp for ever", kInfiniteSharpness);
+        warnings.push_back(std::move(message));
+    }
 }
 
 std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
@@ -149,6 +173,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     prepared->mesh_count = uint32_t(scene.meshes.size());
     prepared->width = settings.width, prepared->height = settings.height;
     prepared->warnings = std::move(scene.warnings);
+    warn_of_creases(scene, prepared->warnings);
 
     std::map<SurfaceKey, uint32_t> surface_of_key;
     std::vector<uint32_t> first_object;

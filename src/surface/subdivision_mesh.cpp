@@ -27,7 +27,6 @@ using Cache = osd::Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shar
 using Factory = osd::Bfr::RefinerSurfaceFactory<Cache>;
 using RefinerPointer = std::unique_ptr<osd::Far::TopologyRefiner>;
 
-constexpr float kSharpForEver = 10; // as OpenSubdiv counts
 /// Steps beyond the patches that the surface beside irregular points is isolated by.
 constexpr int kStepsBeyond = 5;
 constexpr int kMostSteps = 10;
@@ -96,8 +95,8 @@ struct CreaseLists {
 CreaseLists list_creases(const Polygons& polygons) {
     CreaseLists lists;
     for (const Crease& crease : polygons.creases) {
-        const float sharpness = std::min(crease.sharpness, kSharpForEver);
-        if (sharpness < kSharpForEver)
+        const float sharpness = std::min(crease.sharpness, kInfiniteSharpness);
+        if (sharpness < kInfiniteSharpness)
             lists.largest_semi_sharp = std::max(lists.largest_semi_sharp, sharpness);
         if (crease.first == crease.second) {
             lists.corners.push_back(int(crease.first));
@@ -173,7 +172,7 @@ using BlendedPoint = Blended<Vec3d>;
 Vec3d read(const double* p) { return {p[0], p[1], p[2]}; }
 Vec3f to_float(const Vec3d& p) { return {float(p.x), float(p.y), float(p.z)}; }
 
-bool is_semi_sharp(float sharpness) { return sharpness > 0 && sharpness < kSharpForEver; }
+bool is_semi_sharp(float sharpness) { return sharpness > 0 && sharpness < kInfiniteSharpness; }
 
 /// True where the quads around a point are bicubic on each side of what stays sharp.
 bool is_regular_point(const osd::Far::TopologyLevel& level, int point) {
@@ -459,7 +458,7 @@ RefinedMesh SubdivisionMesh::refine() {
     refined.places = self.find_places();
     self.copy_quads(refined);
     for (int edge = 0; edge < last.GetNumEdges(); ++edge)
-        refined.is_sharp.push_back(last.GetEdgeSharpness(edge) >= kSharpForEver);
+        refined.is_sharp.push_back(last.GetEdgeSharpness(edge) >= kInfiniteSharpness);
     for (int point = 0; point < last.GetNumVertices(); ++point)
         refined.is_regular.push_back(is_regular_point(last, point));
     refined.limit_normals = self.find_limit_normals(refined.is_regular);

@@ -27,9 +27,13 @@ class LimitReference {
         namespace osd = OpenSubdiv;
         std::vector<int> sizes(mesh.face_sizes.begin(), mesh.face_sizes.end());
         std::vector<int> points(mesh.position_indices.begin(), mesh.position_indices.end());
-        std::vector<int> crease_ends;
-        std::vector<float> sharpness;
+        std::vector<int> crease_ends, corners;
+        std::vector<float> sharpness, corner_sharpness;
         for (const Crease& crease : mesh.creases) {
+            if (crease.first == crease.second) {
+                corners.push_back(int(crease.first)), corner_sharpness.push_back(crease.sharpness);
+                continue;
+            }
             crease_ends.insert(crease_ends.end(), {int(crease.first), int(crease.second)});
             sharpness.push_back(crease.sharpness);
         }
@@ -41,6 +45,9 @@ class LimitReference {
         descriptor.numCreases = int(sharpness.size());
         descriptor.creaseVertexIndexPairs = crease_ends.data();
         descriptor.creaseWeights = sharpness.data();
+        descriptor.numCorners = int(corners.size());
+        descriptor.cornerVertexIndices = corners.data();
+        descriptor.cornerWeights = corner_sharpness.data();
         osd::Sdc::Options options;
         options.SetVtxBoundaryInterpolation(mesh.subdivision.boundary == BoundaryRule::edge_only
                                                 ? osd::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
