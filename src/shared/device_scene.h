@@ -30,6 +30,7 @@ struct SurfaceData {
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced
     uint first_control;       ///< of positions, in vertices: twelve a patch; kNone: bilinear patches
+    uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
 };
 
 /// d = matrix (texel - midlevel).

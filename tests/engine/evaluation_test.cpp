@@ -82,6 +82,7 @@ void expect_definition(const Displacement& displacement, SubdivisionScheme schem
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
     scene.meshes[0].subdivision.scheme = scheme;
     scene.meshes[0].subdivision.level = 0;
+    if (displacement.frame == FrameKind::file) test::add_flat_normals(scene.meshes[0]);
     RenderSettings settings;
     settings.level = 0;
     const auto prepared = prepare_scene(scene, settings);
@@ -132,6 +133,19 @@ TEST(Evaluation, is_the_definition_on_bicubic_patches) {
                 test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), space);
             displacement.wrap = wrap;
             expect_definition(displacement, SubdivisionScheme::catmark);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, is_the_definition_through_every_kind_of_frame) {
+    Displacement displacement =
+        test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), DisplacementSpace::tangent);
+    for (const FrameKind frame : {FrameKind::mikk, FrameKind::dpdu, FrameKind::file})
+        for (const FrameLengths lengths : {FrameLengths::absolute, FrameLengths::relative}) {
+            if (frame == FrameKind::file && lengths == FrameLengths::relative) continue;
+            displacement.frame = frame, displacement.lengths = lengths;
+            expect_definition(displacement);
+            if (frame != FrameKind::file) expect_definition(displacement, SubdivisionScheme::catmark);
             if (testing::Test::HasFatalFailure()) return;
         }
 }

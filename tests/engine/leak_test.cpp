@@ -32,6 +32,8 @@ struct Case {
     int level;
     Placement placement;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    FrameKind frame = FrameKind::mikk;
+    FrameLengths lengths = FrameLengths::absolute;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -52,6 +54,10 @@ const Case kCases[] = {
      Placement::instances, SubdivisionScheme::catmark},
     {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
      SubdivisionScheme::catmark},
+    {"sphere_with_hard_edges_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::file},
+    {"sphere_relative_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::relative},
 };
 
 uint64_t ray_count() {
@@ -103,6 +109,7 @@ Scene make_scene(const Case& c) {
         std::move(mesh),
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),
                                 c.space));
+    test::set_frames(scene, c.frame, c.lengths);
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
     scene.camera.from = c.body == Body::sphere ? Vec3f{0.75f, 0.1f, 0.2f} : Vec3f{1.2f, 0.1f, 0.1f};
     if (c.placement == Placement::instances)
