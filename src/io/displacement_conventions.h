@@ -1,5 +1,5 @@
-// Names of what a displacement map means: types, spaces, wrap modes, encodings, axis texts, presets of
-// programs.
+// Names of what a displacement map means: types, spaces, frames, wrap modes, encodings, axis texts,
+// presets of programs.
 #pragma once
 
 #include <optional>
@@ -39,9 +39,13 @@ const MapPreset& find_preset(std::string_view name);
 DisplacementType parse_displacement_type(std::string_view text);
 DisplacementSpace parse_displacement_space(std::string_view text);
 WrapMode parse_wrap_mode(std::string_view text);
+FrameKind parse_frame_kind(std::string_view text);
+FrameLengths parse_frame_lengths(std::string_view text);
 MapEncoding parse_encoding(std::string_view text);
 std::string_view get_name(DisplacementType type);
 std::string_view get_name(DisplacementSpace space);
+std::string_view get_name(FrameKind frame);
+std::string_view get_name(FrameLengths lengths);
 std::string_view get_name(WrapMode wrap);
 std::string_view get_name(MapEncoding encoding);
 
