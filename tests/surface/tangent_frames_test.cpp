@@ -94,6 +94,25 @@ TEST(MikkTangents, come_from_the_half_of_a_quad_that_has_uvs) {
     }
 }
 
+/// The halves of the quad turn their uvs against each other; `turn` says which of them comes first.
+TEST(MikkTangents, of_a_quad_lie_the_way_round_of_its_larger_half) {
+    for (const uint32_t turn : {0u, 1u})
+        for (const float sign : {1.0f, -1.0f}) {
+            const Vec2f uvs[4] = {{0, 0}, {sign, 0}, {sign, 1}, {1.2f * sign, 0.5f}};
+            Mesh mesh = test::make_plane();
+            for (uint32_t k = 0; k < 4; ++k) {
+                mesh.position_indices[k] = (k + turn) % 4;
+                mesh.uvs[k] = uvs[(k + turn) % 4];
+            }
+            const Displacement displacement = make_map(FrameKind::mikk);
+            const Surface surface = make_surface(mesh, &displacement, {});
+            for (const uint32_t vertex : surface.quads[0].vertex) {
+                const Frame frame = surface.frame(vertex);
+                EXPECT_NEAR(dot(frame.b, cross(frame.n, frame.t)), sign, 1e-6f) << turn;
+            }
+        }
+}
+
 TEST(MikkTangents, on_a_smooth_base_lie_in_the_planes_of_its_normals) {
     const Displacement mikk = make_map(FrameKind::mikk), dpdu = make_map(FrameKind::dpdu);
     const Mesh mesh = test::make_shape(test::Shape::grid);
