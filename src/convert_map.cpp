@@ -27,12 +27,24 @@ bool uses_frames(const Displacement& map) {
     return map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
 }
 
+/// True where both are in tangent space and go through other frames; of a height only the normals count.
+bool has_other_frames(const Displacement& from, const Displacement& to) {
+    if (!uses_frames(from) || !uses_frames(to)) return false;
+    if (from.type == DisplacementType::height) return from.frame != to.frame;
+    return from.frame != to.frame || from.lengths != to.lengths;
+}
+
 void check_kinds(const Displacement& from, const Displacement& to, const Mesh* mesh) {
     if (to.type == DisplacementType::height && from.type != DisplacementType::height)
         refuse(from, "vectors do not fit into a height map", "leave the type as vector");
     if (uses_frames(from) != uses_frames(to) && !mesh)
         refuse(from, "tangent and object space differ by the frames of a mesh, and none is given",
                "name the mesh that the map is for");
+    if (has_other_frames(from, to) && !mesh)
+        refuse(from, "other frames need the mesh that they stand on, and none is given",
+               "name the mesh that the map is for, or leave frame and lengths as they are");
+    if (to.type == DisplacementType::height && has_other_frames(from, to))
+        refuse(from, "a height along other normals is a vector", "leave the frame as it is");
     const bool has_world = from.space == DisplacementSpace::world || to.space == DisplacementSpace::world;
     if (has_world && from.space != to.space)
         refuse(from, "world space depends on where an object stands", "use object space");
@@ -107,13 +119,16 @@ void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t
         }
 }
 
-Field change_space(const Displacement& from, const Surface& surface, uint8_t tile, const Field& field) {
+enum class Turn { to_object, to_tangent };
+
+/// Through the frames of `surface`.
+Field change_space(Turn turn, const Surface& surface, uint8_t tile, const Field& field) {
     const Texture& texture = *surface.map.tiles[tile].texture;
     Field changed(field.size());
     std::vector<uint8_t> is_known(field.size());
     visit_texel_frames(surface, tile, [&](uint32_t x, uint32_t y, const FrameMatrix& frame) {
         const size_t at = size_t(y) * texture.width + x;
-        changed[at] = uses_frames(from) ? to_object(frame, field[at]) : to_tangent(frame, field[at]);
+        changed[at] = turn == Turn::to_object ? to_object(frame, field[at]) : to_tangent(frame, field[at]);
         is_known[at] = 1;
     });
     for (int k = 0; k < kMargin; ++k) grow(changed, is_known, texture.width, texture.height);
@@ -140,10 +155,13 @@ std::shared_ptr<const Texture> encode_all(const Displacement& to, const Texture&
     return texture;
 }
 
-/// The surface with tangent frames, whose tiles are those of `from`.
-Surface make_framed_surface(const Displacement& from, const Mesh& mesh) {
-    Displacement framed = from;
-    framed.type = DisplacementType::vector, framed.space = DisplacementSpace::tangent;
+/// The surface with the frames of `meant` and the tiles of `map`.
+Surface make_framed_surface(const Displacement& map, const Displacement& meant, const Mesh& mesh) {
+    Displacement framed = map;
+    framed.frame = meant.frame, framed.lengths = meant.lengths;
+    framed.space = DisplacementSpace::tangent;
+    // Tangents are of no use to a height, and not every mesh can have those that are asked for.
+    if (meant.type == DisplacementType::vector) framed.type = DisplacementType::vector;
     return make_surface(mesh, &framed, Affine{});
 }
 
@@ -157,13 +175,15 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
     result.name = from.name, result.is_udim = from.is_udim, result.wrap = from.wrap;
     result.dilate = from.dilate, result.filter = from.filter, result.autobump = from.autobump;
     result.tiles.clear();
-    std::optional<Surface> surface;
-    if (uses_frames(from) != uses_frames(to)) surface = make_framed_surface(from, *mesh);
+    const bool turns = uses_frames(from) != uses_frames(to) || has_other_frames(from, to);
+    std::optional<Surface> source_frames, target_frames;
+    if (turns && uses_frames(from)) source_frames = make_framed_surface(from, from, *mesh);
+    if (turns && uses_frames(to)) target_frames = make_framed_surface(from, to, *mesh);
     for (size_t k = 0; k < from.tiles.size(); ++k) {
-        // That of the surface is filled around its islands.
-        const Texture& source = surface ? *surface->map.tiles[k].texture : *from.tiles[k].texture;
+        const Texture& source = *from.tiles[k].texture;
         Field field = decode_all(from, source);
-        if (surface) field = change_space(from, *surface, uint8_t(k), field);
+        if (source_frames) field = change_space(Turn::to_object, *source_frames, uint8_t(k), field);
+        if (target_frames) field = change_space(Turn::to_tangent, *target_frames, uint8_t(k), field);
         if (from.flip_v != to.flip_v) turn_rows(field, source.width);
         result.tiles.push_back({from.tiles[k].udim, encode_all(to, source, field)});
     }

@@ -87,6 +87,20 @@ void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result
          {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file"}});
 }
 
+void add_frame(const Mesh& mesh, const Displacement& map, Inspection& result) {
+    if (std::string frame = describe_frame(map, &mesh); !frame.empty())
+        result.facts.push_back({"frame", std::move(frame)});
+    const bool uses_frames = map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
+    if (map.frame != FrameKind::file || !uses_frames) return;
+    if (mesh.normal_indices.empty())
+        add(result.findings, Severity::error, "E-NONORM",
+            "no normals, and the frame of its map is that of the file; export the mesh with normals, or say "
+            "frame mikk");
+    if (mesh.subdivision.scheme != SubdivisionScheme::none)
+        add(result.findings, Severity::error, "E-NONORM",
+            "subdivided, which leaves the normals of the file behind; say frame mikk, or scheme none");
+}
+
 /// Tiles in runs: "1001-1004, 1011".
 std::string list_tiles(const std::set<int>& tiles) {
     std::string text;
@@ -181,6 +195,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     }
     const MeshShape shape = survey_shape(mesh);
     describe_shape(mesh, shape, result);
+    if (displacement) add_frame(mesh, *displacement, result);
     if (mesh.uv_indices.empty()) {
         if (displacement)
             add(result.findings, Severity::error, "E-NOUV",

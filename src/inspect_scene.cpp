@@ -49,6 +49,8 @@ void describe_maps(const Scene& scene, const std::set<Pair>& pairs, Inspection& 
         const Inspection inspection = inspect_map(map, MapMeaning::declared, mesh);
         for (const Fact& fact : inspection.facts)
             result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value});
+        if (std::string frame = describe_frame(map, mesh); !frame.empty())
+            result.facts.push_back({fmt::format("map.{}.frame", map.name), std::move(frame)});
         for (const Finding& finding : inspection.findings)
             result.findings.push_back({finding.severity, finding.code,
                                        fmt::format("displacement '{}': {}", map.name, finding.text)});

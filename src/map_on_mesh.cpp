@@ -13,14 +13,16 @@ namespace {
 constexpr uint32_t kMostPatches = 1 << 14;
 constexpr size_t kMostEdges = 1 << 14;
 
-Frame normalize_frame(const Frame& frame) {
+/// Blending has made unit axes shorter.
+Frame normalize_frame(const Surface& surface, const Frame& frame) {
+    if (!surface.derivatives.empty()) return {frame.t, frame.b, normalize(frame.n)};
     return {normalize(frame.t), normalize(frame.b), normalize(frame.n)};
 }
 
 MapSample sample_vertex_data(const Surface& surface, const VertexData& data) {
     MapSample sample;
     if (data.tile != Surface::kNoTile) sample.value = fetch_displacement(surface.map, data.tile, data.uv);
-    sample.frame = normalize_frame(data.frame);
+    sample.frame = normalize_frame(surface, data.frame);
     return sample;
 }
 

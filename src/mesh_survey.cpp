@@ -82,6 +82,31 @@ std::string describe_base(const Mesh& mesh) {
                        mesh.creases.size(), subdivision.creases == CreaseRule::obey ? "obeyed" : "ignored");
 }
 
+std::string describe_frame(const Displacement& map, const Mesh* mesh) {
+    const bool is_height = map.type == DisplacementType::height;
+    if (!is_height && map.space != DisplacementSpace::tangent) return {};
+    const bool is_smooth = mesh && mesh->subdivision.scheme != SubdivisionScheme::none;
+    std::string text;
+    if (map.frame == FrameKind::file)
+        text = is_height ? "file: its normals"
+               : mesh && !mesh->tangents.empty()
+                   ? "file: its normals and tangents"
+                   : "file: its normals, and tangents by MikkTSpace around them";
+    else if (is_smooth)
+        text = is_height                      ? "normals of the smooth base"
+               : map.frame == FrameKind::mikk ? "mikk: normals of the smooth base, tangents by MikkTSpace"
+                                              : "dpdu: normals of the smooth base, tangents along dP/du";
+    else if (map.frame == FrameKind::mikk)
+        text =
+            is_height ? "mikk: mean normals of faces" : "mikk: mean normals of faces, tangents by MikkTSpace";
+    else
+        text = is_height ? "dpdu: mean normals of corners"
+                         : "dpdu: mean normals of corners, mean tangents along dP/du";
+    if (is_height) return text;
+    return text + (map.lengths == FrameLengths::relative ? "; relative lengths: t and b grow with the faces"
+                                                         : "; absolute lengths");
+}
+
 MeshFaults find_mesh_faults(const Mesh& mesh) {
     MeshFaults faults;
     const size_t corners = std::accumulate(mesh.face_sizes.begin(), mesh.face_sizes.end(), size_t(0));

@@ -44,6 +44,8 @@ struct MeshFaults {
 
 /// What of a mesh is displaced, for people: "catmark, level 2: 4 x 4 patches a quad, ...".
 std::string describe_base(const Mesh& mesh);
+/// What a displacement goes through, for people; `mesh` may be null. Empty in object and world space.
+std::string describe_frame(const Displacement& map, const Mesh* mesh);
 
 MeshFaults find_mesh_faults(const Mesh& mesh);
 

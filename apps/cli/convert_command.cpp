@@ -59,8 +59,13 @@ std::string describe(const Displacement& map) {
     const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
                         : map.space == DisplacementSpace::object ? "object"
                                                                  : "world";
-    return fmt::format("--space {} --axes {} --midlevel {} --vdm-scale {}{}", space,
-                       format_map_axes(map.axes, map.space), format_factors(map.midlevel),
+    std::string frames;
+    if (map.space == DisplacementSpace::tangent && map.frame != FrameKind::mikk)
+        frames += map.frame == FrameKind::dpdu ? " --frame dpdu" : " --frame file";
+    if (map.space == DisplacementSpace::tangent && map.lengths == FrameLengths::relative)
+        frames += " --lengths relative";
+    return fmt::format("--space {} --axes {}{} --midlevel {} --vdm-scale {}{}", space,
+                       format_map_axes(map.axes, map.space), frames, format_factors(map.midlevel),
                        format_factors(map.scale), map.flip_v ? " --flip-v" : "");
 }
 
@@ -84,6 +89,8 @@ Displacement make_target(const ConvertOptions& options, const Displacement& from
     Displacement to = make_map_meaning(said);
     if (keeps_axes && to.space == from.space) to.axes = from.axes;
     if (!said.type) to.type = from.type;
+    if (!said.frame) to.frame = from.frame;
+    if (!said.lengths) to.lengths = from.lengths;
     const auto is_given = [&](const char* name) {
         return std::find(options.to_given.begin(), options.to_given.end(), name) != options.to_given.end();
     };

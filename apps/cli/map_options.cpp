@@ -80,6 +80,8 @@ void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& 
     adder.add_text(start + "type", "NAME", "vector or height", options.type);
     adder.add_text(start + "space", "NAME", "tangent, object or world", options.space);
     adder.add_text(start + "axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...", options.axes);
+    adder.add_text(start + "frame", "NAME", "of tangent space: mikk (default), dpdu or file", options.frame);
+    adder.add_text(start + "lengths", "NAME", "of its axes: absolute (default) or relative", options.lengths);
     adder.add_text(start + "encoding", "NAME", "float, or signed: 0..1 means -1..1", options.encoding);
     adder.add_factors(start + "midlevel", "value that means no displacement", options.midlevel);
     adder.add_factors(is_target ? "--to-scale" : "--vdm-scale", "factor on the displacement", options.scale);

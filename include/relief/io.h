@@ -22,7 +22,7 @@ Scene load_scene(const std::filesystem::path& file);
 /// docs/formats.md lists the names.
 struct MapOptions {
     std::string preset; ///< empty: none
-    std::optional<std::string> type, space, axes, encoding, wrap, filter;
+    std::optional<std::string> type, space, axes, frame, lengths, encoding, wrap, filter;
     std::optional<Vec3f> midlevel, scale; ///< a channel each; of the values after the encoding
     bool flip_v = false;
     bool dilate = true, autobump = false; ///< see Displacement
@@ -86,6 +86,7 @@ struct MeshReadOptions {
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options = {});
 
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder, so that load_scene gives the same scene.
+/// Throws Error{bad_input} for a map that goes through tangents of its mesh, since OBJ holds none.
 void save_scene(const Scene& scene, const std::filesystem::path& folder);
 
 /// Reads all channels of the first part as floats, data window and metadata included. Throws

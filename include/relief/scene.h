@@ -56,9 +56,9 @@ struct Mesh {
     std::string name;
     std::string source; ///< file it came from, for messages; may be empty
     std::vector<Vec3f> positions;
-    std::vector<Vec2f> uvs;                 ///< may be empty
-    std::vector<Vec3f> normals;             ///< may be empty; used for shading undisplaced faces only
-    std::vector<uint32_t> face_sizes;       ///< corners of each face, >= 3
+    std::vector<Vec2f> uvs;           ///< may be empty
+    std::vector<Vec3f> normals;       ///< may be empty; of plain faces, and where FrameKind::file is asked
+    std::vector<uint32_t> face_sizes; ///< corners of each face, >= 3
     std::vector<uint32_t> position_indices; ///< one a corner, faces one after another, counter-clockwise
     std::vector<uint32_t> uv_indices;       ///< one a corner, or empty
     std::vector<uint32_t> normal_indices;   ///< one a corner, or empty
@@ -71,6 +71,12 @@ struct Mesh {
 enum class DisplacementType { vector, height };
 enum class DisplacementSpace { tangent, object, world };
 enum class WrapMode { clamp, repeat, mirror, black };
+/// Where the tangent frames of a surface come from: MikkTSpace, as bakers have it; the mean of dP/du at each
+/// vertex; or normals and tangents of the mesh, or its normals alone, which MikkTSpace goes around.
+enum class FrameKind { mikk, dpdu, file };
+/// Displacements in scene units along unit axes, or in units of dP/du and dP/dv, so that they grow with the
+/// faces; those along the normal are in scene units either way.
+enum class FrameLengths { absolute, relative };
 /// What a sample of the surface reads: the map as it is, or a copy whose texels are as large as the cells.
 enum class MapFilter { none, mip };
 
@@ -93,6 +99,8 @@ struct Displacement {
     std::string name;
     DisplacementType type = DisplacementType::vector;
     DisplacementSpace space = DisplacementSpace::tangent;
+    FrameKind frame = FrameKind::mikk;             ///< in tangent space; of a height map only whose normals
+    FrameLengths lengths = FrameLengths::absolute; ///< in tangent space; not of a height map
     AxisMap axes;
     Vec3f midlevel{0, 0, 0};
     Vec3f scale{1, 1, 1};

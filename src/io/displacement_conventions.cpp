@@ -28,6 +28,10 @@ constexpr std::array<std::pair<std::string_view, WrapMode>, 4> kWraps = {{{"clam
                                                                           {"black", WrapMode::black}}};
 constexpr std::array<std::pair<std::string_view, MapEncoding>, 2> kEncodings = {
     {{"float", MapEncoding::as_stored}, {"signed", MapEncoding::from_unit}}};
+constexpr std::array<std::pair<std::string_view, FrameKind>, 3> kFrames = {
+    {{"mikk", FrameKind::mikk}, {"dpdu", FrameKind::dpdu}, {"file", FrameKind::file}}};
+constexpr std::array<std::pair<std::string_view, FrameLengths>, 2> kLengths = {
+    {{"absolute", FrameLengths::absolute}, {"relative", FrameLengths::relative}}};
 constexpr std::array<MapPreset, 10> kPresets = {{{"blender-brush", "t,b,n", {}},
                                                  {"genvdm", "t,b,n", {}},
                                                  {"3dcoat", "t,b,n", {}},
@@ -113,6 +117,16 @@ MapEncoding parse_encoding(std::string_view text) {
 }
 std::string_view get_name(MapEncoding encoding) {
     return find_value(NameTable<MapEncoding>(kEncodings), encoding);
+}
+FrameKind parse_frame_kind(std::string_view text) {
+    return find_name(NameTable<FrameKind>(kFrames), text, "frame");
+}
+std::string_view get_name(FrameKind frame) { return find_value(NameTable<FrameKind>(kFrames), frame); }
+FrameLengths parse_frame_lengths(std::string_view text) {
+    return find_name(NameTable<FrameLengths>(kLengths), text, "lengths");
+}
+std::string_view get_name(FrameLengths lengths) {
+    return find_value(NameTable<FrameLengths>(kLengths), lengths);
 }
 std::string_view get_name(MapFilter filter) { return find_value(NameTable<MapFilter>(kFilters), filter); }
 std::string_view get_name(WrapMode wrap) { return find_value(NameTable<WrapMode>(kWraps), wrap); }

@@ -1,5 +1,5 @@
-// Names of what a displacement map means: types, spaces, wrap modes, encodings, axis texts, presets of
-// programs.
+// Names of what a displacement map means: types, spaces, frames, wrap modes, encodings, axis texts,
+// presets of programs.
 #pragma once
 
 #include <optional>
@@ -40,9 +40,13 @@ DisplacementType parse_displacement_type(std::string_view text);
 DisplacementSpace parse_displacement_space(std::string_view text);
 WrapMode parse_wrap_mode(std::string_view text);
 MapFilter parse_map_filter(std::string_view text);
+FrameKind parse_frame_kind(std::string_view text);
+FrameLengths parse_frame_lengths(std::string_view text);
 MapEncoding parse_encoding(std::string_view text);
 std::string_view get_name(DisplacementType type);
 std::string_view get_name(DisplacementSpace space);
+std::string_view get_name(FrameKind frame);
+std::string_view get_name(FrameLengths lengths);
 std::string_view get_name(WrapMode wrap);
 std::string_view get_name(MapFilter filter);
 std::string_view get_name(MapEncoding encoding);

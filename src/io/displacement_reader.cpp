@@ -87,6 +87,8 @@ Displacement make_displacement_values(const MapOptions& options) {
     const MapPreset* preset = options.preset.empty() ? nullptr : &find_preset(options.preset);
     if (options.type) map.type = parse_displacement_type(*options.type);
     decide_axes(options, preset, map);
+    if (options.frame) map.frame = parse_frame_kind(*options.frame);
+    if (options.lengths) map.lengths = parse_frame_lengths(*options.lengths);
     if (options.wrap) map.wrap = parse_wrap_mode(*options.wrap);
     map.scale = options.scale.value_or(Vec3f{1, 1, 1});
     map.flip_v = options.flip_v;

@@ -20,7 +20,8 @@ struct FaceFrame {
     Vec3f t, b, n;
 };
 
-FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size) {
+FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size,
+                          FrameLengths lengths = FrameLengths::absolute) {
     FaceFrame face;
     for (size_t k = 0; k < 4; ++k) {
         const size_t corner = first + std::min<size_t>(k, size - 1);
@@ -35,6 +36,10 @@ FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size) {
     const Vec3f along_u = (a * uc.y - c * ua.y) * sign;
     face.t = normalize(along_u - face.n * dot(face.n, along_u));
     face.b = cross(face.n, face.t) * sign;
+    if (lengths == FrameLengths::relative && determinant != 0) {
+        face.t = (a * uc.y - c * ua.y) / determinant;
+        face.b = (c * ua.x - a * uc.x) / determinant;
+    }
     return face;
 }
 
@@ -120,7 +125,7 @@ void extend_by_displacement(Reach& reach, const Mesh& mesh, const Displacement& 
     const int steps = std::clamp(int(std::sqrt(262144.0 / double(mesh.face_sizes.size()))), 1, 512);
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
-        const FaceFrame face = make_face_frame(mesh, first, size);
+        const FaceFrame face = make_face_frame(mesh, first, size, map.lengths);
         for (int j = 0; j < steps; ++j) {
             for (int i = 0; i < steps; ++i) {
                 // Never on the border, where the uv may belong to the next tile.

@@ -97,7 +97,8 @@ uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
     ContentHash hash;
     const MapOptions& map = options.map;
     hash.add(map.preset);
-    for (const std::optional<std::string>& text : {map.type, map.space, map.axes, map.encoding, map.wrap})
+    for (const std::optional<std::string>& text :
+         {map.type, map.space, map.axes, map.frame, map.lengths, map.encoding, map.wrap})
         hash.add(text.value_or("-"));
     for (const std::optional<Vec3f>& value : {map.midlevel, map.scale})
         hash.add(value ? fmt::format("{} {} {}", value->x, value->y, value->z) : std::string("-"));

@@ -20,8 +20,8 @@ inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rot
 inline constexpr auto kMaterial = make_keys("base_color", "base_color_texture", "roughness",
                                             "roughness_texture", "metallic", "ior", "emission");
 inline constexpr auto kDisplacement =
-    make_keys("type", "file", "preset", "space", "axes", "encoding", "midlevel", "scale", "flip_v", "wrap",
-              "dilate", "filter", "autobump");
+    make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
+              "flip_v", "wrap", "dilate", "filter", "autobump");
 inline constexpr auto kMesh = make_keys("file", "uv_set", "subdivision");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
 inline constexpr auto kObject = make_keys("name", "mesh", "displacement", "material", "transform");

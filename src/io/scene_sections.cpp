@@ -166,6 +166,8 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     read_optional(node, "type", options.type, as_text);
     read_optional(node, "space", options.space, as_text);
     read_optional(node, "axes", options.axes, as_text);
+    read_optional(node, "frame", options.frame, as_text);
+    read_optional(node, "lengths", options.lengths, as_text);
     read_optional(node, "encoding", options.encoding, as_text);
     read_optional(node, "wrap", options.wrap, as_text);
     read_optional(node, "midlevel", options.midlevel, as_factors);

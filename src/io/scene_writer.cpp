@@ -49,6 +49,21 @@ void write_texels(const Texture& texture, const std::filesystem::path& file) {
     write_checked(file, [&](CheckedFile& stream) { encode_exr(texture, stream); });
 }
 
+/// Fails where a map goes through tangents of its mesh, which an OBJ cannot hold.
+void check_tangents(const Scene& scene, const Object& object) {
+    if (object.displacement == kNoIndex) return;
+    const Displacement& map = scene.displacements[object.displacement];
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (map.frame != FrameKind::file || map.type != DisplacementType::vector ||
+        map.space != DisplacementSpace::tangent || mesh.tangents.empty())
+        return;
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("displacement '{}' uses the tangents of its mesh, and a scene is saved with OBJ "
+                             "meshes, which hold none",
+                             map.name),
+                 fmt::format("mesh '{}'", mesh.name), "use frame mikk, or write the scene file by hand"});
+}
+
 class SceneWriter {
   public:
     SceneWriter(const Scene& scene, std::filesystem::path folder)
@@ -146,6 +161,8 @@ class SceneWriter {
             node["file"] = add_displacement_maps(map, displacement_names_.back());
             node["space"] = std::string(get_name(map.space));
             node["axes"] = format_axes(map.axes, map.space);
+            node["frame"] = std::string(get_name(map.frame));
+            node["lengths"] = std::string(get_name(map.lengths));
             node["midlevel"] = to_json(map.midlevel);
             node["scale"] = to_json(map.scale);
             node["flip_v"] = map.flip_v;
@@ -224,6 +241,7 @@ class SceneWriter {
 
 void save_scene(const Scene& scene, const std::filesystem::path& folder) {
     validate_scene(scene);
+    for (const Object& object : scene.objects) check_tangents(scene, object);
     SceneWriter(scene, folder).write();
 }
 

@@ -109,6 +109,17 @@ void check_texture(const std::string& where, const Texture& texture) {
     if (!has_floats && !has_halves) fail(where, "texture holds another number of texels than its size says");
 }
 
+void check_frame(const std::string& where, const Displacement& map) {
+    if (uint32_t(map.frame) > uint32_t(FrameKind::file)) fail(where, "frame is none of mikk, dpdu and file");
+    if (uint32_t(map.lengths) > uint32_t(FrameLengths::relative))
+        fail(where, "lengths are neither absolute nor relative");
+    const bool uses_tangents =
+        map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent;
+    if (uses_tangents && map.frame == FrameKind::file && map.lengths == FrameLengths::relative)
+        fail(where, "the file's tangents have no lengths for relative ones",
+             "use lengths absolute, or frame mikk or dpdu");
+}
+
 void check_displacement(const Displacement& map, size_t index) {
     const std::string where = describe("displacement", map.name, index);
     const size_t most_tiles = map.is_udim ? size_t(kMaxMapTiles) : 1;
@@ -126,6 +137,7 @@ void check_displacement(const Displacement& map, size_t index) {
             fail(where, "axes have a sign other than 1 and -1");
     }
     if (used != 7) fail(where, "axes are no permutation");
+    check_frame(where, map);
     check_range(where, "midlevel", map.midlevel, -kHuge, kHuge);
     check_range(where, "scale", map.scale, -kHuge, kHuge);
 }

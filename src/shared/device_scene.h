@@ -31,6 +31,7 @@ struct SurfaceData {
     uint map;                 ///< index into maps; kNone: not displaced
     uint first_control;       ///< of positions, in vertices: twelve a patch; kNone: bilinear patches
     uint first_mip;           ///< of override_bits: a word a patch (mips.h); kNone: the map itself everywhere
+    uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
 };
 
 /// d = matrix (texel - midlevel).

@@ -73,11 +73,20 @@ void check_reach(const std::string& name, const DisplacementMap& map, const std:
             const double low = double(range.low[c]) - middle, high = double(range.high[c]) - middle;
             reach += std::fmax(std::fabs(low), std::fabs(high)) * std::fabs(get_component(row, c));
         }
+        reach *= double(map.longest_axis);
         if (!(reach <= kLargestDisplacement))
             throw Error(ErrorKind::bad_input,
                         {fmt::format("map '{}' displaces by {:g}", file, reach),
                          fmt::format("displacement '{}'", name), "lower the scale or repair the map"});
     }
+}
+
+void check_reach(const std::string& name, const DisplacementMap& map) {
+    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
+    for (const DisplacementMap::Tile& tile : map.tiles)
+        check_reach(name, map, tile.texture->file,
+                    tile.pyramid->query(0, 0, int64_t(tile.texture->width) - 1,
+                                        int64_t(tile.texture->height) - 1, WrapMode::clamp, middle));
 }
 
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,
@@ -100,12 +109,8 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
         map.tiles.push_back({tile.udim, tile.texture, pyramids.get_or_build(tile.texture), nullptr});
-        const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-        check_reach(displacement.name, map, tile.texture->file,
-                    map.tiles.back().pyramid->query(0, 0, int64_t(tile.texture->width) - 1,
-                                                    int64_t(tile.texture->height) - 1, WrapMode::clamp,
-                                                    middle));
     }
+    check_reach(displacement.name, map);
     return map;
 }
 

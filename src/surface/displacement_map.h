@@ -30,6 +30,8 @@ class PyramidCache {
 /// 1e18.
 void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
                  const ChannelRange& range);
+/// The same of all tiles.
+void check_reach(const std::string& name, const DisplacementMap& map);
 
 /// Throws bad_input with the displacement's name for a map without tiles, an axis out of range, a factor that
 /// is not finite, a displacement above 1e18, and whatever BoundsPyramid::build refuses.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "surface/base_frames.h"
 #include "surface/displacement_map.h"
 #include "surface/polygons.h"
 #include "surface/subdivide.h"
@@ -21,7 +22,8 @@ class VertexSplitter {
   public:
     struct Attributes {
         Vec2f uv{};
-        Vec3f normal{};
+        Vec3f normal{}, bitangent{};
+        std::array<float, 4> tangent{};
         uint8_t tile = 0;
         float handedness = 1;
         friend bool operator==(const Attributes&, const Attributes&) = default;
@@ -95,16 +97,31 @@ void check_texel_range(const DisplacementMap& map, const Polygons& polygons, uin
                  "unwrap the mesh again"});
 }
 
-/// Split vertices: where each came from, and which way round its uvs go.
-struct SplitVertices {
-    std::vector<uint32_t> points;
-    std::vector<float> handedness;
-};
+/// What corners bring to their vertices beside uvs.
+void add_frame_attributes(const Polygons& polygons, uint32_t corner, VertexSplitter::Attributes& attributes) {
+    if (!polygons.normals.empty()) attributes.normal = polygons.normals[corner];
+    if (!polygons.bitangents.empty()) attributes.bitangent = polygons.bitangents[corner];
+    if (polygons.tangents.empty()) return;
+    attributes.tangent = polygons.tangents[corner];
+    attributes.handedness = attributes.tangent[3] < 0 ? -1.0f : 1.0f;
+}
+
+VertexSources list_sources(const Polygons& polygons, const VertexSplitter& vertices) {
+    VertexSources sources;
+    for (uint32_t v = 0; v < vertices.count(); ++v) {
+        const VertexSplitter::Attributes& attributes = vertices.attributes(v);
+        sources.points.push_back(vertices.point(v));
+        sources.handedness.push_back(attributes.handedness);
+        if (!polygons.normals.empty()) sources.normals.push_back(attributes.normal);
+        if (!polygons.tangents.empty()) sources.tangents.push_back(attributes.tangent);
+        if (!polygons.bitangents.empty()) sources.bitangents.push_back(attributes.bitangent);
+    }
+    return sources;
+}
 
 /// Patches and split vertices.
-SplitVertices split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
+VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
     VertexSplitter vertices(polygons.positions.size());
-    std::vector<uint8_t> tiles;
     surface.quads.reserve(polygons.face_count());
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         const uint32_t start = polygons.starts[face];
@@ -120,6 +137,7 @@ SplitVertices split_displaced(Surface& surface, const Polygons& polygons, bool i
         Quad quad;
         for (uint32_t k = 0; k < 4; ++k) {
             attributes.uv = {uvs[k].x - tile.offset.x, uvs[k].y - tile.offset.y};
+            add_frame_attributes(polygons, start + k, attributes);
             quad.vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
         }
         surface.quads.push_back(quad);
@@ -127,16 +145,13 @@ SplitVertices split_displaced(Surface& surface, const Polygons& polygons, bool i
     copy_positions(surface, polygons, vertices);
     copy_uvs(surface, vertices);
     bool has_copies = false;
-    SplitVertices split;
     for (uint32_t v = 0; v < vertices.count(); ++v) {
-        split.points.push_back(vertices.point(v));
-        split.handedness.push_back(vertices.attributes(v).handedness);
         has_copies = has_copies || vertices.dominant(v) != v;
         if (is_udim) surface.vertex_tiles.push_back(vertices.attributes(v).tile);
     }
     if (has_copies)
         for (uint32_t v = 0; v < vertices.count(); ++v) surface.dominants.push_back(vertices.dominant(v));
-    return split;
+    return list_sources(polygons, vertices);
 }
 
 /// Where patch edges between the same two points have different vertices, all take those of the lowest.
@@ -181,16 +196,15 @@ void find_overrides(Surface& surface) {
         surface.override_bits[entry.patch_edge >> 6] |= uint64_t(1) << (entry.patch_edge & 63);
 }
 
-/// Quads, smooth where the mesh says so.
-SmoothBase make_base(Polygons polygons, const Subdivision& subdivision) {
-    if (subdivision.scheme != SubdivisionScheme::none)
-        return subdivide(polygons, subdivision, BasePatches::bicubic);
-    SmoothBase base;
-    bool is_all_quads = true;
-    for (uint32_t face = 0; face < polygons.face_count(); ++face)
-        is_all_quads = is_all_quads && polygons.face_size(face) == 4;
-    base.polygons = is_all_quads ? std::move(polygons) : refine_to_quads(polygons);
-    return base;
+/// Fails where an axis of a relative frame carries the map's largest displacement too far.
+void check_derivatives(Surface& surface, const std::string& name) {
+    if (surface.derivatives.empty()) return;
+    float& longest = surface.map.longest_axis;
+    for (const std::array<Vec3f, 2>& derivatives : surface.derivatives)
+        for (const Vec3f& derivative : derivatives)
+            for (const float value : {derivative.x, derivative.y, derivative.z})
+                longest = std::fmax(longest, std::fabs(value));
+    check_reach(name, surface.map);
 }
 
 Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const Affine& object_from_world,
@@ -200,18 +214,18 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
         throw Error(ErrorKind::bad_input,
                     {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
                      polygons.where, "unwrap the mesh"});
-    SmoothBase base = make_base(std::move(polygons), mesh.subdivision);
+    FramedBase framed = make_framed_base(std::move(polygons), mesh, displacement);
     Surface surface;
     surface.name = mesh.name;
     surface.has_displacement = true;
     surface.map = make_displacement_map(displacement, object_from_world, pyramids);
-    const SplitVertices split = split_displaced(surface, base.polygons, displacement.is_udim);
+    VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim);
     find_overrides(surface);
-    surface.controls = std::move(base.controls);
-    std::vector<Vec3f> normals;
-    if (!base.point_normals.empty())
-        for (const uint32_t point : split.points) normals.push_back(base.point_normals[point]);
-    compute_vertex_frames(surface, split.handedness, normals);
+    surface.controls = std::move(framed.base.controls);
+    sources.point_normals = std::move(framed.point_normals);
+    sources.lengths = displacement.lengths;
+    compute_vertex_frames(surface, sources);
+    check_derivatives(surface, displacement.name);
     return surface;
 }
 

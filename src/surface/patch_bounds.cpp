@@ -167,8 +167,8 @@ void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint,
                 moved = moved + d[k] * corner.frame[axis][k];
             hull.extend(moved.low), hull.extend(moved.high);
         }
-        // Entries of frames are at most 1, but their blends err by 8 units of the largest, not of the value.
-        for (const Interval& channel : d) size += channel.size();
+        // Blends of frames err by 8 units of their largest entry, not of the value.
+        for (const Interval& channel : d) size += channel.size() * footprint.map->longest_axis;
         // A cubic is blended twice, each time with 6 units.
         const double slack = 16 * kUnit * (footprint.largest_position + size) + kUnderflow;
         bounds[axis].extend(hull.low - slack), bounds[axis].extend(hull.high + slack);

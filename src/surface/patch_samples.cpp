@@ -51,7 +51,7 @@ VertexData load_vertex(const Surface& surface, uint32_t vertex) {
     VertexData data;
     data.position = surface.positions[vertex];
     if (!surface.uvs.empty()) data.uv = surface.uvs[vertex];
-    if (surface.map.is_tangent && !surface.frames.empty()) data.frame = unpack_frame(surface.frames[vertex]);
+    if (surface.map.is_tangent && !surface.frames.empty()) data.frame = surface.frame(vertex);
     data.tile = surface.tile(vertex);
     return data;
 }

@@ -47,6 +47,9 @@ void check_counts(const Mesh& mesh, const std::string& where) {
     if (!mesh.normal_indices.empty() && mesh.normal_indices.size() != corner_count)
         fail(fmt::format("faces have {} corners, but there are {} normal indices", corner_count,
                          mesh.normal_indices.size()));
+    if (!mesh.tangents.empty() && mesh.tangents.size() != corner_count)
+        fail(fmt::format("faces have {} corners, but there are {} tangents", corner_count,
+                         mesh.tangents.size()));
     if (corner_count >= size_t(kNoIndex) / 8) fail("mesh has too many corners");
 }
 
@@ -188,6 +191,7 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
             if (!mesh.uv_indices.empty()) result.uvs.push_back(mesh.uvs[mesh.uv_indices[start + k]]);
             if (!mesh.normal_indices.empty())
                 result.normals.push_back(mesh.normals[mesh.normal_indices[start + k]]);
+            if (!mesh.tangents.empty()) result.tangents.push_back(mesh.tangents[start + k]);
         }
         result.source_faces.push_back(uint32_t(face));
     }

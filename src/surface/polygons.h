@@ -1,6 +1,7 @@
 // Checked polygons between the mesh of the scene and the patches: one entry a corner, attributes resolved.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,10 +13,14 @@ namespace relief {
 struct Polygons {
     std::string where; ///< file and mesh, for messages
     std::vector<Vec3f> positions;
-    std::vector<uint32_t> starts;       ///< first corner of each face, and the end of the last one
-    std::vector<uint32_t> points;       ///< index into positions, one a corner
-    std::vector<Vec2f> uvs;             ///< one a corner, or empty
-    std::vector<Vec3f> normals;         ///< one a corner, or empty
+    std::vector<uint32_t> starts; ///< first corner of each face, and the end of the last one
+    std::vector<uint32_t> points; ///< index into positions, one a corner
+    std::vector<Vec2f> uvs;       ///< one a corner, or empty
+    std::vector<Vec3f> normals;   ///< one a corner, or empty
+    /// One a corner, or empty: direction of growing u (x, y, z), and the sign of the bitangent, as Mesh has
+    /// it.
+    std::vector<std::array<float, 4>> tangents;
+    std::vector<Vec3f> bitangents; ///< one a corner, or empty; with them, `tangents` are dP/du, they dP/dv
     std::vector<uint32_t> source_faces; ///< face of the mesh, for messages
     std::vector<Crease> creases;        ///< of the mesh, between these points
 
@@ -35,7 +40,7 @@ Polygons make_polygons(const Mesh& mesh, Welding welding);
 
 /// One linear Catmull-Clark step (Catmull and Clark 1978, without the smoothing): every face becomes one quad
 /// a corner, from the corner to the middle of its next edge, the middle of the face and the middle of its
-/// previous edge.
+/// previous edge. Uvs, normals and tangents are interpolated.
 Polygons refine_to_quads(const Polygons& polygons);
 
 /// Leaves triangles and convex quads as they are and cuts all other faces by ears in the plane of their

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
 
 #include "math/vec.h"
 #include "surface/polygons.h"
@@ -37,6 +40,53 @@ std::vector<uint32_t> add_edge_points(const Polygons& polygons, std::vector<Vec3
     return result;
 }
 
+/// Means of what the corners of a face bring to their frames.
+class FrameBlender {
+  public:
+    FrameBlender(const Polygons& source, Polygons& target) : source_(source), target_(target) {}
+
+    /// Adds the four corners of a quad, which is one of `size` of the face that starts at `start`.
+    void add_quad(uint32_t start, uint32_t size, uint32_t k) {
+        const uint32_t corner = start + k, next = start + (k + 1) % size,
+                       previous = start + (k + size - 1) % size;
+        face_.resize(size);
+        std::iota(face_.begin(), face_.end(), start);
+        add(std::array{corner}), add(std::array{corner, next}), add(face_), add(std::array{previous, corner});
+    }
+
+  private:
+    void add(std::span<const uint32_t> corners) {
+        if (!source_.normals.empty()) {
+            Vec3f sum{};
+            for (const uint32_t corner : corners) sum += source_.normals[corner];
+            target_.normals.push_back(corners.size() == 1 ? sum : normalize(sum));
+        }
+        if (!source_.tangents.empty()) target_.tangents.push_back(blend_tangents(corners));
+        if (source_.bitangents.empty()) return;
+        Vec3f sum{};
+        for (const uint32_t corner : corners) sum += source_.bitangents[corner];
+        target_.bitangents.push_back(sum / float(corners.size()));
+    }
+
+    std::array<float, 4> blend_tangents(std::span<const uint32_t> corners) const {
+        if (corners.size() == 1) return source_.tangents[corners[0]];
+        Vec3f sum{};
+        float sign = 0;
+        for (const uint32_t corner : corners) {
+            const std::array<float, 4>& tangent = source_.tangents[corner];
+            sum += Vec3f{tangent[0], tangent[1], tangent[2]};
+            sign += tangent[3];
+        }
+        // Derivatives keep their lengths.
+        sum = source_.bitangents.empty() ? normalize(sum) : sum / float(corners.size());
+        return {sum.x, sum.y, sum.z, sign < 0 ? -1.0f : 1.0f};
+    }
+
+    const Polygons& source_;
+    Polygons& target_;
+    std::vector<uint32_t> face_;
+};
+
 } // namespace
 
 Polygons refine_to_quads(const Polygons& polygons) {
@@ -45,6 +95,7 @@ Polygons refine_to_quads(const Polygons& polygons) {
     result.positions = polygons.positions;
     const std::vector<uint32_t> edge_points = add_edge_points(polygons, result.positions);
     const bool has_uvs = !polygons.uvs.empty();
+    FrameBlender frames(polygons, result);
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
         Vec3f middle{};
@@ -62,6 +113,7 @@ Polygons refine_to_quads(const Polygons& polygons) {
             result.points.insert(result.points.end(), {polygons.points[corner], edge_points[corner],
                                                        face_point, edge_points[previous]});
             result.source_faces.push_back(polygons.source_faces[face]);
+            frames.add_quad(start, size, k);
             if (!has_uvs) continue;
             const Vec2f &uv = polygons.uvs[corner], &next_uv = polygons.uvs[start + (k + 1) % size];
             result.uvs.insert(result.uvs.end(),

@@ -22,8 +22,9 @@ Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
 
 size_t Surface::geometry_bytes() const {
     return positions.size() * sizeof(Vec3f) + uvs.size() * sizeof(Vec2f) +
-           frames.size() * sizeof(PackedFrame) + dominants.size() * sizeof(uint32_t) + vertex_tiles.size() +
-           quads.size() * sizeof(Quad) + mips.size() * sizeof(uint32_t) + controls.size() * sizeof(InnerControls) +
+           frames.size() * sizeof(PackedFrame) + derivatives.size() * sizeof(derivatives[0]) +
+           dominants.size() * sizeof(uint32_t) + vertex_tiles.size() + quads.size() * sizeof(Quad) +
+           mips.size() * sizeof(uint32_t) + controls.size() * sizeof(InnerControls) +
            overrides.size() * sizeof(EdgeOverride) + override_bits.size() * sizeof(uint64_t);
 }
 

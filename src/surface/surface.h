@@ -1,8 +1,8 @@
 // A mesh with its displacement, made ready to be evaluated: compact patches, seams resolved, frames packed.
 //
-// Vertices are split where uv or tangent handedness differ; the copies of one point share its position bit
-// for bit and know their dominant copy (the lowest-numbered one). Patches have corners 0..3 counter-clockwise
-// at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to corner (k + 1) mod 4.
+// Vertices are split where uvs or what their frames are made from differ; the copies of one point share its
+// position bit for bit and know their dominant copy (the lowest-numbered one). Patches have corners 0..3
+// counter-clockwise at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to corner (k + 1) mod 4.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct PackedFrame {
     uint32_t normal = 0, tangent = 0;
 };
 
-/// Orthonormal frame of a vertex.
+/// Frame of a vertex: orthonormal, but with relative lengths t and b are dP/du and dP/dv.
 struct Frame {
     Vec3f t, b, n;
 };
@@ -72,6 +72,7 @@ struct DisplacementMap {
     WrapMode wrap = WrapMode::clamp;
     bool flip_v = false;
     bool is_tangent = false; ///< d is (t, b, n) and goes through the frame
+    float longest_axis = 1;  ///< no coordinate of a frame's axes is larger
     bool is_filtered = false, has_autobump = false;
 
     /// Copy `mip` of a tile that exists; 0 is the tile's own image.
@@ -84,11 +85,13 @@ using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
 /// Immutable once made; safe to read from any thread.
 struct Surface {
-    std::string name;                  ///< of the mesh, for messages
-    std::vector<Vec3f> positions;      ///< one a split vertex
-    std::vector<Vec2f> uvs;            ///< one a split vertex, or empty; tile offset taken off when displaced
-    std::vector<PackedFrame> frames;   ///< one a split vertex, or empty: facets (undisplaced, no normals)
-    std::vector<uint32_t> dominants;   ///< one a split vertex, or empty: every vertex is its own
+    std::string name;                ///< of the mesh, for messages
+    std::vector<Vec3f> positions;    ///< one a split vertex
+    std::vector<Vec2f> uvs;          ///< one a split vertex, or empty; tile offset taken off when displaced
+    std::vector<PackedFrame> frames; ///< one a split vertex, or empty: facets (undisplaced, no normals)
+    std::vector<std::array<Vec3f, 2>> derivatives; ///< dP/du, dP/dv; one a split vertex where lengths are
+                                                   ///< relative, or empty
+    std::vector<uint32_t> dominants;               ///< one a split vertex, or empty: every vertex is its own
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     std::vector<Quad> quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
@@ -104,6 +107,11 @@ struct Surface {
     uint32_t patch_count() const { return uint32_t(quads.size()); }
     uint32_t dominant(uint32_t vertex) const { return dominants.empty() ? vertex : dominants[vertex]; }
     uint32_t packed_mips(uint32_t patch) const { return mips.empty() ? 0 : mips[patch]; }
+    /// What a vertex is displaced through; `frames` must not be empty.
+    Frame frame(uint32_t vertex) const {
+        if (derivatives.empty()) return unpack_frame(frames[vertex]);
+        return {derivatives[vertex][0], derivatives[vertex][1], unpack_normal(frames[vertex])};
+    }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
     /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a

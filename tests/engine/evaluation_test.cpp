@@ -85,6 +85,7 @@ void expect_definition(const Displacement& displacement, SubdivisionScheme schem
     scene.camera.from = {1.6f, 0.1f, 0.1f};
     scene.meshes[0].subdivision.scheme = scheme;
     scene.meshes[0].subdivision.level = 0;
+    if (displacement.frame == FrameKind::file) test::add_flat_normals(scene.meshes[0]);
     RenderSettings settings;
     settings.level = has_mips ? kAutoLevel : 0;
     settings.height = 60;
@@ -148,6 +149,19 @@ TEST(Evaluation, is_the_definition_on_bicubic_patches) {
                 test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), space);
             displacement.wrap = wrap;
             expect_definition(displacement, SubdivisionScheme::catmark);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, is_the_definition_through_every_kind_of_frame) {
+    Displacement displacement =
+        test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), DisplacementSpace::tangent);
+    for (const FrameKind frame : {FrameKind::mikk, FrameKind::dpdu, FrameKind::file})
+        for (const FrameLengths lengths : {FrameLengths::absolute, FrameLengths::relative}) {
+            if (frame == FrameKind::file && lengths == FrameLengths::relative) continue;
+            displacement.frame = frame, displacement.lengths = lengths;
+            expect_definition(displacement);
+            if (frame != FrameKind::file) expect_definition(displacement, SubdivisionScheme::catmark);
             if (testing::Test::HasFatalFailure()) return;
         }
 }

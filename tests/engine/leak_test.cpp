@@ -32,6 +32,8 @@ struct Case {
     int level;
     Placement placement;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    FrameKind frame = FrameKind::mikk;
+    FrameLengths lengths = FrameLengths::absolute;
     MapFilter filter = MapFilter::none;
 };
 
@@ -53,10 +55,14 @@ const Case kCases[] = {
      Placement::instances, SubdivisionScheme::catmark},
     {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
      SubdivisionScheme::catmark},
+    {"sphere_with_hard_edges_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::file},
+    {"sphere_relative_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::relative},
     {"filtered_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
-     SubdivisionScheme::none, MapFilter::mip},
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
     {"filtered_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
-     Placement::instances, SubdivisionScheme::none, MapFilter::mip},
+     Placement::instances, SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
 };
 
 uint64_t ray_count() {
@@ -109,6 +115,7 @@ Scene make_scene(const Case& c) {
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),
                                 c.space));
     scene.displacements[0].filter = c.filter;
+    test::set_frames(scene, c.frame, c.lengths);
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
     scene.camera.from = c.body == Body::sphere ? Vec3f{0.75f, 0.1f, 0.2f} : Vec3f{1.2f, 0.1f, 0.1f};
     if (c.placement == Placement::instances)

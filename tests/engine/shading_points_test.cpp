@@ -107,6 +107,13 @@ TEST(SurfacePoints, are_the_same_on_filtered_maps_with_detail_in_the_normals) {
         }
 }
 
+TEST(SurfacePoints, are_the_same_through_derivatives) {
+    Displacement displacement =
+        test::make_displacement(test::make_random_map(64, 48, 0.02f, 3), DisplacementSpace::tangent);
+    displacement.lengths = FrameLengths::relative;
+    expect_same_points(displacement);
+}
+
 TEST(SurfacePoints, are_the_same_where_a_tile_has_no_map) {
     Displacement displacement =
         test::make_displacement(test::make_random_map(40, 30, 0.1f, 9), DisplacementSpace::tangent);

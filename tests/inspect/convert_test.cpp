@@ -112,6 +112,23 @@ TEST(ConvertMap, spaces_are_turned_by_the_frames_of_the_mesh_and_back) {
               0.1f);
 }
 
+TEST(ConvertMap, frames_are_turned_into_others_and_back) {
+    const Mesh tube = make_tube();
+    Displacement map = make_map(make_sculpt_texture(128)), relative = map;
+    relative.frame = FrameKind::dpdu, relative.lengths = FrameLengths::relative;
+    relative.scale = {0.3f, 0.5f, 1};
+    const Displacement there = convert_map(map, relative, &tube);
+    EXPECT_EQ(there.lengths, FrameLengths::relative);
+    const std::vector<Vec3f> reference = evaluate(tube, map);
+    EXPECT_LT(measure_difference(reference, evaluate(tube, there)), 0.01f);
+    EXPECT_LT(measure_difference(reference, evaluate(tube, convert_map(there, map, &tube))), 1e-4f);
+    map.lengths = FrameLengths::relative;
+    EXPECT_GT(measure_difference(reference, evaluate(tube, map)), 0.05f);
+    EXPECT_THROW(convert_map(map, relative), Error) << "no mesh";
+    map.frame = FrameKind::dpdu;
+    EXPECT_NO_THROW(convert_map(map, relative));
+}
+
 TEST(ConvertMap, a_height_becomes_a_vector_along_the_normal) {
     auto texture = make_sculpt_texture(kSize);
     texture->channel_count = 1;

@@ -54,6 +54,26 @@ TEST(MeshInspection, missing_uvs_matter_more_with_a_map) {
     EXPECT_TRUE(has_code(inspect_mesh(mesh, &map), "E-NOUV"));
 }
 
+TEST(MeshInspection, the_frame_of_a_map_is_told_and_must_be_there) {
+    Mesh mesh = make_strip(2);
+    Displacement map = make_map(make_sculpt_texture(8));
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "mikk");
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "absolute");
+    map.frame = FrameKind::dpdu, map.lengths = FrameLengths::relative;
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "dpdu");
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "relative");
+    map.frame = FrameKind::file, map.lengths = FrameLengths::absolute;
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh, &map), "E-NONORM"), "export the mesh with normals");
+    mesh.normals = {{0, 0, 1}};
+    mesh.normal_indices.assign(mesh.position_indices.size(), 0);
+    EXPECT_FALSE(has_code(inspect_mesh(mesh, &map), "E-NONORM"));
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "MikkTSpace around them");
+    mesh.tangents.assign(mesh.position_indices.size(), {1, 0, 0, 1});
+    EXPECT_HAS_PART(get_fact(inspect_mesh(mesh, &map), "frame"), "normals and tangents");
+    map.space = DisplacementSpace::object;
+    EXPECT_EQ(get_fact(inspect_mesh(mesh, &map), "frame"), "");
+}
+
 TEST(MeshInspection, faults_are_errors_and_end_the_inspection) {
     Mesh mesh = make_strip(2);
     mesh.position_indices[2] = 100;

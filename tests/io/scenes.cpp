@@ -55,7 +55,7 @@ TEST_F(SceneFiles, every_field_is_read) {
         "emission": [1, 2, 3], "base_color_texture": "color.png", "roughness_texture": "color.png"}},
       "displacements": {"ear": {"type": "vector", "file": "map.exr", "preset": "mudbox", "midlevel": 0.25,
         "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror", "dilate": false, "filter": "mip",
-        "autobump": true}},
+        "autobump": true, "frame": "dpdu", "lengths": "relative"}},
       "meshes": {"plane": {"file": "plane.obj"}},
       "objects": [{"name": "o", "mesh": "plane", "displacement": "ear", "material": "clay",
         "transform": {"translate": [1, 2, 3], "rotate_degrees": [0, 90, 0], "scale": 2}}],
@@ -76,6 +76,8 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_FALSE(map.dilate);
     EXPECT_EQ(map.filter, MapFilter::mip);
     EXPECT_TRUE(map.autobump);
+    EXPECT_EQ(map.frame, FrameKind::dpdu);
+    EXPECT_EQ(map.lengths, FrameLengths::relative);
     EXPECT_EQ(map.wrap, WrapMode::mirror);
     EXPECT_EQ(scene.objects.at(0).world_from_object.translation, (Vec3f{1, 2, 3}));
     EXPECT_EQ(scene.objects[0].world_from_object.rows[0], (Vec3f{0, 0, 2}));
@@ -205,8 +207,9 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         write_pixels<uint16_t>(name, 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c01, 1, 0x8000});
     Scene scene = parse(R"({"render": {"seed": 3}, "environment": {"file": "env.exr", "strength": 0.1},
         "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3, "base_color_texture": "env.exr"}},
-        "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1},
-                          "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black"}},
+        "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file"},
+                          "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black", "frame": "dpdu",
+                                "lengths": "relative"}},
         "meshes": {"p/q": {"file": "plane.obj"}}, "lights": [{"type": "point", "strength": 0.3}],
         "objects": [{"mesh": "p/q", "displacement": "a", "material": "m n",
                      "transform": {"rotate_degrees": [10, 20, 30], "scale": 0.3}}, {"mesh": "p/q", "displacement": "z"}]})");
@@ -224,6 +227,8 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         EXPECT_EQ(a.axes, b.axes);
         EXPECT_EQ(a.space, b.space);
         EXPECT_EQ(a.wrap, b.wrap);
+        EXPECT_EQ(a.frame, b.frame);
+        EXPECT_EQ(a.lengths, b.lengths);
         EXPECT_EQ(a.midlevel, b.midlevel);
         EXPECT_EQ(a.scale, b.scale);
         ASSERT_EQ(a.tiles.size(), b.tiles.size());
@@ -243,6 +248,30 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
     EXPECT_EQ(read.lights.at(0).strength, 0.3f);
     EXPECT_EQ(read.picture.seed, 3u);
     EXPECT_TRUE(read.warnings.empty());
+    scene.meshes[0].tangents.assign(scene.meshes[0].position_indices.size(), {1, 0, 0, 1});
+    EXPECT_HAS(message_of([&] { save_scene(scene, folder_ / "lost"); }), "tangents");
+}
+
+TEST_F(SceneFiles, frames_have_names_and_count_in_the_hash) {
+    const Displacement plain = parse(with_map(R"("file": "map.exr")")).displacements[0];
+    EXPECT_EQ(plain.frame, FrameKind::mikk);
+    EXPECT_EQ(plain.lengths, FrameLengths::absolute);
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "frame": "mik")")), "did you mean 'mikk'?");
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "lengths": "relativ")")), "did you mean 'relative'?");
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "frame": "file", "lengths": "relative")")),
+               "no lengths");
+    const auto hash_scene = [&](const char* more) {
+        return parse(with_map(R"("file": "map.exr")" + std::string(more))).hash;
+    };
+    EXPECT_NE(hash_scene(""), hash_scene(R"(, "frame": "dpdu")"));
+    EXPECT_NE(hash_scene(""), hash_scene(R"(, "lengths": "relative")"));
+    MeshSceneOptions options;
+    options.displacement_map = folder_ / "map.exr";
+    const uint64_t hash = load_mesh_scene(folder_ / "plane.obj", options).hash;
+    options.map.frame = "dpdu";
+    const Scene scene = load_mesh_scene(folder_ / "plane.obj", options);
+    EXPECT_EQ(scene.displacements[0].frame, FrameKind::dpdu);
+    EXPECT_NE(scene.hash, hash);
 }
 
 TEST_F(SceneFiles, a_mesh_alone_is_framed_with_its_displacement) {

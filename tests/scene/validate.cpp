@@ -116,6 +116,13 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.axis = {0, 0, 2}; }), "no permutation");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.sign[1] = 0; }), "sign");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].frame = FrameKind(7); }), "frame is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].lengths = FrameLengths(-1); }), "lengths");
+    EXPECT_HAS(complaint([](Scene& s) {
+                   s.displacements[0].frame = FrameKind::file;
+                   s.displacements[0].lengths = FrameLengths::relative;
+               }),
+               "no lengths");
 }
 
 TEST(ValidateScene, refuses_values_out_of_range) {

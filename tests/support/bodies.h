@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "math/vec.h"
 #include "relief/scene.h"
 
 namespace relief::test {
@@ -90,6 +91,18 @@ inline Mesh make_torus(uint32_t rows, uint32_t columns) {
     return mesh;
 }
 
+/// Gives each face a normal of its own, so that every edge is hard.
+inline void add_flat_normals(Mesh& mesh) {
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        const auto position = [&](size_t k) { return mesh.positions[mesh.position_indices[first + k]]; };
+        const Vec3f normal = normalize(cross(position(2) - position(0), position(size - 1) - position(1)));
+        mesh.normal_indices.insert(mesh.normal_indices.end(), size, uint32_t(mesh.normals.size()));
+        mesh.normals.push_back(normal);
+        first += size;
+    }
+}
+
 /// Smooth random vectors of length about `amplitude`, plus a little noise at texel scale.
 inline std::shared_ptr<Texture> make_random_map(uint32_t width, uint32_t height, float amplitude,
                                                 uint32_t seed) {
@@ -121,6 +134,16 @@ inline Displacement make_displacement(std::shared_ptr<const Texture> map, Displa
     displacement.space = space;
     displacement.tiles.push_back({1001, std::move(map)});
     return displacement;
+}
+
+/// Has the first map go through other frames; where those of the file, all meshes get hard edges. Relative
+/// lengths are about five times as long on these bodies.
+inline void set_frames(Scene& scene, FrameKind frame, FrameLengths lengths) {
+    Displacement& map = scene.displacements.at(0);
+    map.frame = frame, map.lengths = lengths;
+    if (lengths == FrameLengths::relative) map.scale = {0.2f, 0.25f, 1};
+    if (frame == FrameKind::file)
+        for (Mesh& mesh : scene.meshes) add_flat_normals(mesh);
 }
 
 /// A scene of one displaced body at the origin, camera inside.

@@ -44,6 +44,8 @@ Displacement make_random_displacement(uint32_t round, std::mt19937& random) {
     if (random() % 2 == 0) displacement.midlevel = {0.5f, 0.1f, -0.3f};
     displacement.axes.axis = {1, 2, 0};
     displacement.axes.sign = {1, -1, 1};
+    displacement.frame = random() % 2 == 0 ? FrameKind::mikk : FrameKind::dpdu;
+    if (round % 7 != 2) displacement.lengths = FrameLengths(random() % 2);
     return displacement;
 }
 

@@ -34,6 +34,8 @@ TEST(EvaluateVertex, gives_both_sides_of_an_edge_the_same_bits) {
         Displacement displacement = test::make_displacement(test::make_noise(32, 16, 0.4f, round));
         displacement.space = round % 3 == 0 ? DisplacementSpace::object : DisplacementSpace::tangent;
         displacement.wrap = round % 2 == 0 ? WrapMode::repeat : WrapMode::clamp;
+        displacement.frame = round % 5 < 2 ? FrameKind::dpdu : FrameKind::mikk;
+        displacement.lengths = FrameLengths(round / 2 % 2);
         const Surface surface = make_surface(mesh, &displacement, {});
         const auto sides = find_sides(surface);
         std::vector<PatchLevels> levels(surface.patch_count());

@@ -21,6 +21,8 @@ struct Case {
     uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    FrameKind frame = FrameKind::mikk;
+    FrameLengths lengths = FrameLengths::absolute;
     MapFilter filter = MapFilter::none;
 };
 
@@ -41,6 +43,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     source.meshes[0].subdivision.scheme = c.scheme;
     source.meshes[0].subdivision.level = 1;
     source.displacements[0].filter = c.filter;
+    test::set_frames(source, c.frame, c.lengths);
     const std::shared_ptr<const PreparedScene> scene = prepare_scene(std::move(source), settings);
     const std::vector<cpu::TraceRay> rays = make_rays(c.rays, 7);
     TracerConfig config;
@@ -61,6 +64,19 @@ INSTANTIATE_TEST_SUITE_P(
         Case{.name = "tiles", .level = 6}, Case{.name = "auto_level", .level = kAutoLevel},
         Case{.name = "tangent_space", .space = DisplacementSpace::tangent},
         Case{.name = "tangent_auto", .space = DisplacementSpace::tangent, .level = kAutoLevel},
+        Case{.name = "frames_of_the_file",
+             .space = DisplacementSpace::tangent,
+             .level = kAutoLevel,
+             .frame = FrameKind::file},
+        Case{.name = "relative_lengths",
+             .space = DisplacementSpace::tangent,
+             .level = kAutoLevel,
+             .lengths = FrameLengths::relative},
+        Case{.name = "relative_lengths_of_dpdu_smooth",
+             .space = DisplacementSpace::tangent,
+             .scheme = SubdivisionScheme::catmark,
+             .frame = FrameKind::dpdu,
+             .lengths = FrameLengths::relative},
         Case{.name = "smooth_base", .scheme = SubdivisionScheme::catmark},
         Case{.name = "smooth_base_tangent_auto",
              .space = DisplacementSpace::tangent,

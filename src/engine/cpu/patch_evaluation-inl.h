@@ -37,7 +37,7 @@ HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
     values.value[0] = p.x, values.value[1] = p.y, values.value[2] = p.z;
     values.value[kUv] = uv.x, values.value[kUv + 1] = uv.y;
     if (surface.map.is_tangent) {
-        const Frame frame = unpack_frame(surface.frames[vertex]);
+        const Frame frame = surface.frame(vertex);
         const Vec3f axes[3] = {frame.t, frame.b, frame.n};
         for (int a = 0; a < 3; ++a)
             for (int c = 0; c < 3; ++c) values.value[kFrame + 3 * a + c] = get_component(axes[a], c);

@@ -131,6 +131,9 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
             arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
+        data.first_derivative = surface.derivatives.empty() ? kNone : uint32_t(arrays.positions.size());
+        for (const std::array<Vec3f, 2>& derivatives : surface.derivatives)
+            arrays.positions.insert(arrays.positions.end(), derivatives.begin(), derivatives.end());
         data.first_uv = append(arrays.uvs, surface.uvs);
         data.first_frame = append(arrays.frames, surface.frames);
         data.first_dominant = append(arrays.dominants, surface.dominants);

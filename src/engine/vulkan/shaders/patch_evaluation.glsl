@@ -12,14 +12,22 @@ struct VertexData {
     uint tile;
 };
 
+/// Not for surfaces without frames.
+TangentFrame load_frame(SurfaceData s, uint vertex) {
+    if (s.first_derivative != kNone)
+        return TangentFrame(load_position_at(s.first_derivative + 2u * vertex),
+                            load_position_at(s.first_derivative + 2u * vertex + 1u), load_normal(s, vertex));
+    uvec2 packed_frame = texelFetch(frames, int(s.first_frame + vertex)).xy;
+    return unpack_tangent_frame(packed_frame.x, packed_frame.y);
+}
+
 VertexData load_vertex(SurfaceData s, uint vertex) {
     VertexData data;
     data.position = load_position(s, vertex);
     data.uv = s.first_uv == kNone ? vec2(0.0) : load_uv(s, vertex);
     data.t = data.b = data.n = vec3(0.0);
     if (s.map != kNone && s.first_frame != kNone && maps[s.map].is_tangent != 0u) {
-        uvec2 packed_frame = texelFetch(frames, int(s.first_frame + vertex)).xy;
-        TangentFrame frame = unpack_tangent_frame(packed_frame.x, packed_frame.y);
+        TangentFrame frame = load_frame(s, vertex);
         data.t = frame.t;
         data.b = frame.b;
         data.n = frame.n;
