@@ -85,8 +85,8 @@ struct Session::Implementation {
         prepare_s = timer.seconds();
     }
 
-    /// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one after another, since
-    /// the last user of the old one is often here.
+    /// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one
+    /// after another, since the last user of the old one is often here.
     void own_maps() {
         std::map<const Texture*, const Texture*> copy_of;
         for (Surface& surface : prepared->surfaces)

@@ -8,7 +8,8 @@
 /// The smallest copy; 0 is the map itself, each next one half as large a side.
 const uint kMaxMip = 7u;
 
-// Places of a patch: inside, on edge k, at corner k. Edges and corners have the same copy in all their patches.
+// Places of a patch: inside, on edge k, at corner k. Edges and corners have the same copy in all their
+// patches.
 const uint kMipInside = 0u;
 const uint kMipEdges = 1u;
 const uint kMipCorners = 5u;
@@ -16,8 +17,8 @@ const uint kMipCorners = 5u;
 FN uint packed_mip(uint packed, uint place) { return (packed >> (3u * place)) & 7u; }
 FN uint pack_mip(uint mip, uint place) { return mip << (3u * place); }
 
-// Where normals keep the detail that cells do not have, the top five bits hold 1 + the level whose cells are as
-// large as texels.
+// Where normals keep the detail that cells do not have, the top five bits hold 1 + the level whose cells are
+// as large as texels.
 const uint kDetailShift = 27u;
 FN bool has_detail(uint packed) { return (packed >> kDetailShift) != 0u; }
 
