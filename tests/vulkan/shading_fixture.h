@@ -70,6 +70,7 @@ inline Scene make_shading_scene() {
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
     glowing.emission = {4, 3, 1};
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
+    scene.displacements.back().filter = MapFilter::mip, scene.displacements.back().autobump = true;
     Mesh torus = test::make_torus(6, 8);
     torus.subdivision.scheme = SubdivisionScheme::catmark;
     torus.subdivision.level = 0;
