@@ -181,6 +181,8 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
     if (turns && uses_frames(to)) target_frames = make_framed_surface(from, to, *mesh);
     for (size_t k = 0; k < from.tiles.size(); ++k) {
         const Texture& source = *from.tiles[k].texture;
+        const TexelRectangle all{0, 0, source.width - 1, source.height - 1};
+        if (!find_texel_range(source, all)) refuse_bad_texel(source, all);
         Field field = decode_all(from, source);
         if (source_frames) field = change_space(Turn::to_object, *source_frames, uint8_t(k), field);
         if (target_frames) field = change_space(Turn::to_tangent, *target_frames, uint8_t(k), field);

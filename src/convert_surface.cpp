@@ -1,6 +1,7 @@
 // make_displaced_mesh: the micro-quads of displaced surfaces as a plain mesh with shared vertices.
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -8,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "base/machine.h"
+#include "engine/prepared_scene.h"
 #include "math/affine.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/render.h"
-#include "surface/displacement_map.h"
 #include "surface/patch_samples.h"
 
 namespace relief {
@@ -178,19 +179,20 @@ void check_room(uint64_t patches, int level) {
 Mesh make_displaced_mesh(const Scene& scene, int level) {
     if (level < 0 || level > kMaxLevel)
         throw Error(ErrorKind::usage, {fmt::format("level {} is not in [0, {}]", level, kMaxLevel), "", ""});
-    validate_scene(scene);
+    RenderSettings settings;
+    settings.level = level;
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     Mesh mesh;
     mesh.name = "displaced";
-    PyramidCache pyramids;
-    for (const Object& object : scene.objects) {
+    for (size_t number = 0; number < scene.objects.size(); ++number) {
+        const Object& object = scene.objects[number];
         const Mesh& source = scene.meshes[object.mesh];
         if (object.displacement == kNoIndex) {
             const bool is_smooth = source.subdivision.scheme != SubdivisionScheme::none;
             add_plain(is_smooth ? make_smooth_mesh(source) : source, object, mesh);
             continue;
         }
-        const Surface surface = make_surface(source, &scene.displacements[object.displacement],
-                                             *invert(object.world_from_object), &pyramids);
+        const Surface& surface = prepared->surfaces[prepared->instances[number].surface];
         check_room(surface.patch_count() + (uint64_t(mesh.face_sizes.size()) >> (2 * level)), level);
         SurfaceCutter(surface, object, level, mesh).cut();
     }

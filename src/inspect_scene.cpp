@@ -14,6 +14,7 @@
 #include "engine/tessellate.h"
 #include "film/film.h"
 #include "mesh_survey.h"
+#include "picture_report.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "validate_settings.h"
@@ -135,16 +136,6 @@ std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, 
                        settings.width, settings.height, done, trial.group_count());
 }
 
-uint64_t count_map_bytes(const Scene& scene) {
-    std::set<const Texture*> textures;
-    uint64_t bytes = 0;
-    for (const Displacement& map : scene.displacements)
-        for (const MapTile& tile : map.tiles)
-            if (tile.texture && textures.insert(tile.texture.get()).second)
-                bytes += tile.texture->byte_count();
-    return bytes;
-}
-
 void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
     const Timer timer;
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
@@ -170,10 +161,13 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     add("finest_level", fmt::format("{}", max_level));
     add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
     add("structures", fmt::format("{} bytes", statistics.structures_bytes));
-    add("map_texels", fmt::format("{} bytes", count_map_bytes(scene)));
+    count_scene(*prepared, statistics);
+    add("map_texels", fmt::format("{} bytes with their bounds and copies", statistics.displacement_bytes));
     add("tessellated",
         fmt::format("{} bytes at the levels of this view", estimate_tessellation(*prepared).peak_bytes));
     add("time", estimate_time(prepared, prepare_s, settings));
+    for (size_t k = scene.warnings.size(); k < prepared->warnings.size(); ++k)
+        result.findings.push_back({Severity::warning, "W-SCENE", prepared->warnings[k]});
 }
 
 } // namespace

@@ -164,10 +164,11 @@ bool guess_space_by_seams(const MapSamples& samples, MapConvention& result) {
     const bool is_object = object < kFits && kClearRatio * object < tangent;
     const bool is_tangent = tangent < kFits && kClearRatio * tangent < object;
     if (!is_object && !is_tangent) return false;
-    result.space = {is_object ? DisplacementSpace::object : DisplacementSpace::tangent, true,
-                    fmt::format("both sides of the uv seams agree to {:.0f} % as {} space, to {:.0f} % as {}",
-                                100 * std::min(object, tangent), is_object ? "object" : "tangent",
-                                100 * std::max(object, tangent), is_object ? "tangent" : "object")};
+    result.space = {
+        is_object ? DisplacementSpace::object : DisplacementSpace::tangent, true,
+        fmt::format("both sides of the uv seams differ by {:.0f} % as {} space, by {:.0f} % as {}",
+                    100 * std::min(object, tangent), is_object ? "object" : "tangent",
+                    100 * std::max(object, tangent), is_object ? "tangent" : "object")};
     return true;
 }
 

@@ -186,7 +186,10 @@ void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& 
     for (const Vec3f& position : mesh.positions) box.extend(position);
     const double diagonal = mesh.positions.empty() ? 0 : double(length(box.extent()));
     const double longest = survey.largest * get_largest_scale(map);
-    if (diagonal > 0 && longest > 0 && (longest > kTooLong * diagonal || longest < kTooShort * diagonal))
+    const bool is_relative = map.lengths == FrameLengths::relative && map.type == DisplacementType::vector &&
+                             map.space == DisplacementSpace::tangent;
+    if (!is_relative && diagonal > 0 && longest > 0 &&
+        (longest > kTooLong * diagonal || longest < kTooShort * diagonal))
         findings.push_back(
             {Severity::warning, "W-SCALE",
              fmt::format("the longest displacement is {:.3g} scene units, {:.3g} x the diagonal of "

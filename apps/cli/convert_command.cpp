@@ -167,6 +167,10 @@ int convert_surface(const ConvertOptions& options) {
 int run_convert(const ConvertOptions& options) {
     if (options.input.empty() || options.output.empty())
         refuse("one file in and one file out are needed", "", "relief convert IN -o OUT");
+    std::error_code ignored;
+    if (options.input == options.output ||
+        std::filesystem::equivalent(options.input, options.output, ignored))
+        refuse("the file would be written over itself", options.input, "name another one by -o");
     check_text_writable(options.output);
     const FileKind input = get_kind(options.input);
     if (input == FileKind::map) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +25,7 @@
 #include "relief/session.h"
 #include "render_options.h"
 #include "statistics_json.h"
+#include "values.h"
 
 namespace relief::cli {
 
@@ -33,8 +36,13 @@ double get_seconds() {
 }
 
 Scene load_input(const RenderOptions& options) {
-    return is_mesh_file(options.input) ? load_mesh_scene(options.input, options.mesh)
-                                       : load_scene(options.input);
+    if (is_mesh_file(options.input)) return load_mesh_scene(options.input, options.mesh);
+    constexpr std::string_view kPictures[] = {".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg"};
+    const std::string extension = get_lower_extension(options.input);
+    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
+        throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
+                                       "a map goes with its mesh: relief render MESH --vdm MAP"});
+    return load_scene(options.input);
 }
 
 void write_statistics(const std::filesystem::path& file, const Statistics& statistics,
@@ -92,12 +100,33 @@ template <class Make> RenderResult make_picture(const RenderOptions& options, co
     return make(&progress);
 }
 
+/// Warnings of the reader are told before the wait, those of the render after it.
+class Warner {
+  public:
+    Warner(const Scene& scene, bool is_quiet) : told_(scene.warnings.size()), is_quiet_(is_quiet) {
+        print(scene.warnings, 0);
+    }
+    void print_rest(const std::vector<std::string>& warnings) {
+        print(warnings, told_);
+        told_ = std::max(told_, warnings.size());
+    }
+
+  private:
+    void print(const std::vector<std::string>& warnings, size_t first) const {
+        if (!is_quiet_ && first < warnings.size())
+            print_warnings({warnings.begin() + ptrdiff_t(first), warnings.end()});
+    }
+    size_t told_;
+    bool is_quiet_;
+};
+
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
                    const Waiting& waiting) {
     catch_interrupts();
+    Warner warner(scene, options.is_quiet);
     RenderResult result = make_picture(
         options, [&](RenderObserver* observer) { return render(std::move(scene), settings, observer); });
-    if (!options.is_quiet) print_warnings(result.statistics.warnings);
+    warner.print_rest(result.statistics.warnings);
     return finish_picture(options, settings, options.output, waiting, result);
 }
 
@@ -113,11 +142,12 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     EditStream edits(options.edits == "-" ? std::cin : file,
                      options.edits == "-" ? "standard input" : options.edits,
                      scene.displacements.size() == 1 ? scene.displacements[0].name : "");
+    Warner warner(scene, options.is_quiet);
     Session session(std::move(scene), settings);
     const auto show = [&](const std::filesystem::path& output) {
         RenderResult result =
             make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });
-        if (!options.is_quiet && waiting.load_s > 0) print_warnings(result.statistics.warnings);
+        warner.print_rest(result.statistics.warnings);
         return finish_picture(options, settings, output, waiting, result);
     };
     int exit_code = show(options.output);

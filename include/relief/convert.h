@@ -8,13 +8,13 @@
 namespace relief {
 
 /// The same displacement as `from` in the meaning of `to`: its type, space, axes, frame, lengths, midlevel,
-/// scale and flip_v; its tiles do not count, name, is_udim, wrap and dilate stay those of `from`. Texels of
-/// the result are 32-bit floats, three channels, not rounded or clipped. Between tangent and object space,
-/// and between frames of tangent space, `mesh` gives the frames: texels that lie beside its faces take over
-/// the nearest ones, up to eight texels away, and farther ones hold no displacement. Rounding apart, and but
-/// for those, a way there and back gives what was there. Throws Error{usage} where the two cannot be turned
-/// into each other (a height out of vectors, world space, a missing mesh), Error{bad_input} for a mesh that
-/// cannot carry the map.
+/// scale and flip_v; its tiles do not count, name, is_udim, wrap, dilate, filter and autobump stay those of
+/// `from`. Texels of the result are 32-bit floats, three channels, not rounded or clipped. Between tangent
+/// and object space, and between frames of tangent space, `mesh` gives the frames: texels that lie beside its
+/// faces take over the nearest ones, up to eight texels away, and farther ones hold no displacement. Rounding
+/// apart, and but for those, a way there and back gives what was there. Throws Error{usage} where the two
+/// cannot be turned into each other (a height out of vectors, world space, a missing mesh), Error{bad_input}
+/// for a mesh that cannot carry the map.
 Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh = nullptr);
 
 /// Axes as options and scene files take them: "t,-n,b", or "x,-z,y" in object and world space.

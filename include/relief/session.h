@@ -28,8 +28,8 @@ struct EditReport {
 /// rectangle reaches is made anew: its part of the bounds of the map, levels and boxes of the patches that
 /// read it, the nodes above them and their fine geometry. The CPU engine's own walk does so; engines and
 /// structures asked for by name make their trees and device buffers anew. Pictures are those that the edited
-/// map gives when it is loaded, bit for bit, as long as the gutter between its uv islands keeps its
-/// background (Displacement::dilate). Not thread safe.
+/// map gives when it is loaded, bit for bit, as long as what lies between its uv islands keeps its
+/// background, which is found when the session begins (Displacement::dilate). Not thread safe.
 class Session {
   public:
     /// Maps are held as copies of the scene's. Throws as render(), and Error{usage} for tessellated surfaces.

@@ -6,11 +6,10 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "engine/prepared_scene.h"
+#include "engine/scene_warnings.h"
 #include "engine/tessellate.h"
 #include "relief/error.h"
 #include "surface/displacement_map.h"
@@ -50,28 +49,6 @@ LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& set
     return config;
 }
 
-/// Semi-sharp creases that have not worn off at the level of their mesh are fitted, not exact.
-void warn_of_creases(const Scene& scene, std::vector<std::string>& warnings) {
-    for (const Mesh& mesh : scene.meshes) {
-        const Subdivision& subdivision = mesh.subdivision;
-        if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey)
-            continue;
-        float sharpest = 0;
-        for (const Crease& crease : mesh.creases)
-            if (crease.sharpness < kInfiniteSharpness) sharpest = std::max(sharpest, crease.sharpness);
-        const int level = int(std::ceil(sharpest));
-        if (level <= subdivision.level) continue;
-        std::string message = fmt::format("mesh '{}': creases of sharpness {:g} are narrower than the "
-                                          "patches of subdivision level {} and fitted by "
-                                          "them",
-                                          mesh.name, sharpest, subdivision.level);
-        message += level <= kMaxSubdivisionLevel
-                       ? fmt::format("; level {} shows them as they are", level)
-                       : fmt::format("; sharpness {:g} makes them sharp for ever", kInfiniteSharpness);
-        warnings.push_back(std::move(message));
-    }
-}
-
 std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
     std::set<uint32_t> meshes;
     for (const Object& object : scene.objects)
@@ -98,6 +75,8 @@ std::vector<PreparedMap> prepare_maps(Scene& scene) {
             }
             std::shared_ptr<MipChain> mips;
             if (displacement.filter == MapFilter::mip && !meshes.empty()) {
+                const TexelRectangle all{0, 0, tile.texture->width - 1, tile.texture->height - 1};
+                if (!find_texel_range(*tile.texture, all)) refuse_bad_texel(*tile.texture, all);
                 OutsideTexels outside;
                 if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
                 mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
@@ -122,6 +101,12 @@ void share_mips(const Scene& scene, const std::map<SurfaceKey, uint32_t>& surfac
         for (size_t k = 0; k < tiles.size(); ++k)
             tiles[k].mips = prepared.maps[first_map[displacement] + k].mips;
     }
+}
+
+/// Normals at vertices cannot hold what is finer than the cells between them.
+void drop_detail(PreparedScene& scene) {
+    for (Surface& surface : scene.surfaces)
+        for (uint32_t& word : surface.mips) word &= (1u << scalar::kDetailShift) - 1;
 }
 
 /// Frees the polygons of meshes that no later surface needs.
@@ -173,7 +158,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     prepared->mesh_count = uint32_t(scene.meshes.size());
     prepared->width = settings.width, prepared->height = settings.height;
     prepared->warnings = std::move(scene.warnings);
-    warn_of_creases(scene, prepared->warnings);
+    for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
 
     std::map<SurfaceKey, uint32_t> surface_of_key;
     std::vector<uint32_t> first_object;
@@ -198,6 +183,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     });
     for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
         prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
+    if (settings.surface == SurfaceMode::tessellated) drop_detail(*prepared);
     if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());
     return prepared;
 }

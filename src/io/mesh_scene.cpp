@@ -98,11 +98,11 @@ uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
     const MapOptions& map = options.map;
     hash.add(map.preset);
     for (const std::optional<std::string>& text :
-         {map.type, map.space, map.axes, map.frame, map.lengths, map.encoding, map.wrap})
+         {map.type, map.space, map.axes, map.frame, map.lengths, map.encoding, map.wrap, map.filter})
         hash.add(text.value_or("-"));
     for (const std::optional<Vec3f>& value : {map.midlevel, map.scale})
         hash.add(value ? fmt::format("{} {} {}", value->x, value->y, value->z) : std::string("-"));
-    hash.add(map.flip_v ? "flip" : "-");
+    for (const bool value : {map.flip_v, map.dilate, map.autobump}) hash.add(value ? "yes" : "no");
     add_scene_content(hash, scene);
     return hash.value();
 }

@@ -137,6 +137,9 @@ void check_displacement(const Displacement& map, size_t index) {
             fail(where, "axes have a sign other than 1 and -1");
     }
     if (used != 7) fail(where, "axes are no permutation");
+    if (map.type > DisplacementType::height || map.space > DisplacementSpace::world ||
+        map.wrap > WrapMode::black || map.filter > MapFilter::mip)
+        fail(where, "type, space, wrap or filter is none of those there are");
     check_frame(where, map);
     check_range(where, "midlevel", map.midlevel, -kHuge, kHuge);
     check_range(where, "scale", map.scale, -kHuge, kHuge);

@@ -13,7 +13,8 @@ namespace relief {
 
 namespace {
 
-constexpr double kStep = 0.125; ///< texels between two points of a border
+constexpr double kStep = 0.125;        ///< texels between two points of a border
+constexpr double kLongestBorder = 1e5; ///< texels of one edge; beyond, its uvs are no picture of an island
 
 using Point = UvIslands::Point;
 
@@ -60,7 +61,7 @@ class GutterFinder {
 
     void mark_border(const Point& a, const Point& b) {
         const double size = std::hypot(b.x - a.x, b.y - a.y);
-        if (!(size < UvIslands::kMostTexelsAcross)) return;
+        if (!(size < kLongestBorder)) return;
         const int count = int(std::ceil(size / kStep)) + 1;
         constexpr int64_t kReach = GutterFill::kReach;
         for (int k = 0; k <= count; ++k) {
@@ -138,6 +139,7 @@ GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
     if (!may_have_background(*tile.texture)) return {};
     UvIslands islands(displacement, tile);
     for (const Mesh* mesh : meshes) islands.add(*mesh);
+    if (islands.is_all_covered()) return {};
     return GutterFinder(*tile.texture, displacement.wrap, islands).run();
 }
 

@@ -223,7 +223,8 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     find_overrides(surface);
     surface.controls = std::move(framed.base.controls);
     sources.point_normals = std::move(framed.point_normals);
-    sources.lengths = displacement.lengths;
+    // A height moves along the normal alone.
+    if (displacement.type == DisplacementType::vector) sources.lengths = displacement.lengths;
     compute_vertex_frames(surface, sources);
     check_derivatives(surface, displacement.name);
     return surface;

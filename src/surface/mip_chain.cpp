@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -62,6 +63,41 @@ std::shared_ptr<Texture> make_smaller(const Texture& texture) {
     return result;
 }
 
+/// Texels whose centres lie in no face.
+TexelMask find_uncovered(const Texture& texture, WrapMode wrap, const UvIslands& islands) {
+    TexelMask uncovered(texture, true);
+    const auto find = [&](int64_t x, int64_t y) {
+        return std::pair{wrap_index(x, texture.width, wrap), wrap_index(y, texture.height, wrap)};
+    };
+    const auto is_open = [&](int64_t x, int64_t y) {
+        const auto [column, row] = find(x, y);
+        return column >= 0 && row >= 0 && uncovered.has(column, row);
+    };
+    islands.visit_covered(is_open, [&](int64_t x, int64_t y) {
+        const auto [column, row] = find(x, y);
+        uncovered.set(column, row, false);
+    });
+    return uncovered;
+}
+
+/// The value that more than half of the texels in a mask hold, if there is one (Boyer and Moore 1981).
+std::optional<TexelBits> find_majority(const Texture& texture, const TexelMask& mask) {
+    const auto visit = [&](const auto& look) {
+        for (uint32_t y = 0; y < texture.height; ++y)
+            for (uint32_t x = 0; x < texture.width; ++x)
+                if (mask.has(x, y)) look(get_texel_bits(texture, x, y));
+    };
+    TexelBits candidate{};
+    uint64_t lead = 0, count = 0, held = 0;
+    visit([&](const TexelBits& bits) {
+        if (lead == 0) candidate = bits;
+        lead += bits == candidate ? 1 : uint64_t(-1);
+    });
+    visit([&](const TexelBits& bits) { ++count, held += bits == candidate; });
+    if (2 * held <= count) return std::nullopt;
+    return candidate;
+}
+
 TexelRectangle cover_all(const Texture& texture) { return {0, 0, texture.width - 1, texture.height - 1}; }
 
 } // namespace
@@ -72,30 +108,12 @@ OutsideTexels find_outside_texels(const Displacement& displacement, const MapTil
     if (!may_have_background(texture)) return {};
     UvIslands islands(displacement, tile);
     for (const Mesh* mesh : meshes) islands.add(*mesh);
-    TexelMask covered(texture);
-    const auto find = [&](int64_t x, int64_t y) {
-        return std::pair{wrap_index(x, texture.width, displacement.wrap),
-                         wrap_index(y, texture.height, displacement.wrap)};
-    };
-    const auto is_open = [&](int64_t x, int64_t y) {
-        const auto [column, row] = find(x, y);
-        return column >= 0 && row >= 0 && !covered.has(column, row);
-    };
-    islands.visit_covered(is_open, [&](int64_t x, int64_t y) {
-        const auto [column, row] = find(x, y);
-        covered.set(column, row);
-    });
-    OutsideTexels outside{TexelMask(texture), {}};
-    TexelCensus census;
-    bool is_any = false;
-    for (uint32_t y = 0; y < texture.height; ++y)
-        for (uint32_t x = 0; x < texture.width; ++x) {
-            if (covered.has(x, y)) continue;
-            outside.uncovered.set(x, y), is_any = true;
-            census.add(get_texel_bits(texture, x, y));
-        }
-    outside.background = census.value();
-    return is_any ? std::move(outside) : OutsideTexels{};
+    if (islands.is_all_covered()) return {};
+    OutsideTexels outside{find_uncovered(texture, displacement.wrap, islands), {}};
+    const std::optional<TexelBits> background = find_majority(texture, outside.uncovered);
+    if (!background) return {};
+    outside.background = *background;
+    return outside;
 }
 
 MipChain::MipChain(const Texture& texture, OutsideTexels outside, WrapMode wrap)

@@ -24,7 +24,8 @@ struct OutsideTexels {
     }
 };
 
-/// Of tile `tile`, which the meshes use; the background is the most frequent value that no face covers.
+/// Of tile `tile`, which the meshes use. The background is the value that more than half of the texels hold
+/// that no face covers; where there is none, or some face runs over a map that repeats, nothing is outside.
 OutsideTexels find_outside_texels(const Displacement& displacement, const MapTile& tile,
                                   std::span<const Mesh* const> meshes);
 

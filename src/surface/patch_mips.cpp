@@ -43,7 +43,7 @@ class MipChooser {
         return std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
     }
 
-    /// Largest copy whose texels are not larger than a cell of a line at `level`.
+    /// Smallest copy whose texels are not larger than a cell of a line at `level`.
     uint32_t choose(uint8_t tile, double texels, int level) const {
         const auto& chain = surface_.map.tiles[tile].mips;
         const int most = chain ? int(std::min(chain->count(), scalar::kMaxMip)) : 0;
@@ -78,7 +78,7 @@ class MipChooser {
         return choose(tile, std::min(along_u, along_v), finest);
     }
 
-    /// Also takes note of it at both ends.
+    /// Also takes note of it at those ends that are displaced by the same tile.
     uint32_t choose_edge(uint32_t patch, int edge) {
         const Surface::EdgeLine line = surface_.edge_line(patch, edge);
         const uint8_t tile = surface_.tile(line.first);
@@ -89,8 +89,9 @@ class MipChooser {
         const uint32_t mip =
             choose(tile, count_texels(tile, surface_.uvs[line.first], surface_.uvs[line.second]), finest);
         for (const uint32_t vertex : {line.first, line.second}) {
-            uint8_t& corner = corners_[surface_.dominant(vertex)];
-            corner = std::min(corner, uint8_t(mip));
+            const uint32_t dominant = surface_.dominant(vertex);
+            if (surface_.tile(dominant) == tile)
+                corners_[dominant] = std::min(corners_[dominant], uint8_t(mip));
         }
         return mip;
     }

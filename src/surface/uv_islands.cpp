@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "surface/polygons.h"
+#include "surface/subdivision_mesh.h"
 #include "surface/texels.h"
 
 namespace relief {
@@ -14,6 +16,7 @@ using Point = UvIslands::Point;
 constexpr uint32_t kProbes = 64;         ///< a side: texels looked at before anything is worked out
 constexpr uint32_t kFewestAlike = 40;    ///< of them, about one in a hundred: less is no background
 constexpr double kCoverTolerance = 1e-3; ///< texels
+constexpr double kFarthest = 1e9;        ///< texels; beyond, uvs name no texel
 
 bool is_near_edge(const Point& a, const Point& b, const Point& p) {
     const Point along{b.x - a.x, b.y - a.y}, to{p.x - a.x, p.y - a.y};
@@ -50,12 +53,22 @@ bool may_have_background(const Texture& texture) {
 
 void UvIslands::add(const Mesh& mesh) {
     std::vector<Edge> edges;
-    std::unordered_map<uint64_t, uint64_t> ids; // of places, by their bits
-    size_t first = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        if (first + size > mesh.uv_indices.size()) break;
-        add_face(mesh, first, size, ids, edges);
-        first += size;
+    Ids ids;
+    if (mesh.subdivision.scheme == SubdivisionScheme::catmark && mesh.subdivision.uv == UvRule::smooth) {
+        const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+        for (const std::array<Vec2f, 4>& uvs : SubdivisionMesh(polygons, mesh.subdivision).refine().uvs)
+            add_face(uvs, ids, edges);
+    } else {
+        std::vector<Vec2f> uvs;
+        size_t first = 0;
+        for (const uint32_t size : mesh.face_sizes) {
+            if (first + size > mesh.uv_indices.size()) break;
+            uvs.clear();
+            for (size_t k = first; k < first + size; ++k)
+                if (mesh.uv_indices[k] < mesh.uvs.size()) uvs.push_back(mesh.uvs[mesh.uv_indices[k]]);
+            if (uvs.size() == size) add_face(uvs, ids, edges);
+            first += size;
+        }
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key < b.key; });
     for (size_t k = 0; k < edges.size(); ++k) {
@@ -65,37 +78,45 @@ void UvIslands::add(const Mesh& mesh) {
     }
 }
 
-void UvIslands::add_face(const Mesh& mesh, size_t first, uint32_t size,
-                         std::unordered_map<uint64_t, uint64_t>& ids, std::vector<Edge>& edges) {
+void UvIslands::add_face(std::span<const Vec2f> uvs, Ids& ids, std::vector<Edge>& edges) {
+    const size_t size = uvs.size();
     Point middle{};
-    for (size_t k = first; k < first + size; ++k) {
-        if (mesh.uv_indices[k] >= mesh.uvs.size()) return;
-        const Vec2f& uv = mesh.uvs[mesh.uv_indices[k]];
-        middle = {middle.x + double(uv.x) / size, middle.y + double(uv.y) / size};
-    }
-    if (!(std::fabs(middle.x) < kMostTexelsAcross && std::fabs(middle.y) < kMostTexelsAcross)) return;
+    for (const Vec2f& uv : uvs)
+        middle = {middle.x + double(uv.x) / double(size), middle.y + double(uv.y) / double(size)};
     Point offset{};
     if (displacement_.is_udim) {
         offset = {std::floor(middle.x), std::floor(middle.y)};
-        if (offset.x < 0 || offset.x > 9 || 1001 + offset.x + 10 * offset.y != udim_) return;
+        if (!(offset.x >= 0 && offset.x <= 9 && 1001 + offset.x + 10 * offset.y == udim_)) return;
     }
     std::vector<uint64_t> face_ids;
-    const size_t start = corners_.size();
-    for (size_t k = first; k < first + size; ++k) {
-        const Vec2f& uv = mesh.uvs[mesh.uv_indices[k]];
+    std::vector<Point> corners;
+    for (const Vec2f& uv : uvs) {
         const uint64_t bits =
             uint64_t(std::bit_cast<uint32_t>(uv.x + 0.0f)) << 32 | std::bit_cast<uint32_t>(uv.y + 0.0f);
         face_ids.push_back(ids.try_emplace(bits, ids.size()).first->second);
         const double v = double(uv.y) - offset.y;
-        corners_.push_back({(double(uv.x) - offset.x) * texture_.width,
-                            (displacement_.flip_v ? v : 1 - v) * texture_.height});
+        corners.push_back({(double(uv.x) - offset.x) * texture_.width,
+                           (displacement_.flip_v ? v : 1 - v) * texture_.height});
     }
+    const auto [low, high] = find_ends(corners);
+    const double width = high.x - low.x, height = high.y - low.y;
+    const bool is_far = !(std::fabs(low.x) + std::fabs(high.x) < kFarthest &&
+                          std::fabs(low.y) + std::fabs(high.y) < kFarthest);
+    if (repeats() && (is_far || width > 2.0 * texture_.width || height > 2.0 * texture_.height))
+        is_all_covered_ = true;
+    if (is_far) return;
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
     starts_.push_back(corners_.size());
     for (size_t k = 0; k < size; ++k) {
         const size_t next = (k + 1) % size;
-        edges.push_back(
-            {std::minmax(face_ids[k], face_ids[next]), {corners_[start + k], corners_[start + next]}});
+        edges.push_back({std::minmax(face_ids[k], face_ids[next]), {corners[k], corners[next]}});
     }
+}
+
+std::array<int64_t, 2> UvIslands::find_range(double low, double high, uint32_t size) const {
+    const auto first = int64_t(std::floor(low - 0.5)), last = int64_t(std::floor(high));
+    if (repeats()) return {first, last};
+    return {std::max(first, int64_t(-1)), std::min(last, int64_t(size))};
 }
 
 std::pair<Point, Point> UvIslands::find_ends(std::span<const Point> face) {

@@ -44,8 +44,9 @@ bool may_have_background(const Texture& texture);
 class TexelMask {
   public:
     TexelMask() = default;
-    explicit TexelMask(const Texture& texture)
-        : width_(texture.width), words_((size_t(texture.width) * texture.height + 63) / 64) {}
+    explicit TexelMask(const Texture& texture, bool value = false)
+        : width_(texture.width),
+          words_((size_t(texture.width) * texture.height + 63) / 64, value ? ~uint64_t(0) : 0) {}
     bool is_empty() const { return words_.empty(); }
     void set(int64_t x, int64_t y, bool value = true) {
         const uint64_t bit = uint64_t(1) << (find(x, y) & 63);
@@ -61,17 +62,20 @@ class TexelMask {
     std::vector<uint64_t> words_;
 };
 
-/// The faces of some meshes on one tile, as polygons counted in texels, row 0 at the top.
+/// The faces of some meshes on one tile, as polygons counted in texels, row 0 at the top; of a mesh whose uvs
+/// are subdivided, those of its patches.
 class UvIslands {
   public:
     using Point = Vec2<double>;
-    static constexpr double kMostTexelsAcross = 1e5; ///< of one face; beyond, its uvs are no picture
-
     UvIslands(const Displacement& displacement, const MapTile& tile)
         : displacement_(displacement), udim_(tile.udim), texture_(*tile.texture) {}
 
-    /// Faces with indices out of range are left out.
+    /// Faces with indices out of range are left out. Throws as make_surface for a mesh that cannot be
+    /// subdivided.
     void add(const Mesh& mesh);
+
+    /// Some face runs over a map that repeats more than once, so that nothing of it is outside.
+    bool is_all_covered() const { return is_all_covered_; }
 
     /// Edges that belong to one face only.
     const std::vector<std::pair<Point, Point>>& borders() const { return borders_; }
@@ -83,9 +87,10 @@ class UvIslands {
         for (size_t k = 0; k + 1 < starts_.size(); ++k) {
             const std::span<const Point> face(corners_.data() + starts_[k], starts_[k + 1] - starts_[k]);
             const auto [low, high] = find_ends(face);
-            if (!(high.x - low.x < kMostTexelsAcross && high.y - low.y < kMostTexelsAcross)) continue;
-            for (auto y = int64_t(std::floor(low.y - 0.5)); double(y) <= high.y; ++y)
-                for (auto x = int64_t(std::floor(low.x - 0.5)); double(x) <= high.x; ++x)
+            const auto [first_x, last_x] = find_range(low.x, high.x, texture_.width);
+            const auto [first_y, last_y] = find_range(low.y, high.y, texture_.height);
+            for (int64_t y = first_y; y <= last_y; ++y)
+                for (int64_t x = first_x; x <= last_x; ++x)
                     if (is_wanted(x, y) && is_covered(face, {double(x) + 0.5, double(y) + 0.5})) visit(x, y);
         }
     }
@@ -96,14 +101,20 @@ class UvIslands {
         std::pair<Point, Point> ends;
     };
 
-    void add_face(const Mesh& mesh, size_t first, uint32_t size, std::unordered_map<uint64_t, uint64_t>& ids,
-                  std::vector<Edge>& edges);
+    using Ids = std::unordered_map<uint64_t, uint64_t>; ///< of places, by their bits
+    void add_face(std::span<const Vec2f> uvs, Ids& ids, std::vector<Edge>& edges);
+    bool repeats() const {
+        return displacement_.wrap == WrapMode::repeat || displacement_.wrap == WrapMode::mirror;
+    }
+    /// Texels whose centres may lie between two places; beside a map that does not repeat one is enough.
+    std::array<int64_t, 2> find_range(double low, double high, uint32_t size) const;
     static std::pair<Point, Point> find_ends(std::span<const Point> face);
     static bool is_covered(std::span<const Point> face, const Point& p);
 
     const Displacement& displacement_;
     const int udim_;
     const Texture& texture_;
+    bool is_all_covered_ = false;
     std::vector<size_t> starts_{0};
     std::vector<Point> corners_;
     std::vector<std::pair<Point, Point>> borders_;

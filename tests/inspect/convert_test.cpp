@@ -228,6 +228,19 @@ TEST(DisplacedMesh, keeps_uvs_with_their_tiles) {
     EXPECT_EQ(get_fact(inspect_mesh(mesh), "uv_tiles"), "1013");
 }
 
+TEST(DisplacedMesh, is_the_surface_that_is_rendered_gutter_and_all) {
+    Mesh plane = make_sculpt_plane();
+    for (Vec2f& uv : plane.uvs) uv = {0.25f + 0.5f * uv.x, 0.25f + 0.5f * uv.y};
+    auto texture = std::make_shared<Texture>();
+    texture->width = texture->height = 64, texture->channel_count = 3;
+    for (uint32_t k = 0; k < 64 * 64; ++k) {
+        const bool is_inside = k % 64 >= 16 && k % 64 < 48 && k / 64 >= 16 && k / 64 < 48;
+        texture->floats.insert(texture->floats.end(), {0, 0, is_inside ? 0.1f : -0.3f, 1});
+    }
+    const Mesh mesh = make_displaced_mesh(make_scene(plane, make_map(texture)), 4);
+    for (const Vec3f& p : mesh.positions) ASSERT_NEAR(p.z, 0.1f, 1e-6f);
+}
+
 TEST(DisplacedMesh, objects_stand_where_they_stand_and_face_outwards) {
     Scene scene = make_scene(make_sculpt_plane(), make_map(make_sculpt_texture(kSize)));
     scene.objects[0].world_from_object = make_scale({-2, 2, 2});

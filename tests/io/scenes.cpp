@@ -207,7 +207,8 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         write_pixels<uint16_t>(name, 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c01, 1, 0x8000});
     Scene scene = parse(R"({"render": {"seed": 3}, "environment": {"file": "env.exr", "strength": 0.1},
         "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3, "base_color_texture": "env.exr"}},
-        "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file"},
+        "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file",
+                                "filter": "mip", "autobump": true, "dilate": false},
                           "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black", "frame": "dpdu",
                                 "lengths": "relative"}},
         "meshes": {"p/q": {"file": "plane.obj"}}, "lights": [{"type": "point", "strength": 0.3}],
@@ -229,6 +230,9 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         EXPECT_EQ(a.wrap, b.wrap);
         EXPECT_EQ(a.frame, b.frame);
         EXPECT_EQ(a.lengths, b.lengths);
+        EXPECT_EQ(a.filter, b.filter);
+        EXPECT_EQ(a.autobump, b.autobump);
+        EXPECT_EQ(a.dilate, b.dilate);
         EXPECT_EQ(a.midlevel, b.midlevel);
         EXPECT_EQ(a.scale, b.scale);
         ASSERT_EQ(a.tiles.size(), b.tiles.size());

@@ -117,6 +117,10 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.sign[1] = 0; }), "sign");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].frame = FrameKind(7); }), "frame is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].filter = MapFilter(9); }), "is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].wrap = WrapMode(9); }), "is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].type = DisplacementType(9); }), "is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].space = DisplacementSpace(9); }), "is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].lengths = FrameLengths(-1); }), "lengths");
     EXPECT_HAS(complaint([](Scene& s) {
                    s.displacements[0].frame = FrameKind::file;

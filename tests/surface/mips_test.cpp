@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "surface/gutter.h"
 #include "surface/map_edit.h"
 #include "surface/patch_mips.h"
 #include "surface/patch_samples.h"
@@ -113,6 +114,54 @@ TEST(MipChain, background_does_not_bleed_into_islands) {
     }
 }
 
+TEST(MipChain, a_map_without_background_is_averaged_as_it_is) {
+    // A checkerboard goes on between the islands: half of the texels there hold one value, not more.
+    Mesh mesh = test::make_plane();
+    for (Vec2f& uv : mesh.uvs) uv = {0.27f + 0.46f * uv.x, 0.27f + 0.46f * uv.y};
+    Displacement displacement = test::make_displacement(test::make_constant(64, 64, {0, 0, 0}));
+    auto map = std::make_shared<Texture>(*displacement.tiles[0].texture);
+    for (uint32_t k = 0; k < 64 * 64; ++k) map->floats[4 * k] = (k + k / 64) % 2 ? 1 : -1;
+    displacement.tiles[0].texture = map;
+    const Mesh* meshes[] = {&mesh};
+    EXPECT_TRUE(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered.is_empty());
+    // A face over many periods covers everything, and that is known at once.
+    displacement.wrap = WrapMode::repeat;
+    for (Vec2f& uv : mesh.uvs) uv = {uv.x * 5000, uv.y * 90};
+    for (size_t k = 0; k < map->floats.size(); ++k) map->floats[k] = 0;
+    EXPECT_TRUE(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered.is_empty());
+    EXPECT_TRUE(find_gutter(displacement, displacement.tiles[0], meshes).copies.empty());
+}
+
+TEST(MipChain, islands_are_those_of_the_subdivided_uvs) {
+    // One sheet of nine quads: smooth uvs keep its corners but pull its borders in where it is bent.
+    Mesh mesh = test::make_random_grid(3, 3, 0, 2);
+    for (Vec2f& uv : mesh.uvs) {
+        const float x = uv.x - 0.5f, y = uv.y - 0.5f;
+        uv = {0.5f + 0.6f * x * (1 + y * y), 0.5f + 0.6f * y * (1 + x * x)};
+    }
+    mesh.subdivision.scheme = SubdivisionScheme::catmark;
+    Displacement displacement = test::make_displacement(test::make_constant(256, 256, {0, 0, 0}));
+    displacement.space = DisplacementSpace::object;
+    const Surface surface = make_surface(mesh, &displacement, {});
+    auto map = std::make_shared<Texture>(*displacement.tiles[0].texture);
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+        const PatchSamples samples(surface, patch);
+        for (float v = 0.02f; v < 1; v += 0.04f)
+            for (float u = 0.02f; u < 1; u += 0.04f) {
+                const Vec2f uv = blend_corners(samples.corners(), u, v).uv;
+                map->floats[4 * (size_t((1 - uv.y) * 256) * 256 + size_t(uv.x * 256)) + 2] = 1;
+            }
+    }
+    displacement.tiles[0].texture = map;
+    const Mesh* meshes[] = {&mesh};
+    const OutsideTexels outside = find_outside_texels(displacement, displacement.tiles[0], meshes);
+    ASSERT_FALSE(outside.uncovered.is_empty());
+    const MipChain chain(*map, outside, WrapMode::clamp);
+    const MipChain::Copy& copy = chain.copy(3);
+    for (uint32_t k = 0; k < 32 * 32; ++k)
+        if (!copy.is_outside[k]) ASSERT_GT(copy.texture->floats[4 * k + 2], 0.9f) << k % 32 << " " << k / 32;
+}
+
 TEST(MipChain, follows_edits_as_if_made_anew) {
     std::mt19937 random(4);
     for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat}) {
@@ -180,6 +229,38 @@ TEST(PatchMips, agree_wherever_patches_meet) {
         EXPECT_GT(words.size(), 5u);
         EXPECT_GT(mixed, 20);
     }
+}
+
+TEST(PatchMips, agree_where_tiles_of_other_sizes_meet) {
+    Mesh mesh;
+    mesh.name = "row";
+    for (uint32_t x = 0; x <= 3; ++x)
+        for (uint32_t y = 0; y <= 1; ++y) mesh.positions.push_back({float(x), float(y), 0});
+    for (uint32_t x = 0; x < 3; ++x) {
+        const float u = float(x);
+        test::add_face(mesh, {2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1},
+                       {{u, 0}, {u + 1, 0}, {u + 1, 1}, {u, 1}});
+    }
+    Displacement displacement = test::make_displacement(test::make_noise(1024, 1024, 1, 4));
+    displacement.tiles.push_back({1002, test::make_noise(64, 64, 1, 5)}); // 1003 has no file
+    displacement.is_udim = true, displacement.space = DisplacementSpace::object;
+    displacement.filter = MapFilter::mip;
+    Surface surface = make_surface(mesh, &displacement, {});
+    for (DisplacementMap::Tile& tile : surface.map.tiles)
+        tile.mips = std::make_shared<MipChain>(*tile.texture, OutsideTexels{}, WrapMode::clamp);
+    LevelFieldConfig config;
+    config.fixed_level = 4;
+    const LevelField field = LevelField::compute(surface, {}, config);
+    const LevelField* fields[] = {&field};
+    surface.mips = choose_mips(surface, fields);
+    for (uint32_t patch = 0; patch + 1 < 3; ++patch) {
+        std::vector<Vec3f> left = test::evaluate_edge(surface, patch, field.at(0), 1);
+        std::vector<Vec3f> right = test::evaluate_edge(surface, patch + 1, field.at(0), 3);
+        std::reverse(right.begin(), right.end());
+        EXPECT_EQ(left, right) << patch;
+    }
+    for (uint32_t place = 0; place < 9; ++place)
+        EXPECT_EQ(scalar::packed_mip(surface.mips[0], place), 6u) << "64 texels a cell; place " << place;
 }
 
 TEST(PatchMips, have_texels_about_as_large_as_cells) {

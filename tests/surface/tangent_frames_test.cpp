@@ -311,4 +311,14 @@ TEST(RelativeLengths, that_carry_too_far_are_refused) {
 }
 
 } // namespace
+TEST(TangentFrames, lengths_do_not_matter_to_heights) {
+    Displacement displacement = test::make_displacement(test::make_noise(16, 16, 0.1f, 4));
+    displacement.type = DisplacementType::height;
+    const Surface absolute = make_surface(test::make_plane(), &displacement, {});
+    displacement.lengths = FrameLengths::relative;
+    const Surface relative = make_surface(test::make_plane(), &displacement, {});
+    EXPECT_TRUE(relative.derivatives.empty());
+    EXPECT_EQ(compute_patch_box(relative, 0).upper, compute_patch_box(absolute, 0).upper);
+}
+
 } // namespace relief
