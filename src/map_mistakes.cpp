@@ -84,6 +84,17 @@ void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSu
 void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
                            std::vector<Finding>& findings) {
     constexpr double kNormalShare = 0.9;
+    const auto is_flat = [](const ChannelSurvey& channel) { return channel.low == channel.high; };
+    const auto* first = survey.channels.data();
+    if (survey.bad_count == 0 && std::all_of(first, first + survey.used_channels(), is_flat)) {
+        findings.push_back(
+            {Severity::warning, "W-EMPTY",
+             fmt::format(
+                 "every texel holds the same value ({:g} in R): the map has no detail; bake or export "
+                 "it again",
+                 survey.channels[0].mean)});
+        return;
+    }
     if (is_height(map, meaning)) return;
     if (survey.channel_count < 3)
         findings.push_back(

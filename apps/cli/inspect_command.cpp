@@ -134,6 +134,18 @@ Inspection inspect_file(const InspectOptions& options) {
     return inspect_scene_file(options);
 }
 
+/// For programs that read the answer: what cannot be read is a finding, too.
+Inspection inspect_or_report(const InspectOptions& options) {
+    try {
+        return inspect_file(options);
+    } catch (const Error& error) {
+        if (!options.is_json || error.kind() != ErrorKind::bad_input) throw;
+        Inspection inspection;
+        inspection.findings.push_back({Severity::error, "E-READ", error.what()});
+        return inspection;
+    }
+}
+
 void print_inspection(const Inspection& inspection) {
     size_t width = 0;
     for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
@@ -167,7 +179,7 @@ void check_options(const InspectOptions& options) {
 
 int run_inspect(const InspectOptions& options) {
     check_options(options);
-    const Inspection inspection = inspect_file(options);
+    const Inspection inspection = inspect_or_report(options);
     if (options.is_json)
         print_inspection_json(inspection, options.file);
     else

@@ -34,6 +34,18 @@ TEST_F(Inspect, exit_codes_follow_the_findings) {
     EXPECT_TRUE(contains(both.output, "error: E-NOUV: mesh: no uvs")) << both.output;
 }
 
+TEST_F(Inspect, json_tells_what_cannot_be_read) {
+    write("broken.json", R"({"version": 1, "objects": [{"mesh": "none"}]})");
+    for (const char* file : {"broken.json", "missing.exr"}) {
+        const CommandResult result = run({"inspect", file, "--json"});
+        EXPECT_EQ(result.exit_code, 3);
+        const nlohmann::json findings = nlohmann::json::parse(result.output)["findings"];
+        ASSERT_EQ(findings.size(), 1u);
+        EXPECT_EQ(findings[0]["code"], "E-READ");
+        EXPECT_EQ(findings[0]["severity"], "error");
+    }
+}
+
 TEST_F(Inspect, a_map_is_read_as_the_options_say) {
     write_bump("half.exr", [](Image& image) {
         for (float& value : image.pixels) value = 0.5f + 0.5f * value;

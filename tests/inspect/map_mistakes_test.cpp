@@ -60,6 +60,18 @@ TEST(MapMistakes, a_colour_tag_of_the_file_is_told) {
     EXPECT_HAS_PART(find_text(inspect(make_map(texture)), "W-SRGB"), "sRGB chunk");
 }
 
+TEST(MapMistakes, a_map_of_one_value_is_empty) {
+    auto texture = make_sculpt_texture(kSize);
+    std::fill(texture->floats.begin(), texture->floats.end(), 0.25f);
+    Displacement map = make_map(texture);
+    EXPECT_HAS_PART(find_text(inspect(map), "W-EMPTY"), "0.25");
+    EXPECT_FALSE(has_code(inspect(map), "W-GRAY"));
+    map.type = DisplacementType::height;
+    EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "W-EMPTY"));
+    texture->floats[0] = 0;
+    EXPECT_FALSE(has_code(inspect(map), "W-EMPTY"));
+}
+
 TEST(MapMistakes, one_channel_and_equal_channels_are_heights) {
     auto texture = make_sculpt_texture(kSize);
     for (size_t i = 0; i < texture->floats.size(); i += 4)
