@@ -40,23 +40,22 @@ void warn_of_tiles(const Mesh& mesh, const Displacement& map, std::vector<std::s
                                    map.name, fmt::join(missing, ", "), mesh.name));
 }
 
-/// Semi-sharp creases that have not worn off at the level of their mesh are fitted, not exact.
+/// Below this level quads beside semi-sharp creases come too close to each other to be cut along them.
+constexpr int kLevelForCreases = 2;
+
+/// Semi-sharp creases that are wider than nothing at the level of their mesh are fitted there, not exact.
 void warn_of_creases(const Mesh& mesh, std::vector<std::string>& warnings) {
     const Subdivision& subdivision = mesh.subdivision;
     if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey) return;
     float sharpest = 0;
     for (const Crease& crease : mesh.creases)
         if (crease.sharpness < kInfiniteSharpness) sharpest = std::max(sharpest, crease.sharpness);
-    const int level = int(std::ceil(sharpest));
+    const int level = std::min(kLevelForCreases, int(std::ceil(sharpest)));
     if (level <= subdivision.level) return;
-    std::string message =
+    warnings.push_back(
         fmt::format("mesh '{}': creases of sharpness {:g} are narrower than the patches of subdivision level "
-                    "{} and fitted by them",
-                    mesh.name, sharpest, subdivision.level);
-    message += level <= kMaxSubdivisionLevel
-                   ? fmt::format("; level {} shows them as they are", level)
-                   : fmt::format("; sharpness {:g} makes them sharp for ever", kInfiniteSharpness);
-    warnings.push_back(std::move(message));
+                    "{} and fitted by them; level {} shows them as they are",
+                    mesh.name, sharpest, subdivision.level, level));
 }
 
 } // namespace

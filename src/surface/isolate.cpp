@@ -1,149 +1,245 @@
 #include "surface/isolate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <optional>
+
+#include "surface/quad_cutter.h"
 
 namespace relief {
 
 namespace {
 
-constexpr uint32_t kNoCorner = 4;
+/// Around a point with more quads the surface shrinks less from ring to ring: that many rings more.
+constexpr uint32_t kFewQuads = 5;
+constexpr int kDeeper = 3;
 
-class Isolation {
+/// How a quad is cut; (0, 0) of its view is the irregular corner, if it has one.
+enum class Kind {
+    whole,
+    rings,  ///< around an irregular point
+    strips, ///< along a crease on the side from (0, 0) to (1, 0)
+    end,    ///< the same where that crease ends, turns or meets another at (0, 0)
+    corner  ///< between two creases that meet at (0, 0)
+};
+
+struct Pattern {
+    Kind kind = Kind::whole;
+    QuadView view;
+};
+
+/// Which quads are cut, and how; fails where sides would not agree.
+class Plan {
   public:
-    Isolation(const RefinedMesh& source, int depth) : source_(source), depth_(uint32_t(depth)) {
-        result_.point_count = source.point_count;
-        result_.is_regular = source.is_regular;
-        result_.limit_normals = source.limit_normals;
-        result_.is_sharp = source.is_sharp;
-        first_of_edge_.assign(source.is_sharp.size(), kNoIndex);
+    Plan(const RefinedMesh& mesh, int depth, bool has_creases)
+        : mesh_(mesh),
+          depth_(depth),
+          has_creases_(has_creases),
+          cuts_(mesh.is_sharp.size()),
+          touches_crease_(mesh.point_count),
+          quads_around_(mesh.point_count) {
+        for (const auto& quad : mesh.points)
+            for (const uint32_t point : quad) ++quads_around_[point];
+        if (!has_creases) return;
+        float sharpest = 0;
+        for (const float sharpness : mesh.semi_sharpness) sharpest = std::max(sharpest, sharpness);
+        // `end` takes them two at a time.
+        strip_depth_ = (int(std::ceil(sharpest)) + 1) / 2 * 2;
     }
 
-    RefinedMesh run() {
-        const std::vector<bool> is_cut = find_points();
-        for (uint32_t quad = 0; quad < source_.quad_count(); ++quad) {
-            const uint32_t corner = find_irregular_corner(quad);
-            if (corner != kNoCorner && is_cut[source_.points[quad][corner]])
-                cut(quad, corner);
-            else
-                add_quad(quad, source_.points[quad], source_.edges[quad], {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
-                         0);
+    /// False where the cuts of some sides, or the quads around a crease, do not fit together.
+    bool make() {
+        for (uint32_t quad = 0; quad < mesh_.quad_count(); ++quad) {
+            const std::optional<Pattern> pattern = classify(quad);
+            if (!pattern) return false;
+            patterns_.push_back(*pattern);
         }
-        result_.first_quads.assign(result_.is_sharp.size(), kNoIndex);
-        for (uint32_t quad = result_.quad_count(); quad-- > 0;)
-            for (const uint32_t edge : result_.edges[quad]) result_.first_quads[edge] = quad;
-        return std::move(result_);
+        return drop_crowded_points() && cut_sides();
+    }
+
+    const Pattern& pattern(uint32_t quad) const { return patterns_[quad]; }
+    const std::vector<SideCut>& cuts() const { return cuts_; }
+    int strip_depth() const { return strip_depth_; }
+    bool touches_crease(uint32_t point) const { return touches_crease_[point]; }
+    int point_depth(uint32_t point) const {
+        const int worn_off = int(std::ceil(mesh_.point_sharpness[point]));
+        const int depth = std::max(depth_ + (quads_around_[point] > kFewQuads ? kDeeper : 0), worn_off);
+        return touches_crease_[point] ? std::max(depth, strip_depth_) : depth;
     }
 
   private:
-    using Corners = std::array<Vec2<double>, 4>;
-
-    /// The one corner that is irregular; kNoCorner: none, or more.
-    uint32_t find_irregular_corner(uint32_t quad) const {
-        uint32_t found = kNoCorner, count = 0;
-        for (uint32_t k = 0; k < 4; ++k)
-            if (!source_.is_regular[source_.points[quad][k]]) found = k, ++count;
-        return count == 1 ? found : kNoCorner;
+    bool is_crease(uint32_t edge) const { return has_creases_ && mesh_.semi_sharpness[edge] > 0; }
+    bool is_irregular(uint32_t point) const {
+        return !mesh_.is_regular[point] && !(has_creases_ && mesh_.is_straight[point]);
     }
 
-    /// Irregular points that are alone in all of their quads.
-    std::vector<bool> find_points() const {
-        std::vector<bool> is_cut(source_.point_count);
-        for (uint32_t point = 0; point < source_.point_count; ++point)
-            is_cut[point] = !source_.is_regular[point];
-        for (uint32_t quad = 0; quad < source_.quad_count(); ++quad)
-            if (find_irregular_corner(quad) == kNoCorner)
-                for (const uint32_t point : source_.points[quad]) is_cut[point] = false;
-        return is_cut;
-    }
-
-    uint32_t add_point() {
-        result_.is_regular.push_back(true);
-        result_.limit_normals.push_back({});
-        return result_.point_count++;
-    }
-
-    uint32_t add_edge(bool is_sharp) {
-        result_.is_sharp.push_back(is_sharp);
-        return uint32_t(result_.is_sharp.size() - 1);
-    }
-
-    /// Points at 1/2, 1/4, ... of an edge from its irregular end, each with the edge to the one before; made
-    /// by the first of the two quads.
-    void cut_edge(uint32_t edge, std::vector<uint32_t>& points, std::vector<uint32_t>& edges) {
-        if (first_of_edge_[edge] == kNoIndex) {
-            first_of_edge_[edge] = uint32_t(cuts_.size());
-            for (uint32_t d = 0; d < depth_; ++d)
-                cuts_.push_back({add_point(), add_edge(source_.is_sharp[edge])});
+    std::optional<Pattern> classify(uint32_t quad) {
+        std::vector<uint32_t> corners, sides;
+        for (uint32_t k = 0; k < 4; ++k) {
+            if (is_irregular(mesh_.points[quad][k])) corners.push_back(k);
+            if (is_crease(mesh_.edges[quad][k])) sides.push_back(k);
         }
-        for (uint32_t d = 0; d < depth_; ++d) {
-            points.push_back(cuts_[first_of_edge_[edge] + d].point);
-            edges.push_back(cuts_[first_of_edge_[edge] + d].edge);
+        for (const uint32_t side : sides)
+            for (const uint32_t k : {side, (side + 1) % 4}) touches_crease_[mesh_.points[quad][k]] = true;
+        if (sides.empty()) {
+            if (corners.size() != 1) return Pattern{Kind::whole, {quad, 0, false}};
+            return Pattern{Kind::rings, {quad, corners[0], false}};
         }
+        if (corners.empty() && sides.size() == 1) return Pattern{Kind::strips, {quad, sides[0], false}};
+        if (corners.size() != 1 || sides.size() > 2) return std::nullopt;
+        const uint32_t corner = corners[0], before = (corner + 3) % 4;
+        for (const uint32_t side : sides)
+            if (side != corner && side != before) return std::nullopt;
+        if (sides.size() == 2) return Pattern{Kind::corner, {quad, corner, false}};
+        return Pattern{Kind::end, {quad, corner, sides[0] == before}};
     }
 
-    /// `corners`: in a square whose corner 0 is corner `turn` of the quad.
-    void add_quad(uint32_t quad, const std::array<uint32_t, 4>& points, const std::array<uint32_t, 4>& edges,
-                  const Corners& corners, uint32_t turn) {
-        result_.points.push_back(points);
-        result_.edges.push_back(edges);
-        const QuadPlace& place = source_.places[quad];
-        QuadPlace& added = result_.places.emplace_back(QuadPlace{place.face, place.part, {}});
-        for (size_t k = 0; k < 4; ++k) {
-            const auto [x, y] = corners[k];
-            const auto blend = [&, x = x, y = y](const auto& c) {
-                return (c(0) * (1 - x) + c(1) * x) * (1 - y) + (c(3) * (1 - x) + c(2) * x) * y;
+    /// An irregular point is left alone where a quad has another one as well.
+    bool drop_crowded_points() {
+        std::vector<bool> is_crowded(mesh_.point_count);
+        for (uint32_t quad = 0; quad < mesh_.quad_count(); ++quad)
+            if (patterns_[quad].kind == Kind::whole)
+                for (const uint32_t point : mesh_.points[quad])
+                    if (is_irregular(point)) is_crowded[point] = true;
+        for (Pattern& pattern : patterns_) {
+            if (pattern.kind == Kind::whole || pattern.kind == Kind::strips) continue;
+            const uint32_t point = mesh_.points[pattern.view.quad][pattern.view.turn];
+            if (!is_crowded[point]) continue;
+            if (touches_crease_[point]) return false;
+            pattern.kind = Kind::whole;
+        }
+        return true;
+    }
+
+    bool cut_sides() {
+        std::vector<uint32_t> cut_count(cuts_.size()), quad_count(cuts_.size());
+        bool do_agree = true;
+        for (const Pattern& pattern : patterns_) {
+            const QuadView& view = pattern.view;
+            for (const uint32_t edge : mesh_.edges[view.quad]) ++quad_count[edge];
+            // Side k from the corner at its begin, or at its end.
+            const auto cut = [&](uint32_t k, bool is_from_end, int depth, bool is_dense = false) {
+                const uint32_t edge = mesh_.edges[view.quad][(view.turn + k) % 4];
+                const SideCut side{mesh_.points[view.quad][(view.turn + k + (is_from_end ? 1 : 0)) % 4],
+                                   depth, is_dense};
+                do_agree = do_agree && (cut_count[edge] == 0 || cuts_[edge] == side);
+                cuts_[edge] = side, ++cut_count[edge];
             };
-            added.corners[k] = blend([&](uint32_t c) { return place.corners[(c + turn) % 4]; });
-            if (source_.uvs.empty()) continue;
-            if (k == 0) result_.uvs.emplace_back();
-            const Vec2<double> uv = blend([&](uint32_t c) {
-                const Vec2f& own = source_.uvs[quad][(c + turn) % 4];
-                return Vec2<double>{own.x, own.y};
-            });
-            result_.uvs.back()[k] = {float(uv.x), float(uv.y)};
+            if (pattern.kind == Kind::strips) cut(3, true, strip_depth_);
+            if (pattern.kind == Kind::rings || pattern.kind == Kind::end || pattern.kind == Kind::corner) {
+                const int depth = point_depth(mesh_.points[view.quad][view.turn]);
+                const bool is_dense = !touches_crease_[mesh_.points[view.quad][view.turn]];
+                cut(0, false, depth, is_dense), cut(3, true, depth, is_dense);
+            }
+            const bool has_next = pattern.kind == Kind::end && !view.is_mirrored;
+            const bool has_previous = pattern.kind == Kind::end && view.is_mirrored;
+            if (pattern.kind == Kind::strips || pattern.kind == Kind::corner || has_next)
+                cut(1, false, strip_depth_);
+            if (pattern.kind == Kind::corner || has_previous) cut(2, true, strip_depth_);
         }
+        for (size_t edge = 0; edge < cuts_.size(); ++edge)
+            do_agree = do_agree && (cut_count[edge] == 0 || cut_count[edge] == quad_count[edge]);
+        return do_agree;
     }
 
-    void cut(uint32_t quad, uint32_t turn) {
-        const auto point = [&](uint32_t k) { return source_.points[quad][(k + turn) % 4]; };
-        const auto edge = [&](uint32_t k) { return source_.edges[quad][(k + turn) % 4]; };
-        // On the sides that meet at the irregular point, and on the diagonal, from far to near.
-        std::vector<uint32_t> next = {point(1)}, previous = {point(3)}, middle = {point(2)}, to_next,
-                              to_previous;
-        cut_edge(edge(0), next, to_next);
-        cut_edge(edge(3), previous, to_previous);
-        std::array<uint32_t, 2> outer = {edge(1), edge(2)};
-        double s = 1;
-        for (uint32_t d = 1; d <= depth_; ++d, s /= 2) {
-            middle.push_back(add_point());
-            const std::array<uint32_t, 2> inner = {add_edge(false), add_edge(false)};
-            const uint32_t diagonal = add_edge(false);
-            const double h = s / 2;
-            add_quad(quad, {next[d], next[d - 1], middle[d - 1], middle[d]},
-                     {to_next[d - 1], outer[0], diagonal, inner[0]}, {{{h, 0}, {s, 0}, {s, s}, {h, h}}},
-                     turn);
-            add_quad(quad, {middle[d], middle[d - 1], previous[d - 1], previous[d]},
-                     {diagonal, outer[1], to_previous[d - 1], inner[1]}, {{{h, h}, {s, s}, {0, s}, {0, h}}},
-                     turn);
-            outer = inner;
-        }
-        add_quad(quad, {point(0), next[depth_], middle[depth_], previous[depth_]},
-                 {edge(0), outer[0], outer[1], edge(3)}, {{{0, 0}, {s, 0}, {s, s}, {0, s}}}, turn);
-    }
-
-    struct EdgeCut {
-        uint32_t point, edge;
-    };
-    const RefinedMesh& source_;
-    uint32_t depth_;
-    RefinedMesh result_;
-    std::vector<uint32_t> first_of_edge_; ///< among the cuts
-    std::vector<EdgeCut> cuts_;
+    const RefinedMesh& mesh_;
+    int depth_, strip_depth_ = 0;
+    bool has_creases_;
+    std::vector<SideCut> cuts_;
+    std::vector<Pattern> patterns_;
+    std::vector<bool> touches_crease_;
+    std::vector<uint32_t> quads_around_; ///< one a point
 };
+
+/// Squares halved towards (0, 0), from one of side s.
+void cut_rings(QuadCutter& cutter, double s, int depth, bool is_dense = false) {
+    const SideCut cut{kNoIndex, depth, is_dense};
+    for (int d = 0; d < cut.count(); ++d) {
+        const double h = cut.next(s, d);
+        cutter.add({{{h, 0}, {s, 0}, {s, s}, {h, h}}});
+        cutter.add({{{h, h}, {s, s}, {0, s}, {0, h}}});
+        s = h;
+    }
+    cutter.add_box({0, 0}, {s, s});
+}
+
+/// 0, 2^-depth, ... 1/4, 1/2, 1, as far as `end`.
+std::vector<double> make_steps(int depth, double end) {
+    std::vector<double> steps = {0};
+    for (double s = std::ldexp(1.0, -depth); s <= end; s *= 2) steps.push_back(s);
+    return steps;
+}
+
+void cut_strips(QuadCutter& cutter, int depth, double x0, double x1, double end) {
+    const std::vector<double> y = make_steps(depth, end);
+    for (size_t k = 0; k + 1 < y.size(); ++k) cutter.add_box({x0, y[k]}, {x1, y[k + 1]});
+}
+
+/// The squares beside (0, 0) inherit its cuts towards that point; all others are products.
+void cut_corner(QuadCutter& cutter, int depth, int point_depth) {
+    const std::vector<double> x = make_steps(depth, 1);
+    for (size_t k = 1; k + 1 < x.size(); ++k) {
+        cutter.add_box({0, x[k]}, {x[1], x[k + 1]});
+        cut_strips(cutter, depth, x[k], x[k + 1], 1);
+    }
+    cut_rings(cutter, x[1], point_depth - depth);
+}
+
+/// Strips end on the side x = 1 and must not reach the side y = 1: above them, quads that take the cuts of
+/// two halvings to none.
+void cut_end(QuadCutter& cutter, int depth, int point_depth) {
+    double s = 1;
+    for (int d = 0; d < depth; d += 2, s /= 4) {
+        const double q = s / 4, h = s / 2;
+        // Placed by trial: the nearest that the fits come to the limit surface.
+        const QuadCutter::Corner inner = Vec2<double>{5.0 / 32, 12.0 / 32} * s;
+        const QuadCutter::Corner outer = Vec2<double>{22.0 / 32, 12.0 / 32} * s;
+        cut_strips(cutter, depth, q, h, q);
+        cut_strips(cutter, depth, h, s, q);
+        cutter.add({{{0, q}, {q, q}, inner, {0, h}}});
+        cutter.add({{{q, q}, {h, q}, outer, inner}});
+        cutter.add({{{h, q}, {s, q}, {s, h}, outer}});
+        cutter.add({{inner, outer, {s, h}, {0, h}}});
+        cutter.add_box({0, h}, {s, s});
+        cutter.bend({0, h}, {s, h});
+    }
+    cut_rings(cutter, s, point_depth - depth);
+}
+
+RefinedMesh carry_out(const Plan& plan, const RefinedMesh& mesh) {
+    QuadCutter cutter(mesh, plan.cuts());
+    for (uint32_t quad = 0; quad < mesh.quad_count(); ++quad) {
+        const auto& [kind, view] = plan.pattern(quad);
+        if (kind == Kind::whole) {
+            cutter.add_whole(quad);
+            continue;
+        }
+        cutter.begin(view);
+        const int point_depth = plan.point_depth(mesh.points[quad][view.turn]);
+        if (kind == Kind::rings)
+            cut_rings(cutter, 1, point_depth, !plan.touches_crease(mesh.points[quad][view.turn]));
+        if (kind == Kind::strips) cut_strips(cutter, plan.strip_depth(), 0, 1, 1);
+        if (kind == Kind::end) cut_end(cutter, plan.strip_depth(), point_depth);
+        if (kind == Kind::corner) cut_corner(cutter, plan.strip_depth(), point_depth);
+    }
+    return cutter.finish();
+}
 
 } // namespace
 
-void isolate_irregular_points(RefinedMesh& refined, int depth) { refined = Isolation(refined, depth).run(); }
+void isolate_irregular_points(RefinedMesh& refined, int depth) {
+    Plan with_creases(refined, depth, true);
+    if (with_creases.strip_depth() > 0 && with_creases.make()) {
+        RefinedMesh cut = carry_out(with_creases, refined);
+        for (uint32_t point = 0; point < refined.point_count; ++point)
+            if (refined.is_straight[point]) cut.is_regular[point] = true;
+        refined = std::move(cut);
+        return;
+    }
+    Plan plain(refined, depth, false);
+    plain.make();
+    refined = carry_out(plain, refined);
+}
 
 } // namespace relief

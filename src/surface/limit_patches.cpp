@@ -13,7 +13,7 @@ namespace {
 /// Samples a side of an edge or patch that is fitted.
 constexpr int kFitCount = 5;
 /// Rounds of fitting and moving the samples' places.
-constexpr int kFitPasses = 4;
+constexpr int kFitPasses = 12;
 constexpr double kSmallestSine = 0.1;
 constexpr double kNearby = 1.0 / 16; // of a cell
 
@@ -130,20 +130,25 @@ class Cell {
             to_previous_[k] = sample.du * to_previous.x + sample.dv * to_previous.y;
             twist_[k] = sample.duv * (to_next.x * to_previous.y + to_next.y * to_previous.x);
         }
+    }
+
+    void fit() {
         for (size_t k = 0; k < 4; ++k) fit_edge(k);
         fit_inside();
     }
 
     const Vec3d& corner(size_t k) const { return corner_[k]; }
     const Vec3d& normal(size_t k) const { return normal_[k]; }
-    /// In the order of InnerControls.
+    /// In the order of InnerControls; once fitted.
     const Vec3d& control(size_t k) const { return control_[k]; }
 
   private:
     /// Side k in the parameters of the face.
     Vec2<double> side(size_t k) const { return place_.corners[(k + 1) % 4] - place_.corners[k]; }
-    /// Only along the axes of a face its surface is cubic.
-    bool is_along_axis(size_t k) const { return side(k).x == 0 || side(k).y == 0; }
+    /// Of a side between regular points: only along the axes of a face its surface is cubic.
+    bool is_cubic(size_t k) const {
+        return (side(k).x == 0 || side(k).y == 0) && !refined_.is_bent[refined_.edges[quad_][k]];
+    }
 
     LimitSample evaluate(double x, double y) const {
         const std::array<Vec2<double>, 4>& c = place_.corners;
@@ -175,7 +180,7 @@ class Cell {
         const size_t next = (k + 1) % 4;
         Curve curve = {corner_[k], corner_[k] + to_next_[k] * (1.0 / 3),
                        corner_[next] + to_previous_[next] * (1.0 / 3), corner_[next]};
-        if (!is_regular_[k] || !is_regular_[next] || !is_along_axis(k)) {
+        if (!is_regular_[k] || !is_regular_[next] || !is_cubic(k)) {
             std::array<Vec3d, kFitCount> targets;
             for (int sample = 0; sample < kFitCount; ++sample)
                 targets[size_t(sample)] = evaluate_edge(k, place_of_fit(sample));
@@ -198,7 +203,7 @@ class Cell {
             control_[8 + k] =
                 corner_[k] + (to_next_[k] + to_previous_[k]) * (1.0 / 3) + twist_[k] * (1.0 / 9);
         bool is_exact = true;
-        for (size_t k = 0; k < 4; ++k) is_exact = is_exact && is_regular_[k] && is_along_axis(k);
+        for (size_t k = 0; k < 4; ++k) is_exact = is_exact && is_regular_[k] && is_cubic(k);
         if (is_exact) return;
         // A start without derivatives at irregular points (Coons 1967, in control points).
         for (size_t k = 0; k < 4; ++k)
@@ -285,10 +290,10 @@ void share_edges(const RefinedMesh& refined, std::vector<InnerControls>& control
 
 } // namespace
 
-LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined) {
+LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined, bool has_controls) {
     LimitPatches patches;
     patches.positions.resize(refined.point_count);
-    patches.controls.resize(refined.quad_count());
+    if (has_controls) patches.controls.resize(refined.quad_count());
     patches.corner_normals.resize(refined.quad_count());
     const std::vector<uint32_t> first_quads = find_first_quads(refined);
     std::vector<uint32_t> starts;
@@ -299,17 +304,19 @@ LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& 
         for (size_t run = begin; run < end; ++run) {
             const LimitFace face = mesh.make_face(refined.places[starts[run]].face);
             for (uint32_t quad = starts[run]; quad < starts[run + 1]; ++quad) {
-                const Cell cell(face, refined, quad);
+                Cell cell(face, refined, quad);
                 for (size_t k = 0; k < 4; ++k) {
                     const uint32_t point = refined.points[quad][k];
                     if (first_quads[point] == quad) patches.positions[point] = to_float(cell.corner(k));
                     patches.corner_normals[quad][k] = to_float(cell.normal(k));
                 }
+                if (!has_controls) continue;
+                cell.fit();
                 for (size_t k = 0; k < 12; ++k) patches.controls[quad][k] = to_float(cell.control(k));
             }
         }
     });
-    share_edges(refined, patches.controls);
+    if (has_controls) share_edges(refined, patches.controls);
     return patches;
 }
 

@@ -16,7 +16,8 @@ struct LimitPatches {
     std::vector<std::array<Vec3f, 4>> corner_normals; ///< one a quad: unit normals of its own corners
 };
 
-/// `refined` is that of `mesh`.
-LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined);
+/// `refined` is that of `mesh`. Controls, which take most of the time, are left out where nobody wants them.
+LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined,
+                                bool has_controls = true);
 
 } // namespace relief

@@ -146,10 +146,10 @@ SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, B
         base.polygons.positions = mesh.compute_points();
         return base;
     }
-    LimitPatches patches = make_limit_patches(mesh, refined);
+    LimitPatches patches = make_limit_patches(mesh, refined, kind == BasePatches::bicubic);
     join_normals(refined, patches, base);
     base.polygons.positions = std::move(patches.positions);
-    if (kind == BasePatches::bicubic) base.controls = std::move(patches.controls);
+    base.controls = std::move(patches.controls);
     return base;
 }
 

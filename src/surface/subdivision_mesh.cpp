@@ -15,6 +15,7 @@
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include "relief/error.h"
+#include "surface/uv_topology.h"
 
 namespace relief {
 
@@ -27,8 +28,8 @@ using Cache = osd::Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shar
 using Factory = osd::Bfr::RefinerSurfaceFactory<Cache>;
 using RefinerPointer = std::unique_ptr<osd::Far::TopologyRefiner>;
 
-/// Steps beyond the patches that the surface beside irregular points is isolated by.
-constexpr int kStepsBeyond = 5;
+/// Steps beyond the patches, and beyond the creases, that the surface beside irregular points is isolated by.
+constexpr int kStepsBeyond = 7;
 constexpr int kMostSteps = 10;
 
 /// What OpenSubdiv complained of last, which it would print otherwise.
@@ -55,35 +56,6 @@ osd::Sdc::Options make_options(const Subdivision& subdivision) {
                                            ? osd::Sdc::Options::FVAR_LINEAR_ALL
                                            : osd::Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
     return options;
-}
-
-/// Corners of one point whose uvs agree share a number.
-struct UvTopology {
-    std::vector<int> indices;
-    std::vector<Vec2f> values;
-};
-
-UvTopology join_uvs(const Polygons& polygons) {
-    struct Link {
-        Vec2f uv;
-        uint32_t next;
-    };
-    std::vector<Link> links;
-    std::vector<uint32_t> first(polygons.positions.size(), kNoIndex);
-    UvTopology result;
-    for (size_t corner = 0; corner < polygons.uvs.size(); ++corner) {
-        uint32_t* link = &first[polygons.points[corner]];
-        while (*link != kNoIndex && !(links[*link].uv == polygons.uvs[corner])) link = &links[*link].next;
-        if (*link == kNoIndex) {
-            *link = uint32_t(links.size());
-            result.indices.push_back(int(links.size()));
-            links.push_back({polygons.uvs[corner], kNoIndex});
-        } else {
-            result.indices.push_back(int(*link));
-        }
-    }
-    for (const Link& link : links) result.values.push_back(link.uv);
-    return result;
 }
 
 struct CreaseLists {
@@ -190,6 +162,19 @@ bool is_regular_point(const osd::Far::TopologyLevel& level, int point) {
         return sharp.size() == 2 && (sharpness > 0 ? edges.size() == 2 : edges.size() == 3);
     return edges.size() == 4 && sharpness == 0 &&
            (sharp.empty() || (sharp.size() == 2 && sharp[1] - sharp[0] == 2));
+}
+
+/// True where one semi-sharp crease, which does not change, is all that keeps a point from being regular.
+bool is_straight_point(const osd::Far::TopologyLevel& level, int point) {
+    if (level.IsVertexNonManifold(point) || level.IsVertexBoundary(point)) return false;
+    const osd::Far::ConstIndexArray edges = level.GetVertexEdges(point);
+    if (level.GetVertexSharpness(point) > 0 || edges.size() != 4) return false;
+    for (int k = 0; k < 2; ++k) {
+        const float along = level.GetEdgeSharpness(edges[k]);
+        if (is_semi_sharp(along) && along == level.GetEdgeSharpness(edges[k + 2]))
+            return level.GetEdgeSharpness(edges[1 - k]) == 0 && level.GetEdgeSharpness(edges[3 - k]) == 0;
+    }
+    return false;
 }
 
 bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
@@ -324,9 +309,11 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     self.check_points(polygons);
     self.check_creases(polygons);
     Factory::Options options;
-    const int steps = std::min(self.level + kStepsBeyond, kMostSteps);
+    // What is irregular where creases meet stays so when they have worn off.
+    const int start = std::max(self.level, int(std::ceil(creases.largest_semi_sharp)));
+    const int steps = std::min(start + kStepsBeyond, kMostSteps);
     options.SetApproxLevelSmooth(steps);
-    options.SetApproxLevelSharp(std::max(steps, int(std::ceil(creases.largest_semi_sharp))));
+    options.SetApproxLevelSharp(steps);
     self.factory.emplace(*self.refiner, options);
 }
 
@@ -457,10 +444,18 @@ RefinedMesh SubdivisionMesh::refine() {
     refined.point_count = uint32_t(last.GetNumVertices());
     refined.places = self.find_places();
     self.copy_quads(refined);
-    for (int edge = 0; edge < last.GetNumEdges(); ++edge)
-        refined.is_sharp.push_back(last.GetEdgeSharpness(edge) >= kInfiniteSharpness);
-    for (int point = 0; point < last.GetNumVertices(); ++point)
+    for (int edge = 0; edge < last.GetNumEdges(); ++edge) {
+        const float sharpness = last.GetEdgeSharpness(edge);
+        refined.is_sharp.push_back(sharpness >= kInfiniteSharpness);
+        refined.semi_sharpness.push_back(is_semi_sharp(sharpness) ? sharpness : 0.0f);
+    }
+    refined.is_bent.assign(refined.is_sharp.size(), false);
+    for (int point = 0; point < last.GetNumVertices(); ++point) {
         refined.is_regular.push_back(is_regular_point(last, point));
+        refined.is_straight.push_back(is_straight_point(last, point));
+        const float sharpness = last.GetVertexSharpness(point);
+        refined.point_sharpness.push_back(is_semi_sharp(sharpness) ? sharpness : 0.0f);
+    }
     refined.limit_normals = self.find_limit_normals(refined.is_regular);
     return refined;
 }

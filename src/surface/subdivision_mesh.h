@@ -30,8 +30,12 @@ struct RefinedMesh {
     std::vector<std::array<uint32_t, 4>> edges;  ///< one a quad: numbers of its sides
     std::vector<uint32_t> first_quads;           ///< lowest quad of each edge
     std::vector<bool> is_sharp;                  ///< one an edge: a boundary, or a crease that stays
-    std::vector<bool> is_regular;                ///< one a point: the limit is bicubic in the quads around it
-    std::vector<Vec3d> limit_normals; ///< one a point: where it is irregular and smooth, else (0, 0, 0)
+    std::vector<float> semi_sharpness;           ///< one an edge: what is left of a crease that wears off
+    std::vector<float> point_sharpness; ///< one a point: what is left of a sharp point that wears off
+    std::vector<bool> is_bent;          ///< one an edge: no cubic, though between regular points
+    std::vector<bool> is_regular;       ///< one a point: the limit is bicubic in the quads around it
+    std::vector<bool> is_straight;      ///< one a point: regular but for a semi-sharp crease straight through
+    std::vector<Vec3d> limit_normals;   ///< one a point: where it is irregular and smooth, else (0, 0, 0)
 
     uint32_t quad_count() const { return uint32_t(points.size()); }
 };

@@ -14,6 +14,7 @@
 #include "engine/cpu/tracer.h"
 #include "math/affine.h"
 #include "support/bodies.h"
+#include "surface/smooth_shapes.h"
 
 namespace relief {
 
@@ -22,7 +23,7 @@ namespace {
 constexpr uint64_t kDefaultRays = 10000000;
 constexpr uint64_t kBatch = 4096;
 
-enum class Body { sphere, torus };
+enum class Body { sphere, torus, creased };
 enum class Placement { single, instances };
 
 struct Case {
@@ -55,6 +56,10 @@ const Case kCases[] = {
      Placement::instances, SubdivisionScheme::catmark},
     {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
      SubdivisionScheme::catmark},
+    {"creased_cube_tangent_auto", Body::creased, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark},
+    {"creased_cube_object_level4", Body::creased, DisplacementSpace::object, 4, Placement::single,
+     SubdivisionScheme::catmark},
     {"sphere_with_hard_edges_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
      SubdivisionScheme::none, FrameKind::file},
     {"sphere_relative_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
@@ -85,7 +90,7 @@ struct Random {
 };
 
 Vec3f make_inner_point(Body body, Random& random) {
-    if (body == Body::sphere) return random.direction() * (0.3f * random.uniform());
+    if (body != Body::torus) return random.direction() * (0.3f * random.uniform());
     const float angle = 6.2831853f * random.uniform();
     return Vec3f{std::cos(angle), 0, -std::sin(angle)} + random.direction() * (0.1f * random.uniform());
 }
@@ -107,17 +112,19 @@ Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t
 
 Scene make_scene(const Case& c) {
     const bool is_smooth = c.scheme != SubdivisionScheme::none;
-    Mesh mesh = c.body == Body::sphere ? test::make_cube_sphere(is_smooth ? 2 : 4) : test::make_torus(8, 14);
+    Mesh mesh = c.body == Body::sphere    ? test::make_cube_sphere(is_smooth ? 2 : 4)
+                : c.body == Body::creased ? test::make_shape(test::Shape::tangled_cube)
+                                          : test::make_torus(8, 14);
     mesh.subdivision.scheme = c.scheme;
-    mesh.subdivision.level = c.body == Body::sphere ? 1 : 0;
+    mesh.subdivision.level = c.body == Body::sphere ? 1 : c.body == Body::creased ? 2 : 0;
     Scene scene = test::make_body_scene(
         std::move(mesh),
-        test::make_displacement(test::make_random_map(256, 192, c.body == Body::sphere ? 0.12f : 0.06f, 21),
+        test::make_displacement(test::make_random_map(256, 192, c.body == Body::torus ? 0.06f : 0.12f, 21),
                                 c.space));
     scene.displacements[0].filter = c.filter;
     test::set_frames(scene, c.frame, c.lengths);
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
-    scene.camera.from = c.body == Body::sphere ? Vec3f{0.75f, 0.1f, 0.2f} : Vec3f{1.2f, 0.1f, 0.1f};
+    scene.camera.from = c.body == Body::torus ? Vec3f{1.2f, 0.1f, 0.1f} : Vec3f{0.75f, 0.1f, 0.2f};
     if (c.placement == Placement::instances)
         for (int k = 1; k <= 2; ++k) {
             Object copy = scene.objects[0];

@@ -23,19 +23,21 @@ std::vector<std::string> prepare_with_crease(float sharpness, int level, CreaseR
 }
 
 TEST(Warnings, name_the_level_that_shows_a_semi_sharp_crease_as_it_is) {
-    const std::vector<std::string> warnings = prepare_with_crease(2.5f, 2, CreaseRule::obey);
+    const std::vector<std::string> warnings = prepare_with_crease(2.5f, 1, CreaseRule::obey);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_NE(warnings[0].find("sharpness 2.5"), std::string::npos) << warnings[0];
-    EXPECT_NE(warnings[0].find("level 3 shows"), std::string::npos) << warnings[0];
-    EXPECT_TRUE(prepare_with_crease(2.5f, 3, CreaseRule::obey).empty());
-    EXPECT_TRUE(prepare_with_crease(2.5f, 2, CreaseRule::ignore).empty());
+    EXPECT_NE(warnings[0].find("level 2 shows"), std::string::npos) << warnings[0];
+    EXPECT_TRUE(prepare_with_crease(2.5f, 2, CreaseRule::obey).empty());
+    EXPECT_TRUE(prepare_with_crease(0.5f, 1, CreaseRule::obey).empty());
+    EXPECT_TRUE(prepare_with_crease(2.5f, 1, CreaseRule::ignore).empty());
     EXPECT_TRUE(prepare_with_crease(0, 0, CreaseRule::obey).empty());
     Scene plain = test::make_body_scene(test::make_torus(4, 6), {});
     plain.objects[0].displacement = kNoIndex, plain.displacements.clear();
     plain.meshes[0].creases = {{0, 1, 2.5f}};
     plain.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
+    plain.meshes[0].subdivision.level = 1;
     EXPECT_TRUE(prepare_scene(std::move(plain), {})->warnings.empty()) << "no patch is fitted";
-    EXPECT_NE(prepare_with_crease(9, 1, CreaseRule::obey)[0].find("10 makes"), std::string::npos);
+    EXPECT_NE(prepare_with_crease(0.5f, 0, CreaseRule::obey)[0].find("level 1 shows"), std::string::npos);
 }
 
 TEST(Prepare, tells_the_pixel_of_a_nan_whatever_the_filter) {

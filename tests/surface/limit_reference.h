@@ -55,7 +55,7 @@ class LimitReference {
         using Factory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
         const std::unique_ptr<osd::Far::TopologyRefiner> refiner(
             Factory::Create(descriptor, Factory::Options(osd::Sdc::SCHEME_CATMARK, options)));
-        osd::Far::PatchTableFactory::Options table_options(8);
+        osd::Far::PatchTableFactory::Options table_options(10);
         table_options.useInfSharpPatch = true;
         table_options.SetPatchPrecision<double>();
         table_options.SetEndCapType(osd::Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);

@@ -8,7 +8,21 @@
 
 namespace relief::test {
 
-enum class Shape { cube, pyramid, grid, creased_cube, semi_sharp_cube, sharp_corner_grid };
+enum class Shape {
+    cube,
+    pyramid,
+    grid,
+    creased_cube,
+    semi_sharp_cube,
+    sharp_corner_grid,
+    tangled_cube,   ///< semi-sharp creases that end, turn and change, and a semi-sharp point
+    crossed_grid,   ///< semi-sharp creases that cross, end and meet the boundary
+    creased_pyramid ///< semi-sharp creases along triangles
+};
+
+inline constexpr Shape kAllShapes[] = {Shape::cube,         Shape::pyramid,         Shape::grid,
+                                       Shape::creased_cube, Shape::semi_sharp_cube, Shape::sharp_corner_grid,
+                                       Shape::tangled_cube, Shape::crossed_grid,    Shape::creased_pyramid};
 
 inline void PrintTo(Shape shape, std::ostream* stream) { *stream << int(shape); }
 
@@ -29,22 +43,29 @@ inline Mesh make_shape(Shape shape) {
     Mesh mesh;
     switch (shape) {
     case Shape::pyramid:
+    case Shape::creased_pyramid:
         mesh = make_pyramid();
         break;
     case Shape::grid:
     case Shape::sharp_corner_grid:
+    case Shape::crossed_grid:
         mesh = make_random_grid(4, 3, 0, 9);
         mesh.subdivision.boundary =
-            shape == Shape::grid ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
+            shape == Shape::sharp_corner_grid ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
         break;
     default:
         mesh = make_cube();
     }
     const float sharpness = shape == Shape::creased_cube      ? 10.0f
-                            : shape == Shape::semi_sharp_cube ? 1.7f
+                            : shape == Shape::semi_sharp_cube ? 4.3f
                                                               : 0.0f;
     if (sharpness > 0)
         mesh.creases = {{4, 5, sharpness}, {5, 7, sharpness}, {7, 6, sharpness}, {6, 4, sharpness}};
+    if (shape == Shape::tangled_cube)
+        mesh.creases = {{4, 5, 3.5f}, {5, 7, 2.2f}, {0, 1, 6.0f}, {1, 3, 6.0f}, {3, 2, 4.0f}, {6, 6, 3.0f}};
+    if (shape == Shape::crossed_grid)
+        mesh.creases = {{2, 7, 3.0f}, {7, 12, 3.0f}, {6, 7, 5.0f}, {7, 8, 5.0f}, {8, 13, 4.5f}};
+    if (shape == Shape::creased_pyramid) mesh.creases = {{0, 1, 4.0f}, {1, 2, 4.0f}, {0, 4, 2.5f}};
     mesh.subdivision.scheme = SubdivisionScheme::catmark;
     mesh.subdivision.level = 2;
     return mesh;

@@ -137,10 +137,11 @@ TEST(SmoothSurface, makes_as_many_patches_as_the_level_says) {
 }
 
 TEST(SmoothSurface, bicubic_patches_are_cut_around_irregular_points) {
-    // Eight corners with three quads each, of which every one becomes two more a step.
+    // Eight corners with three quads each, of which every one becomes two more at every ring, two rings a
+    // step.
     Mesh mesh = test::make_shape(Shape::cube);
     EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(),
-              96u + 8 * 3 * 2 * kIsolationDepth);
+              96u + 8 * 3 * 2 * 2 * kIsolationDepth);
     // Corners of a cube share their quads: none is alone.
     mesh.subdivision.level = 0;
     EXPECT_EQ(make_displaced(mesh, DisplacementSpace::object).patch_count(), 6u);
