@@ -68,6 +68,7 @@ struct Session::Implementation {
     double prepare_s = 0; ///< since the last picture
     std::shared_ptr<PreparedScene> prepared;
     std::unique_ptr<Engine> engine;
+    std::unique_ptr<Film> film; ///< holds the last picture; null: none that the engine could go on with
     std::map<const Texture*, EditableMap> maps; ///< by the texture itself
 
     Implementation(Scene scene, const RenderSettings& given) : settings(given), scene_hash(scene.hash) {
@@ -80,9 +81,24 @@ struct Session::Implementation {
         with_threads(settings.threads, [&] {
             prepared = prepare_scene(std::move(scene), settings);
             own_maps();
-            engine = make_engine(prepared, settings);
+            start_engine();
         });
         prepare_s = timer.seconds();
+    }
+
+    void start_engine() {
+        film.reset(), engine.reset(); // a device need not hold two
+        engine = make_engine(prepared, settings);
+        engine->expect_changes();
+    }
+
+    /// What changed since the last picture is traced anew, the rest kept.
+    bool trace_picture(RenderObserver* observer) {
+        if (film) return engine->refresh(*film, observer);
+        auto fresh = std::make_unique<Film>(settings.width, settings.height, settings.crop, settings.layers);
+        const bool is_complete = engine->render(*fresh, observer);
+        film = std::move(fresh);
+        return is_complete;
     }
 
     /// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one
@@ -177,10 +193,7 @@ struct Session::Implementation {
         for (PreparedMap* map : copies) paint(edit, *map, changes);
         update_levels(changes);
         update_mips(changes);
-        if (!engine->follow(changes)) {
-            engine.reset(); // a device need not hold both
-            engine = make_engine(prepared, settings);
-        }
+        if (!engine->follow(changes)) start_engine();
         scene_hash = hash_edit(scene_hash, edit);
         EditReport report;
         for (const SurfaceChange& change : changes)
@@ -226,18 +239,17 @@ RenderResult Session::render(RenderObserver* observer) {
     Statistics& statistics = result.statistics;
     const Timer total;
     with_threads(self.settings.threads, [&] {
-        Film film(self.settings.width, self.settings.height, self.settings.crop, self.settings.layers);
         const Timer timer;
-        result.is_complete = self.engine->render(film, observer);
+        result.is_complete = self.trace_picture(observer);
         statistics.render_s = timer.seconds();
         statistics.prepare_s = std::exchange(self.prepare_s, 0);
         self.engine->add_statistics(statistics);
         statistics.first_image_s += statistics.prepare_s;
         statistics.threads = thread_count();
-        statistics.ray_buffers_bytes += film.byte_count();
+        statistics.ray_buffers_bytes += self.film->byte_count();
         statistics.warnings = self.prepared->warnings;
         count_scene(*self.prepared, statistics);
-        result.image = film.resolve();
+        result.image = self.film->resolve();
     });
     add_metadata(self.settings, self.scene_hash, result.image);
     statistics.total_s = statistics.prepare_s + total.seconds();

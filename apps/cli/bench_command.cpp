@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "bench/cycles.h"
+#include "bench/edits.h"
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
@@ -137,6 +138,16 @@ SuiteResult run_cycles_suite(const BenchOptions& o, const bench::Report& report)
     return {result, bench::make_cycles_files(result)};
 }
 
+/// The CPU engine, a scene of its own.
+SuiteResult run_edits_suite(const BenchOptions& o, const bench::Report& report) {
+    bench::EditsOptions options;
+    options.settings = make_settings(o, 1280, 720);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.runs = o.runs.value_or(options.runs);
+    const auto result = bench::run_edits(o.is_quick ? make_quick_options(options) : options, report);
+    return {result, bench::make_edits_files(result)};
+}
+
 #ifdef RELIEF_EMBREE
 /// One thread of the CPU engine; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
@@ -193,6 +204,10 @@ const std::vector<Suite>& list_suites() {
          "displaced scenes beside Blender's Cycles, where `blender` is found",
          run_cycles_suite,
          {"--scenes", "--size", "--threads"}},
+        {"edits",
+         "a painted rectangle of a map until the next picture, beside a fresh load",
+         run_edits_suite,
+         {"--size", "--threads", "--isa"}},
 #ifdef RELIEF_EMBREE
         {"triangles",
          "plain triangle meshes on the CPU against Embree",
@@ -306,7 +321,8 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
     add("--size", "WxH",
-        "pixels; default 1280x720 for paper1, peers and cycles, 320x180 for paper2, 640x360 for paper3",
+        "pixels; default 1280x720 for paper1, peers, cycles and edits, 320x180 for paper2, 640x360 for "
+        "paper3",
         [&o](const std::string& text) {
             const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
             o.size = {int(size[0]), int(size[1])};

@@ -26,10 +26,11 @@ struct EditReport {
 
 /// Keeps surfaces, trees and the cache of fine geometry from picture to picture. After an edit only what the
 /// rectangle reaches is made anew: its part of the bounds of the map, levels and boxes of the patches that
-/// read it, the nodes above them and their fine geometry. The CPU engine's own walk does so; engines and
-/// structures asked for by name make their trees and device buffers anew. Pictures are those that the edited
-/// map gives when it is loaded, bit for bit, as long as what lies between its uv islands keeps its
-/// background, which is found when the session begins (Displacement::dilate). Not thread safe.
+/// read it, the nodes above them and their fine geometry; and of the next picture the blocks of pixels whose
+/// rays came near them. The CPU engine's own walk does so; engines and structures asked for by name make
+/// their trees, device buffers and pictures anew. Pictures are those that the edited map gives when it is
+/// loaded, bit for bit, as long as what lies between its uv islands keeps its background, which is found when
+/// the session begins (Displacement::dilate). Not thread safe.
 class Session {
   public:
     /// Maps are held as copies of the scene's. Throws as render(), and Error{usage} for tessellated surfaces.

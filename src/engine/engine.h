@@ -30,6 +30,16 @@ class Engine {
     /// the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
+    /// Changes will be followed, and refresh() be called: whatever makes them cheaper may cost a little.
+    virtual void expect_changes() {}
+
+    /// The film of the last render() or refresh() becomes what render() would make of an empty one now; what
+    /// no change since then can have reached is kept. The rest as for render().
+    virtual bool refresh(Film& film, RenderObserver* observer) {
+        film.clear(film.window());
+        return render(film, observer);
+    }
+
     /// Spans of equal length; thread safe.
     virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const = 0;
     virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const = 0;

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/machine.h"
+#include "base/parallel.h"
 #include "math/vec.h"
 #include "relief/error.h"
 
@@ -208,6 +209,19 @@ void Film::add_sums(int x, int y, const FilmSums& added) {
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
 }
 
+void Film::clear(const Window& window) {
+    const size_t width = size_t(window.x1 - window.x0);
+    const auto fill = [&](auto& values, size_t first, size_t stride, auto value) {
+        if (!values.empty()) std::fill_n(values.begin() + ptrdiff_t(first * stride), width * stride, value);
+    };
+    for (int y = window.y0; y < window.y1; ++y) {
+        const size_t first = pixel_index(window.x0, y);
+        fill(sums_, first, stride_, 0.0);
+        fill(counts_, first, 1, 0u), fill(hit_counts_, first, 1, 0u), fill(ids_, first, 1, 0u);
+        fill(depths_, first, 1, std::numeric_limits<float>::infinity());
+    }
+}
+
 /// Among equal depths the lowest id wins, so that the layer does not depend on which sample came first.
 void Film::add_nearest(size_t pixel, float depth, uint32_t id) {
     if (depths_.empty()) return;
@@ -261,15 +275,18 @@ Image Film::resolve() const {
             image.channels.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
     }
     image.pixels.resize(counts_.size() * image.channels.size());
-    float* target = image.pixels.data();
-    for (size_t p = 0; p < counts_.size(); ++p) {
-        write_means(sums_.data() + p * stride_, kRadianceSums, counts_[p], Source::albedo, target);
-        target += kRadianceSums;
-        for (const Layer& layer : layers_) {
-            write_layer(p, layer, target);
-            target += channel_count(kLayerKinds[layer.kind]);
+    const size_t width = image.channels.size();
+    parallel_for("resolve", counts_.size(), 1 << 14, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+            float* target = image.pixels.data() + p * width;
+            write_means(sums_.data() + p * stride_, kRadianceSums, counts_[p], Source::albedo, target);
+            target += kRadianceSums;
+            for (const Layer& layer : layers_) {
+                write_layer(p, layer, target);
+                target += channel_count(kLayerKinds[layer.kind]);
+            }
         }
-    }
+    });
     return image;
 }
 

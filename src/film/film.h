@@ -47,6 +47,9 @@ class Film {
     /// As many samples at once as `sums` holds.
     void add_sums(int x, int y, const FilmSums& sums);
 
+    /// As if the pixels of `window` had never got a sample.
+    void clear(const Window& window);
+
     /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
     /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.

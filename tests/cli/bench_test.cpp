@@ -1,4 +1,7 @@
 // What the suites of measurements write.
+#include <algorithm>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -93,6 +96,24 @@ TEST_F(Bench, options_of_other_suites_are_refused) {
         all.insert(all.end(), words.begin(), words.end());
         EXPECT_EQ(run(all).exit_code, 2) << words[1];
     }
+}
+
+TEST_F(Bench, edits_measures_pictures_after_edits_beside_fresh_loads) {
+    const CommandResult result = run({"bench", "edits", "--quick", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("edits/edits.json"));
+    ASSERT_EQ(s["pictures"].size(), 2u);
+    for (const json& picture : s["pictures"]) {
+        EXPECT_EQ(picture["edits"]["picture_s"]["runs"], 16);
+        EXPECT_GT(picture["fresh"]["load_s"]["median"].get<double>(), 0);
+        // An edit on the far side leaves nearly all of the picture as it was.
+        EXPECT_LT(picture["edits"]["rays_share"]["lowest"].get<double>(), 0.9);
+        EXPECT_GT(picture["edits"]["rays_share"]["highest"].get<double>(), 0);
+        EXPECT_GT(picture["ratio"].get<double>(), 0);
+    }
+    const std::string csv = read("edits/edits.csv");
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+    EXPECT_NE(read("edits/pumpkin/scene.json").find("pumpkin"), std::string::npos);
 }
 
 #ifdef RELIEF_EMBREE

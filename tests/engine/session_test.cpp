@@ -1,4 +1,6 @@
 // Pictures after edits of a map: those of a fresh scene with the edited map, bit for bit.
+#include <atomic>
+
 #include <gtest/gtest.h>
 
 #include "relief/error.h"
@@ -144,6 +146,73 @@ TEST(Session, keeps_trees_that_an_edit_does_not_reach) {
     session.edit(make_edit(40, 30, 4, 4, 0.1f));
     const uint64_t after = session.render().statistics.bottom_built - first;
     EXPECT_LT(after, first / 2);
+}
+
+uint64_t count_rays(const RenderResult& result) {
+    const Statistics& s = result.statistics;
+    return s.camera_rays + s.shadow_rays + s.bounce_rays;
+}
+
+TEST(Session, traces_only_what_an_edit_may_have_reached) {
+    RenderSettings settings = make_settings();
+    settings.width = 320, settings.height = 240, settings.bounces = 0;
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Session session(fresh, settings);
+    const uint64_t all = count_rays(session.render());
+    EXPECT_EQ(count_rays(session.render()), all);
+    size_t kept = 0;
+    for (uint32_t x = 0; x < 96; x += 24) {
+        const uint64_t before = count_rays(session.render());
+        session.edit(make_edit(x, 20, 6, 6, 0.06f));
+        const RenderResult result = session.render();
+        bake(fresh, make_edit(x, 20, 6, 6, 0.06f));
+        const Image expected = render(fresh, settings).image;
+        expect_same(result.image, expected);
+        kept += count_rays(result) - before < all / 3;
+    }
+    EXPECT_GE(kept, 3u);
+}
+
+TEST(Session, follows_edits_that_no_picture_shows_and_edits_that_leave_the_scene) {
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Session session(fresh, make_settings());
+    session.render();
+    // The third reaches far beyond what the torus took up.
+    for (const MapEdit& edit : {make_edit(10, 10, 6, 6, 0.06f), make_edit(40, 20, 6, 6, -0.06f),
+                                make_edit(60, 30, 6, 6, 1.5f), make_edit(60, 30, 6, 6, 0.1f)}) {
+        session.edit(edit);
+        bake(fresh, edit);
+    }
+    expect_same(session.render().image, render(fresh, make_settings()).image);
+    const MapEdit far = make_edit(60, 30, 6, 6, 1.5f);
+    session.edit(far);
+    bake(fresh, far);
+    expect_same(session.render().image, render(fresh, make_settings()).image);
+}
+
+TEST(Session, goes_on_where_it_was_interrupted) {
+    struct Interrupter final : RenderObserver {
+        mutable std::atomic<int> looks{0};
+        int limit = 0;
+        void on_progress(const Progress&) override {}
+        bool is_cancelled() const override { return ++looks > limit; }
+    };
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    RenderSettings settings = make_settings();
+    settings.threads = 1;
+    Session session(fresh, settings);
+    for (const int limit : {1, 5, 20, 1000000}) {
+        Interrupter observer;
+        observer.limit = limit;
+        EXPECT_EQ(session.render(&observer).is_complete, limit == 1000000);
+    }
+    const MapEdit edit = make_edit(30, 20, 20, 12, 0.12f);
+    session.edit(edit);
+    bake(fresh, edit);
+    Interrupter observer;
+    observer.limit = 3;
+    EXPECT_FALSE(session.render(&observer).is_complete);
+    expect_same(session.render().image, render(fresh, settings).image);
 }
 
 TEST(Session, edits_reach_the_gutter_between_islands) {

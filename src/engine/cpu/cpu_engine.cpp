@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/path_tracer.h"
+#include "engine/cpu/picture_footprints.h"
+#include "engine/cpu/tiles.h"
 #include "engine/cpu/tracer.h"
 #include "engine/engine.h"
 
@@ -22,17 +25,6 @@ namespace {
 constexpr size_t kBatchSize = 1024;
 constexpr double kReportInterval = 0.1; ///< seconds between two reports of progress
 constexpr int kLongestPass = 16;        ///< samples a pixel between two passes over the picture
-
-/// The picture's grid of tiles, cut at absolute multiples of the tile edge so that crops trace the same
-/// packets.
-std::vector<Window> make_tiles(const Window& window) {
-    std::vector<Window> tiles;
-    for (int y = window.y0 / kTileEdge * kTileEdge; y < window.y1; y += kTileEdge)
-        for (int x = window.x0 / kTileEdge * kTileEdge; x < window.x1; x += kTileEdge)
-            tiles.push_back({std::max(x, window.x0), std::max(y, window.y0),
-                             std::min(x + kTileEdge, window.x1), std::min(y + kTileEdge, window.y1)});
-    return tiles;
-}
 
 /// Tells the observer how far the work is: from whichever worker is free to, never from two at once.
 class Reporter {
@@ -58,7 +50,7 @@ class Reporter {
   private:
     void report() {
         if (!observer_) return;
-        progress_.fraction = double(done_) / double(total_);
+        progress_.fraction = total_ > 0 ? double(done_) / double(total_) : 1;
         progress_.rays = rays_;
         progress_.elapsed_s = timer_.seconds();
         observer_->on_progress(progress_);
@@ -78,29 +70,24 @@ class CpuEngine final : public Engine {
         : settings_(settings), tracer_(std::move(scene), settings), lights_(tracer_) {}
 
     bool follow(std::span<const SurfaceChange> changes) override {
-        if (!tracer_.follow(changes)) return false;
+        std::vector<Box> places;
+        if (!tracer_.follow(changes, places)) return false;
         lights_.follow_surfaces();
+        // A surface that glows is drawn as a light from everywhere.
+        if (footprints_ && (lights_.has_emitters() || !footprints_->mark_stale(places))) footprints_.reset();
         return true;
     }
 
+    void expect_changes() override { expects_changes_ = !tracer_.displaced_bounds().is_empty(); }
+
     bool render(Film& film, RenderObserver* observer) override {
-        const Timer timer;
-        const std::vector<Window> tiles = make_tiles(film.window());
-        const uint64_t pixels =
-            uint64_t(film.window().x1 - film.window().x0) * uint64_t(film.window().y1 - film.window().y0);
-        Reporter reporter(observer, std::max<uint64_t>(1, pixels * uint64_t(settings_.spp)), settings_.spp);
-        first_image_s_ = 0;
-        int done = 0, length = 1;
-        while (done < settings_.spp && !reporter.is_cancelled()) {
-            const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
-            render_pass(film, tiles, samples, reporter);
-            if (reporter.is_cancelled()) break;
-            done += samples.count;
-            if (first_image_s_ == 0) first_image_s_ = timer.seconds();
-            reporter.finish_pass(done);
-            length = std::min(2 * length, kLongestPass);
-        }
-        return done == settings_.spp;
+        if (!expects_changes_) return trace_tiles(film, cut_into_windows(film.window(), kTileEdge), observer);
+        footprints_.emplace(film.window(), tracer_.displaced_bounds());
+        return trace_stale_tiles(film, observer);
+    }
+
+    bool refresh(Film& film, RenderObserver* observer) override {
+        return footprints_ ? trace_stale_tiles(film, observer) : Engine::refresh(film, observer);
     }
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override {
@@ -128,19 +115,48 @@ class CpuEngine final : public Engine {
         statistics.bounce_rays += counters_.bounce_rays;
         statistics.shade_s += counters_.shade_s;
         statistics.film_s += counters_.film_s;
+        if (footprints_) statistics.ray_buffers_bytes += footprints_->byte_count();
         tracer_.add_statistics(statistics);
     }
 
   private:
+    bool trace_stale_tiles(Film& film, RenderObserver* observer) {
+        const std::vector<Window> tiles = footprints_->start_stale_windows(kTileEdge);
+        for (const Window& tile : tiles) film.clear(tile);
+        const bool is_complete = trace_tiles(film, tiles, observer);
+        if (is_complete) footprints_->finish();
+        return is_complete;
+    }
+
+    bool trace_tiles(Film& film, const std::vector<Window>& tiles, RenderObserver* observer) {
+        const Timer timer;
+        uint64_t pixels = 0;
+        for (const Window& tile : tiles) pixels += count_pixels(tile);
+        Reporter reporter(observer, pixels * uint64_t(settings_.spp), settings_.spp);
+        first_image_s_ = 0;
+        int done = 0, length = 1;
+        while (done < settings_.spp && !reporter.is_cancelled()) {
+            const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
+            render_pass(film, tiles, samples, reporter);
+            if (reporter.is_cancelled()) break;
+            done += samples.count;
+            if (first_image_s_ == 0) first_image_s_ = timer.seconds();
+            reporter.finish_pass(done);
+            length = std::min(2 * length, kLongestPass);
+        }
+        return done == settings_.spp;
+    }
+
     void render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
         std::mutex mutex;
         parallel_for("render_pass", tiles.size(), 1, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end && !reporter.is_cancelled(); ++k) {
                 const Window& tile = tiles[k];
-                TileCounters counters;
-                trace_tile({tracer_, lights_, settings_}, film, tile, samples, counters);
-                reporter.finish_tile(uint64_t(tile.x1 - tile.x0) * uint64_t(tile.y1 - tile.y0) *
-                                         uint64_t(samples.count),
+                TileReport report;
+                if (footprints_) report.footprints = &*footprints_;
+                trace_tile({tracer_, lights_, settings_}, film, tile, samples, report);
+                const TileCounters& counters = report.counters;
+                reporter.finish_tile(count_pixels(tile) * uint64_t(samples.count),
                                      counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
                 const std::lock_guard lock(mutex);
                 counters_.camera_rays += counters.camera_rays;
@@ -177,6 +193,8 @@ class CpuEngine final : public Engine {
     Tracer tracer_;
     LightSet lights_;
     TileCounters counters_;
+    bool expects_changes_ = false;
+    std::optional<PictureFootprints> footprints_; ///< of the last picture; empty: all of it is stale
     double first_image_s_ = 0;
 };
 

@@ -57,12 +57,13 @@ struct ShadowRay {
 /// active_[k].
 class TileTracer {
   public:
-    TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters);
+    TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report);
     void trace_sample(int index);
 
   private:
     void start_paths();
     void trace_paths();
+    void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
     void add_backgrounds();
     void drop_misses();
@@ -87,6 +88,7 @@ class TileTracer {
     const RenderSettings& settings_;
     Film& film_;
     TileCounters& counters_;
+    PictureFootprints* footprints_;
     scalar::CameraFrame camera_;
     uint32_t sample_index_ = 0;
     int depth_ = 0;               ///< vertices behind the wave: 0 for camera rays
@@ -112,12 +114,13 @@ class TileTracer {
     PointScratch scratch_;
 };
 
-TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileCounters& counters)
+TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report)
     : tracer_(scene.tracer),
       lights_(scene.lights),
       settings_(scene.settings),
       film_(film),
-      counters_(counters),
+      counters_(report.counters),
+      footprints_(report.footprints),
       camera_(make_camera_frame(scene.tracer.scene())) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
@@ -168,6 +171,12 @@ void TileTracer::start_paths() {
 void TileTracer::trace_paths() {
     hits_.resize(rays_.size());
     tracer_.closest_hits(rays_, hits_, depth_);
+    if (!footprints_) return;
+    for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
+}
+
+void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
+    footprints_->at(path.x, path.y).add_ray(ray.origin, ray.direction, t_end);
 }
 
 void TileTracer::shade_paths() {
@@ -357,6 +366,9 @@ bool TileTracer::survives_roulette(Path& path, float u_roulette) const {
 void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
     tracer_.any_hits(shadow_rays_, occluded_, depth_);
+    if (footprints_)
+        for (size_t k = 0; k < shadows_.size(); ++k)
+            note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
     counters_.shadow_rays += shadow_rays_.size();
@@ -371,8 +383,8 @@ void TileTracer::finish_paths() {
 } // namespace
 
 void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
-                TileCounters& counters) {
-    TileTracer tracer(scene, film, tile, counters);
+                TileReport& report) {
+    TileTracer tracer(scene, film, tile, report);
     for (int k = samples.first; k < samples.first + samples.count; ++k) tracer.trace_sample(k);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "engine/cpu/lights.h"
+#include "engine/cpu/picture_footprints.h"
 #include "engine/cpu/tracer.h"
 #include "film/film.h"
 #include "relief/render.h"
@@ -32,10 +33,16 @@ struct TileCounters {
 /// Edge of the tiles that keep packets full, pixels.
 inline constexpr int kTileEdge = 16;
 
-/// Adds samples to the pixels of `tile` (inside the film's window, any size; kTileEdge squared is best).
-/// Sample k of a pixel depends on (seed, pixel, k) only. Several threads may work on different tiles of one
-/// film.
+/// What tracing a tile tells besides its samples.
+struct TileReport {
+    TileCounters counters;
+    PictureFootprints* footprints = nullptr; ///< get where rays have been; null: nobody asks
+};
+
+/// Adds samples to the pixels of `tile` (inside the film's window, any size; kTileEdge squared in all is
+/// best). Sample k of a pixel depends on (seed, pixel, k) only. Several threads may work on different tiles
+/// of one film, where none shares a block of the footprints with another.
 void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
-                TileCounters& counters);
+                TileReport& report);
 
 } // namespace relief::cpu

@@ -63,6 +63,19 @@ struct Tracer::Implementation {
         instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
     }
 
+    /// Boxes of those patches of a surface in all its instances.
+    void add_places(const PreparedScene& scene, const SurfaceChange& change, std::vector<Box>& places) const {
+        for (const WideNode& node : surface_trees[change.surface].nodes)
+            for (int k = 0; k < node.child_count; ++k) {
+                if (!WideNode::is_leaf(node.child[k])) continue;
+                const uint32_t first = WideNode::leaf_first(node.child[k]);
+                if (!change.is_changed[surface_trees[change.surface].primitive_at(first)]) continue;
+                for (const Instance& instance : scene.instances)
+                    if (instance.surface == change.surface)
+                        places.push_back(transform_box(instance.world_from_object, node.child_box(k)));
+            }
+    }
+
     WalkView make_walk_view() const { return {view, walk_trees, kernels->primitive}; }
 
     /// `cast` is the place in TraceContext::casts.
@@ -130,14 +143,27 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
 
 Tracer::~Tracer() = default;
 
-bool Tracer::follow(std::span<const SurfaceChange> changes) {
+Box Tracer::displaced_bounds() const {
+    const Implementation& self = *implementation_;
+    Box bounds;
+    if (self.walk.closest_hits) return bounds;
+    for (const Instance& instance : scene_->instances)
+        if (scene_->surfaces[instance.surface].has_displacement)
+            bounds.extend(
+                transform_box(instance.world_from_object, self.surface_trees[instance.surface].bounds));
+    return bounds;
+}
+
+bool Tracer::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     Implementation& self = *implementation_;
     if (self.walk.closest_hits) return false;
     for (const SurfaceChange& change : changes) {
         const Surface& surface = scene_->surfaces[change.surface];
+        self.add_places(*scene_, change, places);
         refit_wide_bvh(self.surface_trees[change.surface], change.is_changed,
                        [&](uint32_t patch) { return compute_patch_box(surface, patch); });
         self.surface_nodes[change.surface] = open_nodes(self.surface_trees[change.surface]);
+        self.add_places(*scene_, change, places);
     }
     self.make_instance_tree(*scene_);
     self.cache->remove([&](const TreeKey& key) {

@@ -65,8 +65,11 @@ class Tracer {
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
     ~Tracer();
 
-    /// As Engine::follow.
-    bool follow(std::span<const SurfaceChange> changes);
+    /// As Engine::follow. Boxes of what has changed, before and after, are added to `places`, world space.
+    bool follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+
+    /// The box of all that has a displacement, world space; empty where follow() would be false.
+    Box displaced_bounds() const;
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in
     /// packets: give neighbours in runs of 16. `depth` says where the statistics count them: bounces behind
