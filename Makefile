@@ -62,7 +62,7 @@ tsan: packages
 	ctest --preset tsan -j $(JOBS)
 
 fuzz: packages
-	$(call configure_and_build,fuzz)
+	$(call configure_and_build,fuzz,fuzzers)
 	tools/run_fuzzers.sh build/fuzz $(FUZZ_SECONDS)
 
 coverage: packages
