@@ -163,6 +163,16 @@ struct Session::Implementation {
         return list;
     }
 
+    /// What the edit changes.
+    std::vector<PreparedMap*> check(const MapEdit& edit) {
+        std::vector<PreparedMap*> copies = find_copies(edit);
+        for (const PreparedMap* map : copies) {
+            check_rectangle(edit, *map->texture);
+            check_values(edit, *map->texture);
+        }
+        return copies;
+    }
+
     void paint(const MapEdit& edit, PreparedMap& named, std::vector<SurfaceChange>& changes) {
         EditableMap& map = maps.at(named.texture.get());
         copy_texels(edit.texels, *map.texture, edit.x, edit.y);
@@ -184,11 +194,7 @@ struct Session::Implementation {
 
     EditReport apply(const MapEdit& edit) {
         const Timer timer;
-        const std::vector<PreparedMap*> copies = find_copies(edit);
-        for (const PreparedMap* map : copies) {
-            check_rectangle(edit, *map->texture);
-            check_values(edit, *map->texture);
-        }
+        const std::vector<PreparedMap*> copies = check(edit);
         std::vector<SurfaceChange> changes;
         for (PreparedMap* map : copies) paint(edit, *map, changes);
         update_levels(changes);
@@ -261,6 +267,10 @@ EditReport Session::edit(const MapEdit& edit) {
     EditReport report;
     with_threads(implementation_->settings.threads, [&] { report = implementation_->apply(edit); });
     return report;
+}
+
+void Session::check(const MapEdit& edit) const {
+    with_threads(implementation_->settings.threads, [&] { implementation_->check(edit); });
 }
 
 } // namespace relief

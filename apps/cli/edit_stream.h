@@ -1,7 +1,7 @@
 // Edits of displacement maps as lines of text, one JSON object a line:
 //   {"displacement": "skin", "tile": 1001, "at": [column, row], "texels": "part.exr", "output": "next.exr"}
 // `displacement` may be left out where the scene has one, `tile` where it is 1001, `output` where no picture
-// is wanted yet.
+// is wanted yet. Paths are relative to the folder in which the command runs.
 #pragma once
 
 #include <filesystem>

@@ -134,16 +134,27 @@ void print_edit(const EditReport& report) {
     fmt::print(stderr, "edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
 }
 
+/// All lines of a file, before anybody waits for the first picture. Texels are read once more when their turn
+/// comes: all of them may be more than memory holds.
+void check_edits(const std::string& path, const std::string& only_displacement, const Session& session) {
+    std::ifstream file(path);
+    EditStream edits(file, path, only_displacement);
+    while (const std::optional<EditLine> line = edits.next())
+        edits.with_place([&] { session.check(line->edit); });
+}
+
 /// One picture as ever, then one after each edit that asks for it.
 int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene, Waiting waiting) {
     catch_interrupts();
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
+    const std::string only_displacement =
+        scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
-                     options.edits == "-" ? "standard input" : options.edits,
-                     scene.displacements.size() == 1 ? scene.displacements[0].name : "");
+                     options.edits == "-" ? "standard input" : options.edits, only_displacement);
     Warner warner(scene, options.is_quiet);
     Session session(std::move(scene), settings);
+    if (options.edits != "-") check_edits(options.edits, only_displacement, session);
     const auto show = [&](const std::filesystem::path& output) {
         RenderResult result =
             make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });

@@ -70,7 +70,8 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
         o.samples = {int(range[0]), int(range[1])};
     });
     add(verb, "--edits", "FILE",
-        "then a picture after each edit of a map in FILE; -: as they come on standard input",
+        "then a picture after each edit of a map in FILE (-: as they come on standard input); "
+        "paths in it start from the current folder",
         [&o](const std::string& text) { o.edits = text; });
     add(verb, "--pixel", "x,y", "trace one pixel and explain it; no picture is written",
         [&o](const std::string& text) {

@@ -48,6 +48,9 @@ class Session {
     /// nothing is changed then.
     EditReport edit(const MapEdit& edit);
 
+    /// Throws what edit() would; nothing is changed.
+    void check(const MapEdit& edit) const;
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;

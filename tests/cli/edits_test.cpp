@@ -2,6 +2,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "command.h"
 #include "relief/io.h"
 
@@ -67,13 +70,15 @@ TEST_F(Edits, next_picture_is_that_of_the_painted_map) {
     EXPECT_EQ(differs.exit_code, 7);
 }
 
-TEST_F(Edits, mistakes_name_the_line_and_keep_what_was_done) {
-    const auto expect_error = [&](const std::string& line, const std::string& reason) {
-        const CommandResult result = follow("\n" + line);
-        EXPECT_EQ(result.exit_code, 3) << line;
+TEST_F(Edits, mistakes_of_a_file_name_the_line_before_any_picture_is_made) {
+    const auto expect_error = [&](const std::string& line, const std::string& reason, int exit_code = 3) {
+        const std::string good = R"({"at": [0, 0], "texels": "part.exr", "output": "b.exr"})";
+        const CommandResult result = follow(good + "\n" + line);
+        EXPECT_EQ(result.exit_code, exit_code) << line;
         EXPECT_NE(result.errors.find("edits.jsonl, line 2"), std::string::npos) << result.errors;
         EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
-        EXPECT_EQ(result.output, "wrote a.exr\n");
+        EXPECT_EQ(result.output, "");
+        EXPECT_FALSE(exists("a.exr"));
     };
     expect_error("{", "no JSON");
     expect_error("[1]", "one JSON object");
@@ -85,6 +90,27 @@ TEST_F(Edits, mistakes_name_the_line_and_keep_what_was_done) {
     expect_error(R"({"at": [60000, 0], "texels": "part.exr"})", "leave the map");
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "displacement": "skin"})", "no such displacement");
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "tile": 1002})", "no such tile");
+    expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "nowhere/c.exr"})", "nowhere", 1);
+}
+
+TEST_F(Edits, mistakes_on_standard_input_keep_what_was_done) {
+    write("edits.jsonl", R"({"at": [0, 0], "texels": "part.exr", "output": "b.exr"})"
+                         "\n{");
+    const std::string lines = (folder_ / "edits.jsonl").string();
+    const CommandResult result =
+        finish(start({"render", "scene.json", "-o", "a.exr", "--edits", "-"},
+                     [&lines] { dup2(open(lines.c_str(), O_RDONLY), STDIN_FILENO); }));
+    EXPECT_EQ(result.exit_code, 3) << result.errors;
+    EXPECT_NE(result.errors.find("standard input, line 2"), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "wrote a.exr\nwrote b.exr\n");
+}
+
+TEST_F(Edits, paths_start_from_the_current_folder) {
+    std::filesystem::create_directory(folder_ / "elsewhere");
+    write("elsewhere/edits.jsonl", R"({"at": [0, 0], "texels": "part.exr", "output": "b.exr"})");
+    const CommandResult result = render("a.exr", {"--edits", "elsewhere/edits.jsonl"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_TRUE(exists("b.exr"));
 }
 
 TEST_F(Edits, command_line_mistakes) {

@@ -266,14 +266,18 @@ TEST(Session, follows_a_surface_that_glows) {
 TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
     const Scene scene = make_torus_scene(DisplacementSpace::tangent);
     Session session(scene, make_settings());
-    const auto expect_refused = [&](const MapEdit& edit, const std::string& reason) {
+    const auto expect_error = [](const auto& call, const std::string& reason) {
         try {
-            session.edit(edit);
+            call();
             ADD_FAILURE() << "accepted: " << reason;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::bad_input);
             EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
         }
+    };
+    const auto expect_refused = [&](const MapEdit& edit, const std::string& reason) {
+        expect_error([&] { session.check(edit); }, reason);
+        expect_error([&] { session.edit(edit); }, reason);
     };
     MapEdit edit = make_edit(90, 0, 7, 1, 0.1f);
     expect_refused(edit, "leave the map of 96 x 64");
@@ -288,6 +292,7 @@ TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
     expect_refused(edit, "displaces by");
     edit.texels.floats.pop_back();
     expect_refused(edit, "holds no texels");
+    EXPECT_NO_THROW(session.check(make_edit(0, 0, 4, 4, 0.1f)));
     expect_same(session.render().image, render(scene, make_settings()).image);
 
     RenderSettings tessellated = make_settings();
