@@ -72,6 +72,13 @@ BoundaryRule parse_boundary_rule(std::string_view text) {
 }
 
 void read_subdivision(const JsonNode& node, Mesh& mesh) {
+    if (node.is_string()) {
+        const std::string scheme = node.as_string();
+        const bool is_known = std::any_of(kSchemes.begin(), kSchemes.end(),
+                                          [&](const auto& known) { return known.first == scheme; });
+        node.fail("must be an object, not a string",
+                  fmt::format(R"({{"scheme": "{}"}})", is_known ? scheme : "catmark"));
+    }
     node.check_keys(scene_keys::kSubdivision);
     const auto read_word = [&](const char* key, auto& value, auto parse) {
         if (const auto found = node.find(key))

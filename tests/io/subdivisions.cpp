@@ -43,6 +43,9 @@ TEST_F(Subdivisions, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of(R"({"scheme": "catmark", "creases": [[0, 4, 1]]})"), "creases");
     EXPECT_HAS(error_of(R"({"scheme": "catmark", "creases": [[0, 1, -1]]})"), "creases");
     EXPECT_HAS(error_of(R"({"scheme": "catmark", "sharp": true})"), "unknown key");
+    EXPECT_HAS(error_of(R"("bilinear")"), R"(must be an object, not a string)");
+    EXPECT_HAS(error_of(R"("bilinear")"), R"({"scheme": "bilinear"})");
+    EXPECT_HAS(error_of(R"("catmul")"), R"({"scheme": "catmark"})");
 }
 
 TEST_F(Subdivisions, a_saved_scene_loads_as_the_same_scene) {
