@@ -45,9 +45,9 @@ const char* get_space_name(DisplacementSpace space) {
     return "world";
 }
 
-/// What was said of the midlevel, if anything: 0 of floats around 0.5, or of integers, is a default.
+/// What was said of the midlevel, if anything.
 std::optional<Vec3f> get_known_midlevel(const Displacement& map, MapMeaning meaning) {
-    if (meaning == MapMeaning::declared && map.midlevel != Vec3f{}) return map.midlevel;
+    if (knows_midlevel(map, meaning)) return map.midlevel;
     return std::nullopt;
 }
 

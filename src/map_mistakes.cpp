@@ -23,11 +23,6 @@ bool is_height(const Displacement& map, MapMeaning meaning) {
     return meaning == MapMeaning::declared && map.type == DisplacementType::height;
 }
 
-/// A declared midlevel that is no zero says that somebody thought of it.
-bool knows_midlevel(const Displacement& map, MapMeaning meaning) {
-    return meaning == MapMeaning::declared && map.midlevel != Vec3f{};
-}
-
 void find_bad_texels(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
     if (!survey.bad) return;
     findings.push_back(
@@ -49,6 +44,31 @@ double find_high(const MapSurvey& survey) {
     return high;
 }
 
+/// Whoever says that 0 is meant may know better than the values.
+void find_unsigned(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                   std::vector<Finding>& findings) {
+    const bool is_known = knows_midlevel(map, meaning);
+    if (!survey.is_centred_at_half || is_height(map, meaning) || (is_known && map.midlevel != Vec3f{}))
+        return;
+    const std::string means = fmt::format("({:.3f}, {:.3f}, {:.3f})", survey.channels[0].mean,
+                                          survey.channels[1].mean, survey.channels[2].mean);
+    if (is_known)
+        findings.push_back(
+            {Severity::note, "I-NONEG",
+             fmt::format(
+                 "floats, none negative, around {}, which move the whole surface with the midlevel of 0 "
+                 "that was said; if 0.5 stands for zero, say encoding signed, or midlevel 0.5",
+                 means)});
+    else
+        findings.push_back(
+            {Severity::error, "E-NONEG",
+             fmt::format(
+                 "floats, none negative, around {}: 0.5 probably stands for zero here, and read as they "
+                 "are they would move the whole surface by that; say encoding signed, or midlevel 0.5 "
+                 "(midlevel 0 if they are meant as they are)",
+                 means)});
+}
+
 void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
                         std::vector<Finding>& findings) {
     if (survey.type == SampleType::uint8)
@@ -65,14 +85,7 @@ void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSu
                          "is assumed, values are in [{:.4g}, {:.4g}]; say midlevel and scale, or "
                          "export float",
                          find_low(survey), find_high(survey))});
-    if (survey.is_centred_at_half && !is_height(map, meaning) && !knows_midlevel(map, meaning))
-        findings.push_back(
-            {Severity::error, "E-NONEG",
-             fmt::format(
-                 "floats, none negative, around ({:.3f}, {:.3f}, {:.3f}): 0.5 stands for zero here, and "
-                 "read as they are they would move the whole surface by that; say encoding signed, "
-                 "or midlevel 0.5",
-                 survey.channels[0].mean, survey.channels[1].mean, survey.channels[2].mean)});
+    find_unsigned(map, meaning, survey, findings);
     if (!survey.colour_tag.empty())
         findings.push_back({Severity::warning, "W-SRGB",
                             fmt::format("the file calls its values colours ({}); they are read raw, but the "
@@ -127,6 +140,8 @@ void find_background(const Displacement& map, MapMeaning meaning, const MapSurve
     constexpr double kTolerance = 0.01;
     if (!survey.has_background || survey.channel_count < 3 || survey.is_gray || is_height(map, meaning))
         return;
+    if (survey.is_centred_at_half && knows_midlevel(map, meaning) && map.midlevel == Vec3f{})
+        return; // find_unsigned tells of that offset
     const double step = survey.type == SampleType::uint8    ? 1.0 / 255
                         : survey.type == SampleType::uint16 ? 1.0 / 65535
                                                             : 0;
@@ -175,6 +190,10 @@ ptrdiff_t find_normal_channel(const AxisMap& axes) {
 }
 
 } // namespace
+
+bool knows_midlevel(const Displacement& map, MapMeaning meaning) {
+    return meaning == MapMeaning::declared && (map.has_midlevel || map.midlevel != Vec3f{});
+}
 
 std::string describe_place(const TexelPlace& place, const Displacement& map) {
     return fmt::format("column {}, row {}{}", place.x, place.y,

@@ -13,6 +13,9 @@ namespace relief {
 /// "column 5, row 3", and the tile where a map has several.
 std::string describe_place(const TexelPlace& place, const Displacement& map);
 
+/// Whether the midlevel of the map is somebody's word: 0 may be a mere default.
+bool knows_midlevel(const Displacement& map, MapMeaning meaning);
+
 /// What the texels alone show. With MapMeaning::declared midlevel, scale and type of `map` are taken at their
 /// word; otherwise the midlevel of the survey counts.
 void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,

@@ -103,6 +103,7 @@ struct Displacement {
     FrameLengths lengths = FrameLengths::absolute; ///< in tangent space; not of a height map
     AxisMap axes;
     Vec3f midlevel{0, 0, 0};
+    bool has_midlevel = false; ///< somebody said it, also where it is 0; for inspection only
     Vec3f scale{1, 1, 1};
     bool flip_v = false;
     bool is_udim = false; ///< tiles are addressed by floor(u), floor(v); a missing tile displaces by 0

@@ -95,6 +95,7 @@ Displacement make_displacement_values(const MapOptions& options) {
     map.dilate = options.dilate;
     if (options.filter) map.filter = parse_map_filter(*options.filter);
     map.autobump = options.autobump;
+    map.has_midlevel = options.midlevel.has_value();
     if (options.midlevel)
         map.midlevel = *options.midlevel;
     else if (preset && preset->midlevel && !options.encoding)

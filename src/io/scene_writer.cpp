@@ -163,7 +163,8 @@ class SceneWriter {
             node["axes"] = format_axes(map.axes, map.space);
             node["frame"] = std::string(get_name(map.frame));
             node["lengths"] = std::string(get_name(map.lengths));
-            node["midlevel"] = to_json(map.midlevel);
+            // Unsaid it is 0 of the floats that are written.
+            if (map.has_midlevel || map.midlevel != Vec3f{}) node["midlevel"] = to_json(map.midlevel);
             node["scale"] = to_json(map.scale);
             node["flip_v"] = map.flip_v;
             node["dilate"] = map.dilate;

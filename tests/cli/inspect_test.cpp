@@ -56,6 +56,16 @@ TEST_F(Inspect, a_map_is_read_as_the_options_say) {
     EXPECT_EQ(run({"inspect", "half.exr", "--encoding", "signed", "--strict"}).exit_code, 0);
     EXPECT_EQ(run({"inspect", "half.exr", "--midlevel", "0.5,0.5,0.5", "--strict"}).exit_code, 0);
     EXPECT_EQ(run({"inspect", "half.exr", "--midlevel", "0.5,0.5"}).exit_code, 2);
+    const CommandResult zero = run({"inspect", "half.exr", "--midlevel", "0"});
+    EXPECT_EQ(zero.exit_code, 0) << zero.output;
+    EXPECT_TRUE(contains(zero.output, "note: I-NONEG")) << zero.output;
+    for (const auto& [said, exit_code] : {std::pair("", 3), std::pair(R"(, "midlevel": 0)", 0)}) {
+        write("scene.json", std::string(R"({"displacements": {"bump": {"file": "half.exr")") + said +
+                                R"(}}, "meshes": {"plane": {"file": "plane.obj"}},
+                "objects": [{"mesh": "plane", "displacement": "bump"}]})");
+        const CommandResult scene = run({"inspect", "scene.json"});
+        EXPECT_EQ(scene.exit_code, exit_code) << scene.output << scene.errors;
+    }
 }
 
 TEST_F(Inspect, a_map_that_no_render_takes_is_inspected) {

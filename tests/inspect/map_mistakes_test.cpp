@@ -54,6 +54,22 @@ TEST(MapMistakes, floats_around_a_half_are_an_error_unless_that_was_said) {
     EXPECT_EQ(count_severe(inspect_map(map, MapMeaning::declared)), 0u);
 }
 
+TEST(MapMistakes, a_midlevel_of_zero_that_was_said_is_taken_at_its_word) {
+    Displacement map = make_map(make_coded(SampleType::float32, 1.2f, 0.5f));
+    EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "E-NONEG")) << "other things were said";
+    map.has_midlevel = true;
+    const Inspection inspection = inspect_map(map, MapMeaning::declared);
+    EXPECT_EQ(count_severe(inspection), 0u);
+    EXPECT_HAS_PART(find_text(inspection, "I-NONEG"), "midlevel 0.5");
+    EXPECT_HAS_PART(get_fact(inspection, "midlevel"), "0, as was said");
+    map = make_map(make_coded(SampleType::uint16, 1.2f, 0.5f));
+    EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "W-INT16"));
+    map.has_midlevel = true;
+    EXPECT_FALSE(has_code(inspect_map(map, MapMeaning::declared), "W-INT16"));
+    EXPECT_FALSE(
+        has_code(inspect_map(make_map(make_sculpt_texture(kSize)), MapMeaning::declared), "I-NONEG"));
+}
+
 TEST(MapMistakes, a_colour_tag_of_the_file_is_told) {
     auto texture = make_sculpt_texture(kSize);
     texture->colour_tag = "sRGB chunk";
