@@ -1,8 +1,10 @@
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -90,8 +92,19 @@ void report(const std::string& where, const std::string& message, const std::str
     if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
 }
 
+/// One empty line between groups of options in place of two: a help shall fit on a screen.
+class HelpFormatter : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+        for (size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
+        return text;
+    }
+};
+
 int parse_and_run(int argument_count, const char* const* arguments) {
     CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
+    app.formatter(std::make_shared<HelpFormatter>());
     app.get_formatter()->column_width(30);
     app.set_version_flag("--version", "relief " RELIEF_VERSION);
     app.allow_extras();
