@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "map_options.h"
+#include "mesh_options.h"
 #include "values.h"
 
 namespace relief::cli {
@@ -81,23 +82,12 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
         });
 }
 
-void add_mesh_options(CLI::App& verb, RenderOptions& o) {
-    const auto mesh = [&](const char* name, const char* value, const char* help, auto parse) {
-        add(verb, name, value, help, [&o, name, parse](const std::string& text) {
-            o.mesh_only.push_back(name);
-            parse(text);
-        })->group(kMeshGroup);
-    };
-    mesh("--vdm", "MAP", "displacement map; may hold <UDIM>",
-         [&o](const std::string& text) { o.mesh.displacement_map = text; });
-    mesh("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
-         [&o](const std::string& text) { o.mesh.subdivision = text; });
-    mesh("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 3",
-         [&o](const std::string& text) {
-             o.mesh.subdivision_level =
-                 int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
-         });
-    mesh("--env", "MAP", "environment picture", [&o](const std::string& text) { o.mesh.environment = text; });
+void add_options_of_meshes(CLI::App& verb, RenderOptions& o) {
+    add_mesh_options(verb, kMeshGroup, o.mesh, o.mesh_only);
+    add(verb, "--env", "MAP", "environment picture", [&o](const std::string& text) {
+        o.mesh_only.push_back("--env");
+        o.mesh.environment = text;
+    })->group(kMeshGroup);
     add_map_options(verb, o.mesh.map, {kMeshGroup, "--preset", "", &o.mesh_only});
 }
 
@@ -184,7 +174,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
     add_level_options(verb, o);
     add_machine_options(verb, o);
     add_report_options(verb, o);
-    add_mesh_options(verb, o);
+    add_options_of_meshes(verb, o);
 }
 
 void complete_render_options(RenderOptions& o) {
@@ -197,9 +187,7 @@ void complete_render_options(RenderOptions& o) {
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
                      o.input.string(),
                      "the scene file says this under 'meshes', 'displacements' and 'environment'"});
-    if (o.mesh.subdivision_level && !o.mesh.subdivision)
-        throw Error(ErrorKind::usage, {"--subdivision-level says nothing without a scheme",
-                                       "--subdivision-level", "--subdivision catmark"});
+    check_mesh_options(o.mesh);
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
                     o.settings.crop != Window{} || !o.settings.layers.empty() || !o.edits.empty()))
         throw Error(ErrorKind::usage,

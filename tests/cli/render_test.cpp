@@ -88,6 +88,41 @@ TEST_F(Render, gives_the_same_bits_for_any_number_of_threads) {
     expect_same("one.exr", "two.exr", "0");
 }
 
+TEST_F(Render, how_a_map_is_read_can_be_said_on_the_command_line) {
+    // Waves finer than the cells, on an island in the middle of a map without displacement.
+    Image map;
+    map.width = map.full_width = map.height = map.full_height = 64;
+    map.channels = {"R", "G", "B"};
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const bool is_inside = x >= 16 && x < 48 && y >= 16 && y < 48;
+            map.pixels.insert(map.pixels.end(), {0, 0, is_inside ? 0.3f + 0.1f * float((x + y) % 3) : 0});
+        }
+    write_image(map, folder_ / "waves.exr");
+    write("island.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+                        "vt .25 .25\nvt .75 .25\nvt .75 .75\nvt .25 .75\nf 1/1 2/2 3/3 4/4\n");
+    const auto render_island = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"render", "island.obj", "--vdm",   "waves.exr",
+                                              "--size", "48x32",      "--level", "3",
+                                              "--spp",  "4",          "-o",      output};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const CommandResult result = run(arguments);
+        ASSERT_EQ(result.exit_code, 0) << result.errors;
+    };
+    const auto expect_differs = [&](const std::string& a, const std::string& b) {
+        EXPECT_EQ(run({"compare", a, b, "--threshold", "0.01"}).exit_code, 7) << a << " and " << b;
+    };
+    render_island("plain.exr", {});
+    render_island("none.exr", {"--filter", "none"});
+    expect_same("plain.exr", "none.exr", "0");
+    render_island("mip.exr", {"--filter", "mip"});
+    expect_differs("plain.exr", "mip.exr");
+    render_island("bump.exr", {"--autobump"});
+    expect_differs("plain.exr", "bump.exr");
+    render_island("raw.exr", {"--no-dilate"});
+    expect_differs("plain.exr", "raw.exr");
+}
+
 TEST_F(Render, compare_exits_7_above_the_threshold_only) {
     render_ok("a.exr", {"--seed", "1"});
     render_ok("b.exr", {"--seed", "2"});

@@ -76,6 +76,13 @@ TEST_F(Usage, only_what_exists_can_be_chosen) {
     expect_refused({"render", "plane.obj", "-o", "a.png", "--layers", "depth"}, ".exr");
 }
 
+TEST_F(Usage, options_that_say_how_a_map_is_read_need_one) {
+    expect_refused({"render", "plane.obj", "--autobump"}, "--autobump says nothing without a map");
+    expect_refused({"render", "plane.obj", "--no-dilate"}, "--no-dilate says nothing without a map");
+    expect_refused({"render", "plane.obj", "--filter", "mip"}, "--filter says nothing without a map");
+    expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--filter", "mipp"}, "did you mean 'mip'", 3);
+}
+
 TEST_F(Usage, options_of_one_engine_do_not_go_with_the_other) {
     for (const std::string verb : {"render", "bench"}) {
         const std::string input = verb == "render" ? "plane.obj" : "paper1";

@@ -1,0 +1,61 @@
+#include "mesh_options.h"
+
+#include <functional>
+
+#include "values.h"
+
+namespace relief::cli {
+
+void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
+                      std::vector<std::string>& given) {
+    const auto add = [&](const char* name, const char* value, const char* help,
+                         const std::function<void(const std::string&)>& set) {
+        verb.add_option_function<std::string>(
+                name,
+                [&given, name, set](const std::string& text) {
+                    given.push_back(name);
+                    set(text);
+                },
+                help)
+            ->type_name(value)
+            ->group(group);
+    };
+    const auto add_flag = [&](const char* name, const char* help, bool& flag, bool value) {
+        verb.add_flag_callback(
+                name,
+                [&given, name, &flag, value] {
+                    given.push_back(name);
+                    flag = value;
+                },
+                help)
+            ->group(group);
+    };
+    add("--vdm", "MAP", "displacement map; may hold <UDIM>",
+        [&options](const std::string& text) { options.displacement_map = text; });
+    add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
+        [&options](const std::string& text) { options.subdivision = text; });
+    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 3",
+        [&options](const std::string& text) {
+            options.subdivision_level =
+                int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
+        });
+    add("--filter", "NAME", "of the map where cells are larger than texels: mip, none (default)",
+        [&options](const std::string& text) { options.map.filter = text; });
+    add_flag("--autobump", "shade the map's detail that is finer than the cells", options.map.autobump, true);
+    add_flag("--no-dilate", "leave texels between uv islands as the map has them", options.map.dilate, false);
+}
+
+void check_mesh_options(const MeshSceneOptions& options) {
+    if (options.subdivision_level && !options.subdivision)
+        throw Error(ErrorKind::usage, {"--subdivision-level says nothing without a scheme",
+                                       "--subdivision-level", "--subdivision catmark"});
+    const bool has_use = options.map.filter || options.map.autobump || !options.map.dilate;
+    if (has_use && options.displacement_map.empty())
+        throw Error(ErrorKind::usage,
+                    {fmt::format("{} says nothing without a map", options.map.filter     ? "--filter"
+                                                                  : options.map.autobump ? "--autobump"
+                                                                                         : "--no-dilate"),
+                     "", "--vdm MAP"});
+}
+
+} // namespace relief::cli
