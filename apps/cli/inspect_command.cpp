@@ -13,6 +13,7 @@
 #include "commands.h"
 #include "exit_codes.h"
 #include "map_options.h"
+#include "mesh_options.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
@@ -25,8 +26,9 @@ namespace {
 
 struct InspectOptions {
     std::string file, mesh, picture;
-    MapOptions map;
-    std::vector<std::string> map_only; ///< options given that only a map takes
+    MeshSceneOptions scene;             ///< its `map` is also what a map alone means
+    std::vector<std::string> mesh_only; ///< options given that only a mesh takes
+    std::vector<std::string> map_only;  ///< options given that only a map takes, or the mesh of one
     bool is_json = false, is_strict = false;
 };
 
@@ -72,7 +74,7 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
 
 Inspection inspect_map_file(const InspectOptions& options) {
     std::vector<std::string> warnings;
-    const Displacement map = load_map(options.file, options.map, warnings);
+    const Displacement map = load_map(options.file, options.scene.map, warnings);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
@@ -97,7 +99,7 @@ Inspection inspect_map_file(const InspectOptions& options) {
     return inspection;
 }
 
-Inspection inspect_mesh_file(const InspectOptions& options) {
+Inspection inspect_plain_mesh(const InspectOptions& options) {
     Mesh mesh = load_mesh(options.file);
     Inspection inspection = inspect_mesh(mesh);
     if (!options.picture.empty())
@@ -106,8 +108,7 @@ Inspection inspect_mesh_file(const InspectOptions& options) {
     return inspection;
 }
 
-Inspection inspect_scene_file(const InspectOptions& options) {
-    const Scene scene = load_scene(options.file);
+Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
     RenderSettings settings;
     settings.width = scene.picture.width.value_or(settings.width);
     settings.height = scene.picture.height.value_or(settings.height);
@@ -127,11 +128,12 @@ Inspection inspect_file(const InspectOptions& options) {
     case FileKind::map:
         return inspect_map_file(options);
     case FileKind::mesh:
-        return inspect_mesh_file(options);
+        if (options.mesh_only.empty()) return inspect_plain_mesh(options);
+        return inspect_as_scene(load_mesh_scene(options.file, options.scene), options);
     case FileKind::scene:
         break;
     }
-    return inspect_scene_file(options);
+    return inspect_as_scene(load_scene(options.file), options);
 }
 
 /// For programs that read the answer: what cannot be read is a finding, too.
@@ -169,11 +171,20 @@ void print_inspection_json(const Inspection& inspection, const std::string& file
 void check_options(const InspectOptions& options) {
     if (options.file.empty())
         throw Error(ErrorKind::usage, {"no file given", "", "relief inspect SCENE.json, a mesh or a map"});
-    if (get_kind(options.file) != FileKind::map && (!options.map_only.empty() || !options.mesh.empty()))
-        throw Error(
-            ErrorKind::usage,
-            {fmt::format("{} goes with a map", options.mesh.empty() ? options.map_only.front() : "--mesh"),
-             options.file, "relief inspect MAP --mesh MESH, or a scene file that says it all"});
+    const FileKind kind = get_kind(options.file);
+    if (kind != FileKind::mesh && !options.mesh_only.empty())
+        throw Error(ErrorKind::usage,
+                    {fmt::format("{} goes with a mesh", options.mesh_only.front()), options.file,
+                     "relief inspect MESH --vdm MAP, or a scene file that says it all"});
+    const bool has_map = kind == FileKind::map || !options.scene.displacement_map.empty();
+    if (kind != FileKind::map && !options.mesh.empty())
+        throw Error(ErrorKind::usage,
+                    {"--mesh goes with a map", options.file, "relief inspect MAP --mesh MESH"});
+    if (!has_map && !options.map_only.empty())
+        throw Error(ErrorKind::usage,
+                    {fmt::format("{} goes with a map", options.map_only.front()), options.file,
+                     "relief inspect MAP, or MESH --vdm MAP, or a scene file that says it all"});
+    check_mesh_options(options.scene);
     if (!options.picture.empty()) check_writable(options.picture);
 }
 
@@ -202,7 +213,9 @@ Command add_inspect(CLI::App& verb) {
         ->type_name("FILE");
     verb.add_flag("--json", options->is_json, "print a JSON object");
     verb.add_flag("--strict", options->is_strict, "exit 6 when there are warnings");
-    add_map_options(verb, options->map,
+    add_mesh_options(verb, "With a mesh, to inspect what a render would make of it", options->scene,
+                     options->mesh_only);
+    add_map_options(verb, options->scene.map,
                     {"What a map means, where it is known", "--preset", "", &options->map_only});
     return [options] { return run_inspect(*options); };
 }

@@ -111,11 +111,32 @@ TEST_F(Inspect, a_check_picture_shows_base_displaced_axes_and_folds) {
     EXPECT_EQ(run({"inspect", "bump.exr", "-o", "check.txt"}).exit_code, 2);
 }
 
+TEST_F(Inspect, a_mesh_is_inspected_as_the_scene_that_a_render_would_make) {
+    const CommandResult plain = run({"inspect", "plane.obj"});
+    EXPECT_FALSE(contains(plain.output, "map.bump.")) << plain.output;
+    const CommandResult displaced = run({"inspect", "plane.obj", "--vdm", "bump.exr", "--axes", "t,n,b"});
+    EXPECT_EQ(displaced.exit_code, 0) << displaced.output << displaced.errors;
+    EXPECT_TRUE(contains(displaced.output, "map.bump.axes")) << displaced.output;
+    const auto patches = [&](const CommandResult& result) {
+        const size_t at = result.output.find("\npatches ");
+        return at == std::string::npos ? -1 : std::atoi(result.output.c_str() + at + 9);
+    };
+    EXPECT_EQ(patches(displaced), 1) << displaced.output;
+    const CommandResult smooth = run({"inspect", "plane.obj", "--vdm", "bump.exr", "--subdivision", "catmark",
+                                      "--subdivision-level", "2", "-o", "check.png"});
+    EXPECT_EQ(patches(smooth), 16) << smooth.output << smooth.errors;
+    EXPECT_TRUE(exists("check.png"));
+}
+
 TEST_F(Inspect, options_of_maps_are_refused_elsewhere) {
     const CommandResult result = run({"inspect", "plane.obj", "--axes", "t,b,n"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_TRUE(contains(result.errors, "--axes goes with a map")) << result.errors;
     EXPECT_EQ(run({"inspect", "plane.obj", "--mesh", "plane.obj"}).exit_code, 2);
+    const CommandResult map = run({"inspect", "bump.exr", "--subdivision", "catmark"});
+    EXPECT_EQ(map.exit_code, 2);
+    EXPECT_TRUE(contains(map.errors, "--subdivision goes with a mesh")) << map.errors;
+    EXPECT_EQ(run({"inspect", "plane.obj", "--subdivision-level", "2"}).exit_code, 2);
 }
 
 TEST_F(Inspect, a_scene_tells_its_counts_and_costs) {
