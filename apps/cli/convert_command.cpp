@@ -198,7 +198,7 @@ void add_surface_options(CLI::App& verb, ConvertOptions& options) {
         [&](const std::string& text) { options.level = int(parse_integer("--level", text, 0, kMaxLevel)); });
     add("--subdivision", "NAME", "of a mesh: catmark, bilinear, none (default)",
         [&](const std::string& text) { options.subdivision = text; });
-    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 2",
+    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 3",
         [&](const std::string& text) {
             options.subdivision_level =
                 int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
