@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "frame_inverse.h"
 #include "math/vec.h"
 #include "relief/convert.h"
 #include "relief/error.h"
@@ -92,14 +93,24 @@ Vec3f to_object(const FrameMatrix& frame, const Vec3f& d) {
     return frame[0] * d.x + frame[1] * d.y + frame[2] * d.z;
 }
 
-/// The (t, b, n) that the frame turns into `d`; zero where the frame has collapsed.
-Vec3f to_tangent(const FrameMatrix& frame, const Vec3f& d) {
-    const Vec3f bn = cross(frame[1], frame[2]), nt = cross(frame[2], frame[0]),
-                tb = cross(frame[0], frame[1]);
-    const float determinant = dot(frame[0], bn);
-    if (determinant == 0) return {};
-    return Vec3f{dot(bn, d), dot(nt, d), dot(tb, d)} / determinant;
-}
+/// Texels whose displacement their frames do not reach.
+struct Misses {
+    uint32_t count = 0;
+    float largest = 0; ///< scene units
+
+    void add(float error, const Vec3f& d) {
+        constexpr float kTolerance = 0.01f; ///< of the displacement
+        if (error > kTolerance * length(d)) ++count;
+        largest = std::max(largest, error);
+    }
+    std::string describe(int udim) const {
+        return fmt::format(
+            "tile {}: tangent space does not hold the displacement of {} texels, by up to {:.3g} scene "
+            "units: the frames of the mesh nearly collapse there, as tangents of other directions meet "
+            "inside a face; use object space, or unwrap these faces anew",
+            udim, count, largest);
+    }
+};
 
 /// One texel more around what is known: the mean of its known neighbours.
 void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t height) {
@@ -119,19 +130,35 @@ void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t
         }
 }
 
-enum class Turn { to_object, to_tangent };
-
-/// Through the frames of `surface`.
-Field change_space(Turn turn, const Surface& surface, uint8_t tile, const Field& field) {
+/// Through the frames of `surface`: `turn(frame, index of the texel)` makes the new displacement.
+template <class Turn>
+Field change_space(const Surface& surface, uint8_t tile, const Field& field, const Turn& turn) {
     const Texture& texture = *surface.map.tiles[tile].texture;
     Field changed(field.size());
     std::vector<uint8_t> is_known(field.size());
-    visit_texel_frames(surface, tile, [&](uint32_t x, uint32_t y, const FrameMatrix& frame) {
+    visit_texel_frames(surface, tile, [&](uint32_t x, uint32_t y, const TexelFrame& frame) {
         const size_t at = size_t(y) * texture.width + x;
-        changed[at] = turn == Turn::to_object ? to_object(frame, field[at]) : to_tangent(frame, field[at]);
+        changed[at] = turn(frame, at);
         is_known[at] = 1;
     });
     for (int k = 0; k < kMargin; ++k) grow(changed, is_known, texture.width, texture.height);
+    return changed;
+}
+
+Field change_to_object(const Surface& surface, uint8_t tile, const Field& field) {
+    return change_space(surface, tile, field,
+                        [&](const TexelFrame& frame, size_t at) { return to_object(frame.axes, field[at]); });
+}
+
+/// A texel may be visited again, by a nearer patch.
+Field change_to_tangent(const Surface& surface, uint8_t tile, const Field& field, Misses& misses) {
+    std::vector<float> errors(field.size());
+    Field changed = change_space(surface, tile, field, [&](const TexelFrame& frame, size_t at) {
+        const FrameCoordinates inverse = invert_frame(frame, field[at]);
+        errors[at] = inverse.error;
+        return inverse.tbn;
+    });
+    for (size_t at = 0; at < field.size(); ++at) misses.add(errors[at], field[at]);
     return changed;
 }
 
@@ -167,7 +194,8 @@ Surface make_framed_surface(const Displacement& map, const Displacement& meant, 
 
 } // namespace
 
-Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh) {
+Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh,
+                         std::vector<std::string>* warnings) {
     check_kinds(from, to, mesh);
     if (to.scale.x == 0 || to.scale.y == 0 || to.scale.z == 0)
         refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
@@ -184,8 +212,10 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         const TexelRectangle all{0, 0, source.width - 1, source.height - 1};
         if (!find_texel_range(source, all)) refuse_bad_texel(source, all);
         Field field = decode_all(from, source);
-        if (source_frames) field = change_space(Turn::to_object, *source_frames, uint8_t(k), field);
-        if (target_frames) field = change_space(Turn::to_tangent, *target_frames, uint8_t(k), field);
+        if (source_frames) field = change_to_object(*source_frames, uint8_t(k), field);
+        Misses misses;
+        if (target_frames) field = change_to_tangent(*target_frames, uint8_t(k), field, misses);
+        if (warnings && misses.count > 0) warnings->push_back(misses.describe(from.tiles[k].udim));
         if (from.flip_v != to.flip_v) turn_rows(field, source.width);
         result.tiles.push_back({from.tiles[k].udim, encode_all(to, source, field)});
     }

@@ -65,6 +65,19 @@ std::optional<PatchPlace> find_place(const std::array<Point, 4>& c, const Point&
     return place;
 }
 
+TexelFrame blend_frames(const std::array<VertexData, 4>& corners, float u, float v) {
+    const Frame frame = blend_corners(corners, u, v).frame;
+    TexelFrame result{{frame.t, frame.b, frame.n}, {}};
+    const std::array<float, 4> weights{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+    for (size_t k = 0; k < 4; ++k) {
+        const Frame& corner = corners[k].frame;
+        result.lengths[0] += weights[k] * length(corner.t);
+        result.lengths[1] += weights[k] * length(corner.b);
+        result.lengths[2] += weights[k] * length(corner.n);
+    }
+    return result;
+}
+
 class FrameVisitor {
   public:
     FrameVisitor(const Surface& surface, uint8_t tile)
@@ -97,8 +110,7 @@ class FrameVisitor {
         float& distance = distances_[size_t(row) * texture_.width + column];
         if (!(float(place.distance) < distance)) return;
         distance = float(place.distance);
-        const Frame frame = blend_corners(samples.corners(), float(place.u), float(place.v)).frame;
-        visit(column, row, FrameMatrix{frame.t, frame.b, frame.n});
+        visit(column, row, blend_frames(samples.corners(), float(place.u), float(place.v)));
     }
 
     const Surface& surface_;
@@ -109,7 +121,7 @@ class FrameVisitor {
 } // namespace
 
 void visit_texel_frames(const Surface& surface, uint8_t tile,
-                        const std::function<void(uint32_t, uint32_t, const FrameMatrix&)>& visit) {
+                        const std::function<void(uint32_t, uint32_t, const TexelFrame&)>& visit) {
     FrameVisitor visitor(surface, tile);
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         if (surface.tile(surface.quads[patch].vertex[0]) == tile) visitor.visit_patch(patch, visit);

@@ -117,12 +117,14 @@ int convert_map_file(const ConvertOptions& options) {
     std::vector<std::string> warnings;
     const Displacement from = load_map(options.input, options.from, warnings);
     print_warnings(warnings);
+    warnings.clear();
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
     const MapSamples samples = choose_samples(options, from);
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement converted =
-        convert_map(from, make_target(options, from, mesh_or_null, samples), mesh_or_null);
+        convert_map(from, make_target(options, from, mesh_or_null, samples), mesh_or_null, &warnings);
+    print_warnings(warnings);
     write_map(converted, options.output, samples);
     fmt::print("wrote {}: {}\n", options.output, describe(converted));
     return kExitDone;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "relief/scene.h"
 
@@ -11,11 +12,14 @@ namespace relief {
 /// scale and flip_v; its tiles do not count, name, is_udim, wrap, dilate, filter and autobump stay those of
 /// `from`. Texels of the result are 32-bit floats, three channels, not rounded or clipped. Between tangent
 /// and object space, and between frames of tangent space, `mesh` gives the frames: texels that lie beside its
-/// faces take over the nearest ones, up to eight texels away, and farther ones hold no displacement. Rounding
-/// apart, and but for those, a way there and back gives what was there. Throws Error{usage} where the two
-/// cannot be turned into each other (a height out of vectors, world space, a missing mesh), Error{bad_input}
-/// for a mesh that cannot carry the map.
-Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh = nullptr);
+/// faces take over the nearest ones, up to eight texels away, and farther ones hold no displacement. Where
+/// the frames of tangent space nearly collapse (tangents of other directions meet inside a face) it holds a
+/// displacement only as far as values four times as large do; what is lost is added to `warnings`, unless
+/// that is null. Rounding apart, and but for those, a way there and back gives what was there. Throws
+/// Error{usage} where the two cannot be turned into each other (a height out of vectors, world space, a
+/// missing mesh), Error{bad_input} for a mesh that cannot carry the map.
+Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh = nullptr,
+                         std::vector<std::string>* warnings = nullptr);
 
 /// Axes as options and scene files take them: "t,-n,b", or "x,-z,y" in object and world space.
 std::string format_map_axes(const AxisMap& axes, DisplacementSpace space);

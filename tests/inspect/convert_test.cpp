@@ -129,6 +129,44 @@ TEST(ConvertMap, frames_are_turned_into_others_and_back) {
     EXPECT_NO_THROW(convert_map(map, relative));
 }
 
+/// A plane on whose upper edge tangents and bitangents point the other way.
+Mesh make_turning_plane() {
+    Mesh plane = make_sculpt_plane();
+    plane.normals = {{0, 0, 1}};
+    plane.normal_indices.assign(plane.position_indices.size(), 0);
+    for (const uint32_t index : plane.position_indices)
+        plane.tangents.push_back({plane.positions[index].y > 0 ? -1.0f : 1.0f, 0, 0, 1});
+    return plane;
+}
+
+TEST(ConvertMap, frames_that_nearly_collapse_give_bounded_values_and_a_warning) {
+    const Mesh plane = make_turning_plane();
+    auto texture = make_sculpt_texture(kSize);
+    for (size_t k = 0; k < texture->floats.size(); k += 4)
+        texture->floats[k] = 0.3f, texture->floats[k + 1] = 0.2f, texture->floats[k + 2] = 0.1f;
+    Displacement object = make_map(texture), tangent;
+    object.space = DisplacementSpace::object;
+    tangent.frame = FrameKind::file;
+    std::vector<std::string> warnings;
+    const Displacement there = convert_map(object, tangent, &plane, &warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS_PART(warnings[0], "tile 1001: tangent space does not hold the displacement of");
+    EXPECT_HAS_PART(warnings[0], "scene units");
+    EXPECT_LT(find_largest_displacement(there), length(Vec3f{0.3f, 0.2f, 0.1f}) / 0.25f);
+    for (uint32_t y = 0; y < kSize; ++y) {
+        const std::array<float, 3> texel = read_texel(*there.tiles[0].texture, 5, y);
+        EXPECT_NEAR(texel[2], 0.1f, 1e-5f) << "along the normal nothing is lost, in row " << y;
+        const float stretch = std::fabs(1 - 2 * (float(y) + 0.5f) / kSize);
+        if (stretch > 0.25f) EXPECT_NEAR(std::fabs(texel[0]) * stretch, 0.3f, 1e-4f) << "row " << y;
+    }
+    warnings.clear();
+    convert_map(make_map(make_sculpt_texture(128)), object, &plane, &warnings);
+    const Mesh tube = make_tube();
+    tangent.frame = FrameKind::dpdu, tangent.lengths = FrameLengths::relative;
+    convert_map(object, tangent, &tube, &warnings);
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+}
+
 TEST(ConvertMap, a_height_becomes_a_vector_along_the_normal) {
     auto texture = make_sculpt_texture(kSize);
     texture->channel_count = 1;
