@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string rest(reinterpret_cast<const char*>(data), size);
     const std::string exr = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) + rest;
     std::istringstream exr_stream(exr);
-    relief::find_oversized_exr_attribute(exr_stream, exr.size());
+    relief::find_missized_exr_attribute(exr_stream, exr.size());
     const std::string png = "\x89PNG\r\n\x1a\n" + rest;
     std::istringstream png_stream(png);
     relief::has_oversized_png_chunk(png_stream, png.size());

@@ -1,5 +1,7 @@
 // Attributes of an EXR header: their sizes, which OpenEXR believes before it reads them (a damaged one would
 // make it take gigabytes), and those that say something of colours.
+// OpenEXR reads values of most types without a look at their size. Where the two differ it finds the next
+// attribute elsewhere than who goes by sizes, so that a size is checked against its type as well.
 #pragma once
 
 #include <istream>
@@ -8,10 +10,10 @@
 
 namespace relief {
 
-/// Name of the first attribute of an EXR stream that claims to be longer than the stream; nothing when all
-/// fit, or when the stream is no EXR (the reader will say so). `stream_bytes` is its whole length; the
-/// position moves.
-std::optional<std::string> find_oversized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
+/// Name of the first attribute of an EXR stream, in the headers of all of its parts, that claims to be longer
+/// than the stream or has not the size of its type; nothing when all fit, or when the stream is no EXR (the
+/// reader will say so). `stream_bytes` is its whole length; the position moves.
+std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
 
 /// What the header of an EXR stream says of colours: "attribute chromaticities"; empty: nothing, or no EXR.
 std::string find_exr_colour_tag(std::istream& stream);

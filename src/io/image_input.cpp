@@ -64,9 +64,26 @@ void check_extension(const std::string& name) {
                                            suggest_word(extension, kExtensions)});
 }
 
+/// The library of pictures would offer other bytes to readers of every kind that it knows, some of which
+/// believe any size.
+void check_start(std::istream& stream, const std::string& name) {
+    constexpr std::array<std::string_view, 6> kStarts = {"\x76\x2f\x31\x01", "II",       "MM",
+                                                         "\x89PNG",          "\xff\xd8", "#?"};
+    std::string start(4, '\0');
+    stream.read(start.data(), std::streamsize(start.size()));
+    start.resize(size_t(stream.gcount()));
+    if (std::none_of(kStarts.begin(), kStarts.end(),
+                     [&](std::string_view known) { return start.starts_with(known); }))
+        fail(name, "is no EXR, TIFF, PNG, JPEG or HDR file: it starts otherwise", kDamagedHint);
+    stream.clear();
+    stream.seekg(0);
+}
+
 void check_attributes(std::istream& stream, const std::string& name, uint64_t file_bytes) {
-    if (const std::optional<std::string> attribute = find_oversized_exr_attribute(stream, file_bytes))
-        fail(name, fmt::format("is damaged: attribute '{}' is longer than the file", *attribute),
+    if (const std::optional<std::string> attribute = find_missized_exr_attribute(stream, file_bytes))
+        fail(name,
+             fmt::format("is damaged: attribute '{}' is longer than the file, or not as long as its type",
+                         *attribute),
              kDamagedHint);
     stream.clear();
     stream.seekg(0);
@@ -80,6 +97,7 @@ void check_attributes(std::istream& stream, const std::string& name, uint64_t fi
 std::unique_ptr<PixelSource> open(std::unique_ptr<std::istream> stream, const std::string& name,
                                   uint64_t file_bytes,
                                   const std::function<std::unique_ptr<PixelSource>()>& open_other) {
+    check_start(*stream, name);
     check_attributes(*stream, name, file_bytes);
     std::unique_ptr<PixelSource> source = open_plain_exr(std::move(stream), name);
     if (!source) source = open_other();

@@ -152,7 +152,28 @@ TEST_F(ImageFiles, damaged_images_are_refused_with_their_names) {
     const std::string long_chunk = std::string("\x89PNG\r\n\x1a\n") + "\x7f\xff\xff\xf0tEXt";
     EXPECT_HAS(message_of([&] { read_texture(write("c.png", long_chunk)); }), "ends within a chunk");
     EXPECT_HAS(message_of([&] { read_texture(write("a.txt", "x")); }), "unknown kind of image");
+    EXPECT_HAS(message_of([&] { read_texture(write("text.png", "GIF89a")); }),
+               "is no EXR, TIFF, PNG, JPEG or HDR");
     EXPECT_EQ(parse_texture(bytes, "memory.exr").width, 64u);
+}
+
+TEST_F(ImageFiles, attributes_that_are_not_as_long_as_their_type_are_refused) {
+    const auto whole =
+        write_pixels<float>("w.exr", 4, 4, 3, OIIO::TypeDesc::FLOAT, std::vector<float>(4 * 4 * 3, 1.5f));
+    std::ifstream stream(whole, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    const auto expect_refused = [&](const std::string& damaged, const std::string& attribute) {
+        EXPECT_HAS(message_of([&] { parse_texture(damaged, "h.exr"); }), "attribute '" + attribute + "' is");
+    };
+    // A list of channels that ends early: OpenEXR would take its rest for attributes, of any length.
+    std::string short_list = bytes;
+    short_list[bytes.find("chlist") + 11] = 0;
+    expect_refused(short_list, "channels");
+    std::string long_number = bytes;
+    const size_t at = bytes.find("pixelAspectRatio") + 17 + 6;
+    ASSERT_EQ(bytes[at], 4);
+    long_number[at] = 8;
+    expect_refused(long_number, "pixelAspectRatio");
 }
 
 TEST_F(ImageFiles, unwritable_outputs_are_refused) {
