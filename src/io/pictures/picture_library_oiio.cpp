@@ -59,12 +59,31 @@ PixelHeader make_header(const OIIO::ImageSpec& spec) {
     return header;
 }
 
+/// OpenImageIO 2.4 takes an offset before the start, as damaged tables of chunks hold it, for a place in
+/// memory.
+class MemoryReader final : public OIIO::Filesystem::IOMemReader {
+  public:
+    using IOMemReader::IOMemReader;
+
+    bool seek(int64_t offset) override { return holds(offset) && IOMemReader::seek(offset); }
+    size_t pread(void* bytes, size_t count, int64_t offset) override {
+        return holds(offset) ? IOMemReader::pread(bytes, count, offset) : 0;
+    }
+    size_t read(void* bytes, size_t count) override {
+        const size_t done = pread(bytes, count, m_pos);
+        m_pos += int64_t(done);
+        return done;
+    }
+
+  private:
+    bool holds(int64_t offset) const { return offset >= 0 && uint64_t(offset) <= size(); }
+};
+
 class OiioSource final : public PixelSource {
   public:
     explicit OiioSource(std::string name) : name_(std::move(name)) { open(); }
     OiioSource(std::string name, std::string_view bytes)
-        : name_(std::move(name)),
-          proxy_(std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size())) {
+        : name_(std::move(name)), proxy_(std::make_unique<MemoryReader>(bytes.data(), bytes.size())) {
         open();
     }
 
@@ -94,7 +113,7 @@ class OiioSource final : public PixelSource {
     }
 
     std::string name_;
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> proxy_; ///< of pictures in memory; outlives the input
+    std::unique_ptr<MemoryReader> proxy_; ///< of pictures in memory; outlives the input
     std::unique_ptr<OIIO::ImageInput> input_;
     PixelHeader header_;
 };
