@@ -123,13 +123,30 @@ Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
     return inspection;
 }
 
+/// What the mesh is, then what a render makes of it; what both say is said once.
+Inspection inspect_mesh_as_rendered(const InspectOptions& options) {
+    const Scene scene = load_mesh_scene(options.file, options.scene);
+    Inspection inspection = inspect_mesh(scene.meshes.front());
+    const auto add_new = [](auto added, auto& all, const auto& is_same) {
+        for (auto& one : added)
+            if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return is_same(one, other); }))
+                all.push_back(std::move(one));
+    };
+    Inspection rendered = inspect_as_scene(scene, options);
+    add_new(std::move(rendered.facts), inspection.facts,
+            [](const Fact& a, const Fact& b) { return a.name == b.name; });
+    add_new(std::move(rendered.findings), inspection.findings,
+            [](const Finding& a, const Finding& b) { return a.code == b.code; });
+    return inspection;
+}
+
 Inspection inspect_file(const InspectOptions& options) {
     switch (get_kind(options.file)) {
     case FileKind::map:
         return inspect_map_file(options);
     case FileKind::mesh:
         if (options.mesh_only.empty()) return inspect_plain_mesh(options);
-        return inspect_as_scene(load_mesh_scene(options.file, options.scene), options);
+        return inspect_mesh_as_rendered(options);
     case FileKind::scene:
         break;
     }
