@@ -202,7 +202,10 @@ void complete_render_options(RenderOptions& o) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
-        throw Error(ErrorKind::usage, {"there is no such file", "--edits " + o.edits, "-: standard input"});
+        throw Error(ErrorKind::usage,
+                    {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
+                                                      : "there is no such file",
+                     "--edits " + o.edits, "-: standard input, which may be a pipe"});
     check_writable(o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }
