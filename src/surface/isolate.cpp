@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/check.h"
 #include "surface/quad_cutter.h"
 
 namespace relief {
@@ -238,7 +239,8 @@ void isolate_irregular_points(RefinedMesh& refined, int depth) {
         return;
     }
     Plan plain(refined, depth, false);
-    plain.make();
+    [[maybe_unused]] const bool is_sound = plain.make();
+    DCHECK(is_sound);
     refined = carry_out(plain, refined);
 }
 

@@ -14,8 +14,8 @@ inline constexpr int kIsolationDepth = 3;
 /// times: a smaller one at the point and two between it and the far sides. Sides between regular points stay
 /// whole. Quads along a semi-sharp crease become strips along it, down to the width at which it has worn off:
 /// where the crease goes on straight the patches are exact; where it ends, turns or meets another, they are
-/// cut towards that point as well. Where such quads come too close to each other, as below level 2, those at
-/// creases stay whole.
+/// cut towards that point as well. Where such quads come too close to each other anywhere on the mesh, as
+/// below level 2, all of those at creases stay whole.
 void isolate_irregular_points(RefinedMesh& refined, int depth);
 
 } // namespace relief

@@ -15,7 +15,7 @@ template <class Value> Value blend(const std::array<Value, 4>& c, const Vec2<dou
 } // namespace
 
 QuadCutter::QuadCutter(const RefinedMesh& source, std::vector<SideCut> cuts)
-    : source_(source), cuts_(std::move(cuts)), cut_edges_(cuts_.size()) {
+    : source_(source), cuts_(std::move(cuts)), first_pieces_(cuts_.size(), kNoIndex) {
     result_.point_count = source.point_count;
     result_.is_regular = source.is_regular;
     result_.limit_normals = source.limit_normals;
@@ -53,18 +53,19 @@ void QuadCutter::register_side(uint32_t k) {
     const uint32_t first = source_.points[view_.quad][(k + view_.turn) % 4];
     const uint32_t second = source_.points[view_.quad][(k + view_.turn + 1) % 4];
     const SideCut& cut = cuts_[edge];
-    std::vector<CutEdge>& pieces = cut_edges_[edge];
-    if (pieces.empty())
+    if (first_pieces_[edge] == kNoIndex) {
+        first_pieces_[edge] = uint32_t(pieces_.size());
         for (int d = 0; d < cut.count(); ++d)
-            pieces.push_back({add_point(), add_edge(source_.is_sharp[edge])});
+            pieces_.push_back({add_point(), add_edge(source_.is_sharp[edge])});
+    }
     const bool is_from_second = cut.from == second;
     const Corner &from = kSquare[is_from_second ? (k + 1) % 4 : k],
                  &to = kSquare[is_from_second ? k : (k + 1) % 4];
     uint32_t previous = is_from_second ? first : second;
     double s = 1;
-    int number = 0;
-    for (const CutEdge& piece : pieces) {
-        s = cut.next(s, number++);
+    for (int number = 0; number < cut.count(); ++number) {
+        const CutEdge& piece = pieces_[first_pieces_[edge] + uint32_t(number)];
+        s = cut.next(s, number);
         const Corner at = from * (1 - s) + to * s;
         points_[{at.x, at.y}] = piece.point;
         edges_[{std::min(previous, piece.point), std::max(previous, piece.point)}] = piece.edge;
@@ -83,8 +84,9 @@ void QuadCutter::begin(const QuadView& view) {
 }
 
 void QuadCutter::add_whole(uint32_t quad) {
-    begin({quad, 0, false});
-    add(kSquare);
+    result_.points.push_back(source_.points[quad]), result_.edges.push_back(source_.edges[quad]);
+    result_.places.push_back(source_.places[quad]);
+    if (!source_.uvs.empty()) result_.uvs.push_back(source_.uvs[quad]);
 }
 
 void QuadCutter::add_box(const Corner& lower, const Corner& upper) {

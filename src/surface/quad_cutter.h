@@ -39,6 +39,7 @@ class QuadCutter {
     /// `cuts` holds one an edge of `source`.
     QuadCutter(const RefinedMesh& source, std::vector<SideCut> cuts);
 
+    /// None of its sides is cut.
     void add_whole(uint32_t quad);
 
     /// All that follows is in this quad.
@@ -68,7 +69,8 @@ class QuadCutter {
     const RefinedMesh& source_;
     std::vector<SideCut> cuts_;
     RefinedMesh result_;
-    std::vector<std::vector<CutEdge>> cut_edges_; ///< one an edge of the source
+    std::vector<uint32_t> first_pieces_; ///< one an edge of the source: where its pieces begin, or kNoIndex
+    std::vector<CutEdge> pieces_;
     QuadView view_;
     std::map<Place, uint32_t> points_;                        ///< of the quad at work, not mirrored
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> edges_; ///< by their points, the lower first
