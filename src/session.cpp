@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -173,7 +174,14 @@ struct Session::Implementation {
         return copies;
     }
 
-    void paint(const MapEdit& edit, PreparedMap& named, std::vector<SurfaceChange>& changes) {
+    /// What a surface reads of an image, and where that has changed, in the image and its copies.
+    struct Reading {
+        uint32_t surface;
+        uint8_t tile;
+        std::vector<TexelRectangle> rectangles;
+    };
+
+    void paint(const MapEdit& edit, PreparedMap& named, std::vector<Reading>& readings) {
         EditableMap& map = maps.at(named.texture.get());
         copy_texels(edit.texels, *map.texture, edit.x, edit.y);
         const TexelRectangle changed = named.gutter.follow(
@@ -187,19 +195,68 @@ struct Session::Implementation {
             all.insert(all.begin(), changed);
         }
         visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
-            const std::vector<TexelRectangle>& all = rectangles.at(surface.map.tiles[tile].mips.get());
-            changes.push_back({index, find_touched_patches(surface, tile, all)});
+            readings.push_back({index, tile, rectangles.at(surface.map.tiles[tile].mips.get())});
         });
+    }
+
+    /// One a surface.
+    std::vector<SurfaceChange> find_changes(const std::vector<Reading>& readings) const {
+        std::vector<SurfaceChange> changes;
+        for (const Reading& reading : readings) {
+            const auto is_same = [&](const SurfaceChange& c) { return c.surface == reading.surface; };
+            const auto found = std::find_if(changes.begin(), changes.end(), is_same);
+            const std::vector<uint8_t> touched =
+                find_touched_patches(prepared->surfaces[reading.surface], reading.tile, reading.rectangles);
+            if (found == changes.end())
+                changes.push_back({reading.surface, touched, {}});
+            else
+                join(found->is_changed, touched);
+        }
+        return changes;
+    }
+
+    static void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {
+        for (size_t k = 0; k < all.size(); ++k) all[k] |= added[k];
+    }
+
+    /// To the length of the largest cell of each patch in any instance, in parts of the patch.
+    void extend_reach(uint32_t surface, std::vector<float>& reach) const {
+        for (const Instance& instance : prepared->instances) {
+            if (instance.surface != surface) continue;
+            for (size_t patch = 0; patch < reach.size(); ++patch) {
+                const PatchLevels levels = instance.levels->at(uint32_t(patch));
+                const int coarsest = settings.lod == LodRule::ray
+                                         ? 0
+                                         : std::min<int>(levels.patch, *std::min_element(levels.edge.begin(),
+                                                                                         levels.edge.end()));
+                reach[patch] = std::max(reach[patch], std::ldexp(1.0f, -coarsest));
+            }
+        }
     }
 
     EditReport apply(const MapEdit& edit) {
         const Timer timer;
         const std::vector<PreparedMap*> copies = check(edit);
-        std::vector<SurfaceChange> changes;
-        for (PreparedMap* map : copies) paint(edit, *map, changes);
+        // Whatever fails from here on, no picture is gone on with.
+        std::unique_ptr<Film> kept = std::move(film);
+        std::vector<Reading> readings;
+        for (PreparedMap* map : copies) paint(edit, *map, readings);
+        std::vector<SurfaceChange> changes = find_changes(readings);
+        std::vector<std::vector<float>> reaches;
+        for (const SurfaceChange& change : changes) {
+            reaches.emplace_back(change.is_changed.size(), 0.0f);
+            extend_reach(change.surface, reaches.back());
+        }
         update_levels(changes);
         update_mips(changes);
-        if (!engine->follow(changes)) start_engine();
+        for (size_t k = 0; k < changes.size(); ++k) {
+            extend_reach(changes[k].surface, reaches[k]);
+            find_different_patches(readings, reaches[k], changes[k]);
+        }
+        if (engine->follow(changes))
+            film = std::move(kept);
+        else
+            start_engine();
         scene_hash = hash_edit(scene_hash, edit);
         EditReport report;
         for (const SurfaceChange& change : changes)
@@ -207,6 +264,16 @@ struct Session::Implementation {
         report.seconds = timer.seconds();
         prepare_s += report.seconds;
         return report;
+    }
+
+    /// Shading normals may read the map a cell beyond the patch, of its old levels or of its new ones.
+    void find_different_patches(const std::vector<Reading>& readings, const std::vector<float>& reach,
+                                SurfaceChange& change) const {
+        change.looks_different = change.is_changed;
+        for (const Reading& reading : readings)
+            if (reading.surface == change.surface)
+                join(change.looks_different, find_touched_patches(prepared->surfaces[change.surface],
+                                                                  reading.tile, reading.rectangles, reach));
     }
 
     /// Other levels may ask for other copies of the map, also in patches beside those that changed.

@@ -12,18 +12,19 @@
 
 namespace relief {
 
-/// Patches of a surface whose displacement has changed, a byte each.
+/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
+/// which are more: shading normals read beyond the sides of a patch.
 struct SurfaceChange {
     uint32_t surface = 0;
-    std::vector<uint8_t> is_changed;
+    std::vector<uint8_t> is_changed, looks_different;
 };
 
 class Engine {
   public:
     virtual ~Engine() = default;
 
-    /// The prepared scene has changed in place: texels, bounds and levels of these patches. Not while rays
-    /// are traced. False: the engine cannot follow, a new one has to be made.
+    /// The prepared scene has changed in place: texels, bounds and levels of these patches, one change a
+    /// surface. Not while rays are traced. False: the engine cannot follow, a new one has to be made.
     virtual bool follow(std::span<const SurfaceChange> changes) = 0;
 
     /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when

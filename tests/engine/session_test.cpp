@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "math/box.h"
 #include "relief/error.h"
 #include "relief/samples.h"
 #include "relief/session.h"
 #include "support/bodies.h"
+#include "surface/test_scenes.h"
 
 namespace relief {
 
@@ -171,6 +173,83 @@ TEST(Session, traces_only_what_an_edit_may_have_reached) {
         kept += count_rays(result) - before < all / 3;
     }
     EXPECT_GE(kept, 3u);
+}
+
+/// A plane of 8 x 8 patches seen from above.
+Scene make_plane_scene(uint32_t map_size) {
+    Mesh mesh = test::make_random_grid(8, 8, 0, 1);
+    for (uint32_t k = 0; k < mesh.positions.size(); ++k)
+        mesh.positions[k] = {float(k % 9) / 8, float(k / 9) / 8, 0};
+    Scene scene = test::make_body_scene(
+        std::move(mesh), test::make_displacement(test::make_constant(map_size, map_size, {0, 0, 0}),
+                                                 DisplacementSpace::tangent));
+    scene.displacements[0].name = "map";
+    scene.camera.from = {0.5f, 0.5f, 1.6f}, scene.camera.to = {0.5f, 0.5f, 0};
+    return scene;
+}
+
+TEST(Session, sees_shading_normals_that_read_beyond_their_patch) {
+    for (const int level : {0, 1, 3}) {
+        Scene fresh = make_plane_scene(256);
+        RenderSettings settings;
+        settings.width = settings.height = 640, settings.spp = 1, settings.bounces = 0;
+        settings.level = level;
+        settings.layers = {"depth", "N"};
+        Session session(fresh, settings);
+        const uint64_t all = count_rays(session.render());
+        // A few texels inside of a patch of 32 texels: its neighbours' differences reach there.
+        for (const uint32_t at : {100u, 40u, 205u}) {
+            const uint64_t before = count_rays(session.render());
+            const MapEdit edit = make_edit(at, at, 8, 8, 0.04f);
+            session.edit(edit);
+            bake(fresh, edit);
+            const RenderResult result = session.render();
+            expect_same(result.image, render(fresh, settings).image);
+            EXPECT_LT(count_rays(result) - before, all / 2);
+        }
+    }
+}
+
+TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    fresh.camera.aperture_radius = 0.05f, fresh.camera.focus_distance = 2.5f;
+    RenderSettings settings = make_settings();
+    settings.width = 320, settings.height = 240, settings.bounces = 0;
+    settings.crop = {37, 11, 301, 203};
+    for (const LodRule rule : {LodRule::field, LodRule::ray}) {
+        settings.lod = rule;
+        Session session(fresh, settings);
+        const uint64_t all = count_rays(session.render());
+        uint64_t before = all, least = all;
+        for (uint32_t x = 0; x < 96; x += 24) {
+            session.edit(make_edit(x, 20, 6, 6, 0.06f));
+            const RenderResult result = session.render();
+            bake(fresh, make_edit(x, 20, 6, 6, 0.06f));
+            expect_same(result.image, render(fresh, settings).image);
+            least = std::min(least, count_rays(result) - before);
+            before = count_rays(result);
+        }
+        EXPECT_LT(least, all / 2) << "nothing was kept";
+    }
+}
+
+TEST(Session, follows_a_map_that_is_two_tiles) {
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Displacement& map = fresh.displacements[0];
+    for (Vec2f& uv : fresh.meshes[0].uvs) uv.x *= 2;
+    map.is_udim = true, map.wrap = WrapMode::clamp;
+    map.tiles.push_back({1002, map.tiles[0].texture});
+    RenderSettings settings = make_settings();
+    settings.width = 320, settings.height = 240, settings.bounces = 0;
+    Session session(fresh, settings);
+    session.render();
+    for (const float height : {0.3f, 0.0f}) {
+        const MapEdit edit = make_edit(86, 20, 10, 10, height);
+        session.edit(edit);
+        bake(fresh, edit);
+        map.tiles[1].texture = map.tiles[0].texture;
+        expect_same(session.render().image, render(fresh, settings).image);
+    }
 }
 
 TEST(Session, follows_edits_that_no_picture_shows_and_edits_that_leave_the_scene) {

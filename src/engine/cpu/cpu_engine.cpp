@@ -70,18 +70,21 @@ class CpuEngine final : public Engine {
         : settings_(settings), tracer_(std::move(scene), settings), lights_(tracer_) {}
 
     bool follow(std::span<const SurfaceChange> changes) override {
+        std::optional<PictureFootprints> kept = std::move(footprints_);
+        footprints_.reset();
         std::vector<Box> places;
         if (!tracer_.follow(changes, places)) return false;
         lights_.follow_surfaces();
-        // A surface that glows is drawn as a light from everywhere.
-        if (footprints_ && (lights_.has_emitters() || !footprints_->mark_stale(places))) footprints_.reset();
+        if (kept && kept->mark_stale(places)) footprints_ = std::move(kept);
         return true;
     }
 
     void expect_changes() override { expects_changes_ = !tracer_.displaced_bounds().is_empty(); }
 
     bool render(Film& film, RenderObserver* observer) override {
-        if (!expects_changes_) return trace_tiles(film, cut_into_windows(film.window(), kTileEdge), observer);
+        // A surface that glows is drawn as a light from everywhere: nothing could be kept.
+        if (!expects_changes_ || lights_.has_emitters())
+            return trace_tiles(film, cut_into_windows(film.window(), kTileEdge), observer);
         footprints_.emplace(film.window(), tracer_.displaced_bounds());
         return trace_stale_tiles(film, observer);
     }

@@ -39,7 +39,7 @@ VoxelGrid::VoxelGrid(const Box& bounds, size_t most_voxels) : bounds_(bounds) {
     for (double voxel = largest; voxel > 0; voxel *= 0.9) {
         std::array<int, 3> size;
         for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(1, int(extent[axis] / voxel));
-        if (size_t(size[0]) * size_t(size[1]) * size_t(size[2]) > most_voxels) break;
+        if (size_t(size[0] + 2) * size_t(size[1] + 2) * size_t(size[2] + 2) > most_voxels) break;
         size_ = size;
     }
     for (int axis = 0; axis < 3; ++axis)

@@ -15,8 +15,8 @@ namespace relief::cpu {
 class VoxelGrid {
   public:
     VoxelGrid() = default;
-    /// Nearly cubes, at least one and at most `most_voxels`, a positive number. `bounds` is finite and not
-    /// empty.
+    /// Nearly cubes, at least one; those around included at most `most_voxels`, where that is 27 or more.
+    /// `bounds` is finite and not empty.
     VoxelGrid(const Box& bounds, size_t most_voxels);
 
     const Box& bounds() const { return bounds_; }

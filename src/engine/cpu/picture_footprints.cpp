@@ -9,7 +9,7 @@ namespace relief::cpu {
 namespace {
 
 constexpr size_t kMostBits = size_t(1) << 29; ///< of all blocks
-constexpr size_t kMostVoxels = size_t(1) << 14, kLeastVoxels = 64;
+constexpr size_t kMostVoxels = 20000, kLeastVoxels = 64;
 
 /// With room for what edits add.
 Box widen(const Box& box) {
@@ -65,7 +65,7 @@ void PictureFootprints::finish() { std::fill(is_stale_.begin(), is_stale_.end(),
 
 size_t PictureFootprints::byte_count() const {
     size_t bytes = is_stale_.size();
-    for (const Footprint& footprint : footprints_) bytes += footprint.byte_count();
+    for (const Footprint& footprint : footprints_) bytes += sizeof(Footprint) + footprint.byte_count();
     return bytes;
 }
 

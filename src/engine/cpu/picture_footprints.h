@@ -25,7 +25,7 @@ class PictureFootprints {
     Footprint& at(int x, int y) { return footprints_[find_block(x, y)]; }
 
     /// What is in these boxes, or was, has changed: blocks with rays that have been there are stale. False
-    /// where a box lies outside of what is kept track of: any block may be.
+    /// where a box lies outside of what is kept track of: any block may be, and nothing can be kept any more.
     bool mark_stale(std::span<const Box> places);
 
     /// Stale pixels as windows of at most `edge` a side, a multiple of kBlockEdge; their footprints are made

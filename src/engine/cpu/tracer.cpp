@@ -69,7 +69,7 @@ struct Tracer::Implementation {
             for (int k = 0; k < node.child_count; ++k) {
                 if (!WideNode::is_leaf(node.child[k])) continue;
                 const uint32_t first = WideNode::leaf_first(node.child[k]);
-                if (!change.is_changed[surface_trees[change.surface].primitive_at(first)]) continue;
+                if (!change.looks_different[surface_trees[change.surface].primitive_at(first)]) continue;
                 for (const Instance& instance : scene.instances)
                     if (instance.surface == change.surface)
                         places.push_back(transform_box(instance.world_from_object, node.child_box(k)));
