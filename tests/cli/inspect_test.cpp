@@ -126,6 +126,13 @@ TEST_F(Inspect, a_mesh_is_inspected_as_the_scene_that_a_render_would_make) {
                                       "--subdivision-level", "2", "-o", "check.png"});
     EXPECT_EQ(patches(smooth), 16) << smooth.output << smooth.errors;
     EXPECT_TRUE(exists("check.png"));
+    // What the mesh itself is comes first, with a map or without.
+    const CommandResult bare = run({"inspect", "plane.obj", "--subdivision", "catmark"});
+    for (const CommandResult* result : {&plain, &displaced, &smooth, &bare}) {
+        EXPECT_TRUE(contains(result->output, "\nfaces ")) << result->output;
+        EXPECT_TRUE(contains(result->output, "\nbase ")) << result->output;
+    }
+    EXPECT_TRUE(contains(bare.output, "catmark limit surface")) << bare.output;
 }
 
 TEST_F(Inspect, options_of_maps_are_refused_elsewhere) {
