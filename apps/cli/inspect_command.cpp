@@ -123,20 +123,21 @@ Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
     return inspection;
 }
 
-/// What the mesh is, then what a render makes of it; what both say is said once.
+/// What the mesh is, then what a render makes of it, but for what the mesh has said already.
 Inspection inspect_mesh_as_rendered(const InspectOptions& options) {
     const Scene scene = load_mesh_scene(options.file, options.scene);
     Inspection inspection = inspect_mesh(scene.meshes.front());
-    const auto add_new = [](auto added, auto& all, const auto& is_same) {
-        for (auto& one : added)
-            if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return is_same(one, other); }))
-                all.push_back(std::move(one));
-    };
     Inspection rendered = inspect_as_scene(scene, options);
-    add_new(std::move(rendered.facts), inspection.facts,
-            [](const Fact& a, const Fact& b) { return a.name == b.name; });
-    add_new(std::move(rendered.findings), inspection.findings,
-            [](const Finding& a, const Finding& b) { return a.code == b.code; });
+    std::erase_if(rendered.facts, [&](const Fact& fact) {
+        return std::any_of(inspection.facts.begin(), inspection.facts.end(),
+                           [&](const Fact& own) { return own.name == fact.name; });
+    });
+    std::erase_if(rendered.findings, [&](const Finding& finding) {
+        return std::any_of(inspection.findings.begin(), inspection.findings.end(),
+                           [&](const Finding& own) { return own.code == finding.code; });
+    });
+    std::move(rendered.facts.begin(), rendered.facts.end(), std::back_inserter(inspection.facts));
+    std::move(rendered.findings.begin(), rendered.findings.end(), std::back_inserter(inspection.findings));
     return inspection;
 }
 

@@ -1,4 +1,6 @@
 // The inspect verb: files in, facts and findings out, exit codes.
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -133,6 +135,18 @@ TEST_F(Inspect, a_mesh_is_inspected_as_the_scene_that_a_render_would_make) {
         EXPECT_TRUE(contains(result->output, "\nbase ")) << result->output;
     }
     EXPECT_TRUE(contains(bare.output, "catmark limit surface")) << bare.output;
+}
+
+TEST_F(Inspect, findings_of_one_code_are_all_told) {
+    std::filesystem::copy_file(folder_ / "bump.exr", folder_ / "tiles.1001.exr");
+    write("two.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+                     "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n"
+                     "vt 1.1 0.1\nvt 1.9 0.1\nvt 1.9 0.9\nvt 1.1 0.9\n"
+                     "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\nt crease 2/1/0 1 4 3.5\n");
+    const CommandResult result = run({"inspect", "two.obj", "--vdm", "tiles.<UDIM>.exr", "--subdivision",
+                                      "catmark", "--subdivision-level", "1"});
+    EXPECT_TRUE(contains(result.output, "W-SCENE: displacement")) << result.output;
+    EXPECT_TRUE(contains(result.output, "W-SCENE: mesh 'two': creases")) << result.output;
 }
 
 TEST_F(Inspect, options_of_maps_are_refused_elsewhere) {
