@@ -1,7 +1,6 @@
 #include "surface/isolate.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
 

@@ -14,12 +14,10 @@ namespace relief::cpu {
 /// Equal voxels over a box, with one more all around for rounding.
 class VoxelGrid {
   public:
-    VoxelGrid() = default;
     /// Nearly cubes, at least one; those around included at most `most_voxels`, where that is 27 or more.
     /// `bounds` is finite and not empty.
     VoxelGrid(const Box& bounds, size_t most_voxels);
 
-    const Box& bounds() const { return bounds_; }
     size_t voxel_count() const { return size_t(size_[0] + 2) * size_t(size_[1] + 2) * size_t(size_[2] + 2); }
 
   private:
@@ -33,7 +31,6 @@ class VoxelGrid {
 /// A set of voxels of one grid, which outlives it. Used by one thread at a time.
 class Footprint {
   public:
-    Footprint() = default;
     explicit Footprint(const VoxelGrid& grid);
 
     /// The voxels that a ray is in on [0, t_end] (Amanatides and Woo 1987); what is outside of the grid's
