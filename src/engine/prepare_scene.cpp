@@ -36,6 +36,7 @@ Instance make_instance(const Object& object, uint32_t surface, uint32_t default_
     instance.world_from_object = object.world_from_object;
     instance.object_from_world = *invert(object.world_from_object);
     instance.is_mirrored = compute_determinant(object.world_from_object) < 0;
+    instance.is_in_place = instance.object_from_world == Affine{} && instance.world_from_object == Affine{};
     return instance;
 }
 

@@ -93,11 +93,6 @@ PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& 
     return levels;
 }
 
-uint32_t pack(const PatchLevels& levels) {
-    return uint32_t(levels.patch) << 16 | uint32_t(levels.edge[0]) | uint32_t(levels.edge[1]) << 4 |
-           uint32_t(levels.edge[2]) << 8 | uint32_t(levels.edge[3]) << 12;
-}
-
 } // namespace
 
 LevelField LevelField::compute(const Surface& surface, const Affine& world_from_object,
@@ -106,14 +101,13 @@ LevelField LevelField::compute(const Surface& surface, const Affine& world_from_
     if (!surface.has_displacement) return field;
     if (config.fixed_level >= 0) {
         field.max_level_ = std::min(config.fixed_level, kMaxLevel);
-        const uint8_t level = uint8_t(field.max_level_);
-        field.fixed_ = {level, {level, level, level, level}};
+        field.fixed_ = scalar::pack_uniform_level(uint32_t(field.max_level_));
         return field;
     }
     field.packed_.resize(surface.patch_count());
     parallel_for("level field", field.packed_.size(), 256, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
-            field.packed_[patch] = pack(choose_levels(surface, uint32_t(patch), world_from_object, config));
+            field.packed_[patch] = pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
     });
     field.find_max_level();
     return field;
@@ -125,14 +119,15 @@ void LevelField::update(const Surface& surface, const Affine& world_from_object,
     parallel_for("level field of an edit", packed_.size(), 256, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
             if (is_changed[patch])
-                packed_[patch] = pack(choose_levels(surface, uint32_t(patch), world_from_object, config));
+                packed_[patch] = pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
     });
     find_max_level();
 }
 
 void LevelField::find_max_level() {
     max_level_ = 0;
-    for (const uint32_t levels : packed_) max_level_ = std::max(max_level_, int(levels >> 16));
+    for (const uint32_t levels : packed_)
+        max_level_ = std::max(max_level_, int(scalar::packed_patch_level(levels)));
 }
 
 } // namespace relief

@@ -32,7 +32,9 @@ class LevelField {
     void update(const Surface& surface, const Affine& world_from_object, const LevelFieldConfig& config,
                 std::span<const uint8_t> is_changed);
 
-    PatchLevels at(uint32_t patch) const;
+    PatchLevels at(uint32_t patch) const { return unpack_levels(packed_at(patch)); }
+    /// As pack_levels makes them.
+    uint32_t packed_at(uint32_t patch) const { return packed_.empty() ? fixed_ : packed_[patch]; }
     /// All patches have the same levels.
     bool is_uniform() const { return packed_.empty(); }
     int max_level() const { return max_level_; }
@@ -41,18 +43,9 @@ class LevelField {
   private:
     void find_max_level();
 
-    std::vector<uint32_t> packed_; ///< 4 bits an edge, then the patch's own; empty: `fixed_` everywhere
-    PatchLevels fixed_;
+    std::vector<uint32_t> packed_; ///< one a patch; empty: `fixed_` everywhere
+    uint32_t fixed_ = 0;
     int max_level_ = 0;
 };
-
-inline PatchLevels LevelField::at(uint32_t patch) const {
-    if (packed_.empty()) return fixed_;
-    const uint32_t packed = packed_[patch];
-    PatchLevels levels;
-    levels.patch = uint8_t(packed >> 16);
-    for (uint32_t edge = 0; edge < 4; ++edge) levels.edge[edge] = uint8_t(packed >> (4 * edge) & 15u);
-    return levels;
-}
 
 } // namespace relief

@@ -120,10 +120,10 @@ void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
 }
 
 const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                       const TreeKey& key, const PatchLevels& levels,
-                                                       BuildTreeFunction build) {
+                                                       const TreeKey& key, BuildTreeFunction build) {
     if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
     const Timer timer;
+    const PatchLevels levels = unpack_levels(key.levels);
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
     const int level = levels.patch - depth;
     const size_t bytes = BottomTree::size_bytes(level);
@@ -143,9 +143,10 @@ const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, co
 }
 
 const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                          const TreeKey& key, const PatchLevels& levels) {
+                                                          const TreeKey& key) {
     if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
     const Timer timer;
+    const PatchLevels levels = unpack_levels(key.levels);
     const uint32_t depth = uint32_t(levels.patch - kTileLevel);
     const size_t bytes = TileDirectory::size_bytes(depth);
     void* memory = allocate(context, bytes);

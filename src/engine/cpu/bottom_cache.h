@@ -105,20 +105,20 @@ class BottomCache {
     /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
     /// call.
     const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
-                                         const PatchLevels& levels, BuildTreeFunction build) {
+                                         BuildTreeFunction build) {
         if (const CachedTree* recent = find_recent(context, key)) {
             ++context.counters.reused;
             return static_cast<const BottomTree&>(*recent);
         }
-        return find_or_build_elsewhere(context, surface, key, levels, build);
+        return find_or_build_elsewhere(context, surface, key, build);
     }
     const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
-                                                 const TreeKey& key, const PatchLevels& levels) {
+                                                 const TreeKey& key) {
         if (const CachedTree* recent = find_recent(context, key)) {
             ++context.counters.reused;
             return static_cast<const TileDirectory&>(*recent);
         }
-        return find_or_build_elsewhere(context, surface, key, levels);
+        return find_or_build_elsewhere(context, surface, key);
     }
     /// One that this worker met lately, or null.
     const CachedTree* find_recent(TraceContext& context, const TreeKey& key) const {
@@ -136,10 +136,9 @@ class BottomCache {
 
   private:
     const BottomTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                              const TreeKey& key, const PatchLevels& levels,
-                                              BuildTreeFunction build);
+                                              const TreeKey& key, BuildTreeFunction build);
     const TileDirectory& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                 const TreeKey& key, const PatchLevels& levels);
+                                                 const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
     static void remember(TraceContext& context, const CachedTree& tree);
     void* allocate(TraceContext& context, size_t bytes);

@@ -137,7 +137,7 @@ inline void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
     BundleVisit visit{enter_patch(scene, context, bundle.instance, patch, bundle.rays->world[0].bias)};
     const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
     const double built_before = context.counters.bottom_build_s;
-    if (visit.patch.levels.patch <= cpu::kTileLevel)
+    if (visit.patch.level() <= cpu::kTileLevel)
         trace_tree(visit, find_tree(visit.patch, 0), bundle);
     else
         trace_directory(visit, find_directory(visit.patch), 0, 0, 0, bundle);

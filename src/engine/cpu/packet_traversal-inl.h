@@ -159,7 +159,7 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
     LaneMask hits = 0;
     const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
     const double built_before = context.counters.bottom_build_s;
-    if (visit.levels.patch <= cpu::kTileLevel)
+    if (visit.level() <= cpu::kTileLevel)
         trace_tree<kQuery>(visit, find_tree(visit, 0), packet, mask, hits);
     else
         trace_directory<kQuery>(visit, find_directory(visit), 0, 0, packet, mask, hits);
@@ -270,10 +270,15 @@ HWY_INLINE void walk_surface(const cpu::SceneView& scene, cpu::TraceContext& con
 template <Query kQuery>
 void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance, Packet& world,
                     LaneMask mask) {
+    const Instance& placed = scene.instances[instance];
+    if (placed.is_in_place) {
+        for (RayState& ray : world.ray) ray.instance = instance;
+        walk_surface<kQuery>(scene, context, placed.surface, world, mask);
+        return;
+    }
     Packet local;
     local.world = world.world;
     local.active = mask;
-    const Instance& placed = scene.instances[instance];
     for (int lane = 0; lane < 16; ++lane) {
         local.ray[lane] = world.ray[lane];
         local.ray[lane].instance = instance;
@@ -294,9 +299,17 @@ template <Query kQuery>
 LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                       Packet& packet) {
     packet.world = rays;
-    for (int lane = 0; lane < 16; ++lane) packet.ray[lane] = start_ray(rays[lane]);
-    packet.load_lanes();
     packet.active = 0xffff;
+    const bool is_alone = scene.instance_count == 1;
+    for (int lane = 0; lane < 16; ++lane) {
+        packet.ray[lane] = start_ray(rays[lane], is_alone ? scene.instances[0].object_from_world : Affine{});
+        if (is_alone) packet.ray[lane].instance = 0;
+    }
+    packet.load_lanes();
+    if (is_alone) {
+        walk_surface<kQuery>(scene, context, scene.instances[0].surface, packet, 0xffff);
+        return ~packet.active & 0xffff;
+    }
     const WideBvh& tree = *scene.instance_tree;
     context.counters.upper_nodes += walk_packet(
         tree.nodes, packet, 0xffff,

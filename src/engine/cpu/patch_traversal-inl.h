@@ -16,9 +16,10 @@ namespace relief::HWY_NAMESPACE {
 struct PatchVisit {
     const cpu::SceneView* scene;
     cpu::TraceContext* context;
-    const Surface* surface;
-    uint32_t instance, surface_index, patch;
-    PatchLevels levels;
+    uint32_t surface, patch;
+    uint32_t levels; ///< pack_levels
+
+    HWY_INLINE uint32_t level() const { return scalar::packed_patch_level(levels); }
 };
 
 /// Levels of the surface that a ray sees: the field's lowered by its bias.
@@ -26,42 +27,39 @@ HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext
                                   uint32_t patch, uint32_t bias) {
     const Instance& placed = scene.instances[instance];
     ++context.counters.pairs_emitted;
-    return {&scene,         &context, &scene.surfaces[placed.surface],      instance,
-            placed.surface, patch,    placed.levels->at(patch).biased(bias)};
+    const uint32_t levels = placed.levels->packed_at(patch);
+    return {&scene, &context, placed.surface, patch,
+            bias == 0 ? levels : scalar::lower_packed_levels(levels, bias)};
 }
 
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
-HWY_INLINE void choose_ray_level(PatchVisit& visit, const cpu::TraceRay& world) {
-    const Instance& placed = visit.scene->instances[visit.instance];
-    const Quad& quad = visit.surface->quads[visit.patch];
+HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, const cpu::TraceRay& world) {
+    const Surface& surface = visit.scene->surfaces[visit.surface];
+    const Quad& quad = surface.quads[visit.patch];
     float longest = 0;
     Vec3f sum{};
     for (size_t k = 0; k < 4; ++k) {
-        const Vec3f& from = visit.surface->positions[quad.vertex[k]];
-        const Vec3f edge = visit.surface->positions[quad.vertex[(k + 1) % 4]] - from;
+        const Vec3f& from = surface.positions[quad.vertex[k]];
+        const Vec3f edge = surface.positions[quad.vertex[(k + 1) % 4]] - from;
         longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
         sum = sum + from;
     }
     const Vec3f middle = transform_point(placed.world_from_object, sum * 0.25f);
     const float distance = scalar::find_passing_distance(world.origin, world.direction, world.t_min, middle);
-    const uint8_t level =
-        uint8_t(scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.levels.patch));
-    visit.levels.patch = level;
-    visit.levels.edge = {level, level, level, level};
-}
-
-HWY_INLINE cpu::TreeKey make_key(const PatchVisit& visit, uint32_t tile) {
-    return {visit.surface_index, visit.patch, tile, pack_levels(visit.levels)};
+    visit.levels = scalar::pack_uniform_level(
+        scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.level()));
 }
 
 HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
-    return visit.scene->cache->find_or_build_tree(*visit.context, *visit.surface, make_key(visit, tile),
-                                                  visit.levels, build_tree);
+    return visit.scene->cache->find_or_build_tree(*visit.context, visit.scene->surfaces[visit.surface],
+                                                  {visit.surface, visit.patch, tile, visit.levels},
+                                                  build_tree);
 }
 
 HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    return visit.scene->cache->find_or_build_directory(*visit.context, *visit.surface,
-                                                       make_key(visit, cpu::kDirectoryTile), visit.levels);
+    return visit.scene->cache->find_or_build_directory(
+        *visit.context, visit.scene->surfaces[visit.surface],
+        {visit.surface, visit.patch, cpu::kDirectoryTile, visit.levels});
 }
 
 /// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
@@ -70,9 +68,9 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
                                 uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
-    const float cell_size = 1.0f / float(1u << visit.levels.patch);
+    const float cell_size = 1.0f / float(1u << visit.level());
     hit.patch = visit.patch;
-    hit.levels = pack_levels(visit.levels);
+    hit.levels = visit.levels;
     hit.i = uint16_t(tree.cell_x + column + (lane & 3));
     hit.j = uint16_t(tree.cell_y + row + (lane >> 2 & 1));
     hit.is_upper = uint8_t(lane >> 3);
@@ -133,7 +131,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
-    const float cell_size = 1.0f / float(1u << visit.levels.patch);
+    const float cell_size = 1.0f / float(1u << visit.level());
     alignas(32) float distance[8];
     entry.store(distance);
     bool has_hit = false;
@@ -146,7 +144,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
         hit.t = distance[cell];
         hit.instance = ray.instance;
         hit.patch = visit.patch;
-        hit.levels = pack_levels(visit.levels);
+        hit.levels = visit.levels;
         hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
         hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
         hit.u = (float(hit.i) + 0.5f) * cell_size, hit.v = (float(hit.j) + 0.5f) * cell_size;
@@ -241,7 +239,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
 
 /// Everything of a patch along one ray.
 template <Query kQuery> bool trace_patch(const PatchVisit& visit, RayState& ray) {
-    const bool has_hit = visit.levels.patch <= cpu::kTileLevel
+    const bool has_hit = visit.level() <= cpu::kTileLevel
                              ? trace_tree<kQuery>(visit, find_tree(visit, 0), ray)
                              : trace_directory<kQuery>(visit, find_directory(visit), 0, 0, 0, ray);
     visit.context->counters.pairs_with_hit += has_hit;

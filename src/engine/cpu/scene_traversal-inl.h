@@ -111,15 +111,21 @@ template <Query kQuery> HWY_INLINE bool visit_patch(const PatchVisit& visit, Ray
     return has_hit;
 }
 
+template <Query kQuery>
+HWY_INLINE bool trace_displaced(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+    PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
+    if (scene.lod == LodRule::ray) choose_ray_level(visit, scene.instances[ray.instance], world);
+    return visit_patch<kQuery>(visit, ray);
+}
+
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
 HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
                                 const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
     const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
-    if (!surface.has_displacement) return trace_polygon<kQuery>(surface, patch, ray);
-    PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
-    if (scene.lod == LodRule::ray) choose_ray_level(visit, world);
-    return visit_patch<kQuery>(visit, ray);
+    return surface.has_displacement ? trace_displaced<kQuery>(scene, context, world, patch, ray)
+                                    : trace_polygon<kQuery>(surface, patch, ray);
 }
 
 /// The subtree of `root` of one instance's surface. `ray` is in the object's space.
@@ -131,7 +137,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
         return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
     const WideBvh& tree = scene.surface_trees[surface];
     const auto visit = [&](uint32_t patch) {
-        const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
+        const bool has_hit = trace_displaced<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
     };
     const cpu::OpenNodes& nodes = scene.open_nodes[surface];
@@ -146,9 +152,14 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
                  uint32_t root, RayState& best) {
     return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, context, root, best,
                      [&](uint32_t instance) {
+                         const Instance& placed = scene.instances[instance];
+                         if (placed.is_in_place) {
+                             best.instance = instance;
+                             return trace_instance<kQuery>(scene, context, world, 0, best);
+                         }
                          RayState ray = best;
                          ray.instance = instance;
-                         enter_object(world, scene.instances[instance].object_from_world, ray);
+                         enter_object(world, placed.object_from_world, ray);
                          const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
                          best.t_max = ray.t_max;
                          best.hit = ray.hit;
@@ -173,11 +184,11 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
     return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 
-/// A ray as the instance tree sees it, with nothing hit yet.
-HWY_INLINE RayState start_ray(const cpu::TraceRay& world) {
+/// A ray in some space, with nothing hit yet.
+HWY_INLINE RayState start_ray(const cpu::TraceRay& world, const Affine& space_from_world) {
     RayState ray;
     ray.t_min = world.t_min, ray.t_max = world.t_max;
-    enter_object(world, Affine{}, ray);
+    enter_object(world, space_from_world, ray);
     return ray;
 }
 
