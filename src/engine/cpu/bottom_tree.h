@@ -68,9 +68,10 @@ struct BottomTree : CachedTree {
     /// row, which makes triangles without area that no ray hits.
     static constexpr uint32_t column_count(int level) { return level < 2 ? 5 : (1u << level) + 1; }
     static constexpr uint32_t row_count(int level) { return level < 1 ? 3 : (1u << level) + 1; }
+    static constexpr uint32_t vertex_count(int level) { return column_count(level) * row_count(level); }
     /// Loads of whole registers read one number past the last vertex.
     static constexpr size_t vertex_bytes(int level) {
-        return (3 * size_t(column_count(level)) * row_count(level) + 1) * sizeof(float);
+        return (3 * size_t(vertex_count(level)) + 1) * sizeof(float);
     }
     static constexpr size_t size_bytes(int level);
 
@@ -83,10 +84,13 @@ struct BottomTree : CachedTree {
         return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
     }
     Node8& group(int g) { return const_cast<Node8&>(const_cast<const BottomTree*>(this)->group(g)); }
-    /// The vertices of one axis, row by row.
+    /// x of all vertices, row by row, then y, then z. `own_level` is the tree's.
+    const float* grid(int own_level) const {
+        return reinterpret_cast<const float*>(data() + node_bytes(own_level));
+    }
+    /// The vertices of one axis.
     const float* vertices(int axis) const {
-        return reinterpret_cast<const float*>(data() + node_bytes(int(level))) +
-               uint32_t(axis) * column_count(int(level)) * row_count(int(level));
+        return grid(int(level)) + uint32_t(axis) * vertex_count(int(level));
     }
     float* vertices(int axis) {
         return const_cast<float*>(const_cast<const BottomTree*>(this)->vertices(axis));

@@ -33,9 +33,9 @@ struct BundleVisit {
 HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                      RayBundle& bundle) {
     const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
-    const BlockPlace at_block(tree, block);
+    const BlockPlace place(tree, int(tree.level), block);
     Lanes16 v[3];
-    for (int k = 0; k < 3; ++k) v[k] = at_block.load(tree, k) - Lanes16(origin[k]);
+    for (int k = 0; k < 3; ++k) v[k] = place.load(k) - Lanes16(origin[k]);
     Window all;
     const PartWindows windows = find_quad_windows(v, bundle, all);
     const LaneTable table[3] = {LaneTable(v[0]), LaneTable(v[1]), LaneTable(v[2])};

@@ -97,7 +97,7 @@ HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree
                             Packet& packet, LaneMask mask, LaneMask& hits) {
     for (mask &= packet.active; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
-        if (!intersect_block<kQuery>(visit, tree, block, packet.ray[lane])) continue;
+        if (!intersect_block<kQuery>(visit, tree, int(tree.level), block, packet.ray[lane])) continue;
         hits |= 1u << lane;
         packet.t_max[lane] = packet.ray[lane].t_max;
         if constexpr (kQuery == Query::any) packet.active &= ~(1u << lane);

@@ -80,23 +80,26 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
 
 /// Where the vertices of a block are in the grid of its tile.
 struct BlockPlace {
-    uint32_t first, columns;
+    const float* first;              ///< of the lowest row and column, x
+    uint32_t column_count, axis_step; ///< from row to row and from axis to axis
 
-    BlockPlace(const cpu::BottomTree& tree, uint32_t block)
-        : first(cpu::BottomTree::find_first_vertex(int(tree.level), block)),
-          columns(cpu::BottomTree::column_count(int(tree.level))) {}
-    HWY_INLINE Lanes16 load(const cpu::BottomTree& tree, int axis) const {
-        return load_block(tree.vertices(axis) + first, columns);
+    /// `level` is that of the tree: where the caller knows it, most of this is known, too.
+    HWY_INLINE BlockPlace(const cpu::BottomTree& tree, int level, uint32_t block)
+        : first(tree.grid(level) + cpu::BottomTree::find_first_vertex(level, block)),
+          column_count(cpu::BottomTree::column_count(level)),
+          axis_step(cpu::BottomTree::vertex_count(level)) {}
+    HWY_INLINE Lanes16 load(int axis) const {
+        return load_block(first + uint32_t(axis) * axis_step, column_count);
     }
 };
 
 /// Exact leaf: sixteen triangles at once.
 template <Query kQuery>
-HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
-                                    RayState& ray) {
+HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
+                                    uint32_t block, RayState& ray) {
     Lanes16 x, y, z, cx[3], cy[3], cz[3];
-    const BlockPlace at(tree, block);
-    shear_vertices([&](int axis) { return at.load(tree, axis); }, ray, x, y, z);
+    const BlockPlace at(tree, level, block);
+    shear_vertices([&](int axis) { return at.load(axis); }, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
     gather_corners(y, cy[0], cy[1], cy[2]);
     TriangleTest<16> test;
@@ -116,12 +119,13 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
 template <Query kQuery>
 HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                   RayState& ray) {
-    const BlockPlace at(tree, block);
+    const BlockPlace at(tree, int(tree.level), block);
     alignas(32) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
         for (uint32_t cell = 0; cell < 8; ++cell) {
-            const float* v = tree.vertices(axis) + at.first + (cell >> 2) * at.columns + (cell & 3);
-            const float* w = v + at.columns;
+            const float* v =
+                at.first + uint32_t(axis) * at.axis_step + (cell >> 2) * at.column_count + (cell & 3);
+            const float* w = v + at.column_count;
             bounds[axis][cell] = std::fmin(std::fmin(v[0], v[1]), std::fmin(w[0], w[1]));
             bounds[3 + axis][cell] = std::fmax(std::fmax(v[0], v[1]), std::fmax(w[0], w[1]));
         }
@@ -154,23 +158,24 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     return has_hit;
 }
 
+/// `level` as for BlockPlace.
 template <Query kQuery>
-HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
-                                RayState& ray) {
+HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
+                                uint32_t block, RayState& ray) {
     ++visit.context->counters.blocks;
-    return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, ray)
+    return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, level, block, ray)
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
 /// Blocks of a list, nearest first; for Query::any as they come, since all of them are at hand already.
 template <Query kQuery>
-HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tree, EntryList& blocks,
-                             RayState& ray) {
+HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
+                             EntryList& blocks, RayState& ray) {
     bool has_hit = false;
     if constexpr (kQuery == Query::closest) blocks.sort();
     for (uint32_t k = 0; k < blocks.count; ++k) {
         if (kQuery == Query::closest && blocks.distance(k) > ray.t_max * kBoxSlack) continue;
-        has_hit |= intersect_block<kQuery>(visit, tree, blocks.child(k), ray);
+        has_hit |= intersect_block<kQuery>(visit, tree, level, blocks.child(k), ray);
         if (kQuery == Query::any && has_hit) return true;
     }
     return has_hit;
@@ -191,16 +196,16 @@ template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::Bott
             const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
             blocks.append(mask, entry8, g * 8);
         }
-        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+        return trace_blocks<kQuery>(visit, tree, 5, blocks, ray);
     }
     if (tree.level == 3) {
         const LaneMask mask = test_node(tree.group(0).bounds, ray, entry8);
         blocks.append(mask, entry8, 0);
-        return trace_blocks<kQuery>(visit, tree, blocks, ray);
+        return trace_blocks<kQuery>(visit, tree, 3, blocks, ray);
     }
     bool has_hit = false;
     const auto test_block = [&](uint32_t block) {
-        has_hit |= intersect_block<kQuery>(visit, tree, block, ray);
+        has_hit |= intersect_block<kQuery>(visit, tree, int(tree.level), block, ray);
         return kQuery == Query::any && has_hit;
     };
     if (tree.level == 4) {
@@ -238,7 +243,7 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
 }
 
 /// Everything of a patch along one ray.
-template <Query kQuery> bool trace_patch(const PatchVisit& visit, RayState& ray) {
+template <Query kQuery> HWY_INLINE bool trace_patch(const PatchVisit& visit, RayState& ray) {
     const bool has_hit = visit.level() <= cpu::kTileLevel
                              ? trace_tree<kQuery>(visit, find_tree(visit, 0), ray)
                              : trace_directory<kQuery>(visit, find_directory(visit), 0, 0, 0, ray);

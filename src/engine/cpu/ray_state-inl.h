@@ -31,7 +31,7 @@ struct RayState {
     float origin[3], direction[3], reciprocal[3];
     float lower_origin[3], upper_origin[3]; ///< that lower and upper planes of boxes are measured from
     float near_origin[3], far_origin[3];    ///< the same, in the order in which the ray meets the planes
-    int near_plane[3];                      ///< row of a node's bounds that the ray meets first: k or 3 + k
+    int near_plane[3], far_plane[3]; ///< rows of a node's bounds that the ray meets first and last: k, 3 + k
     int axis[3];                            ///< two minor axes and the major one
     float shear[3];                         ///< of the minor axes; 1 / direction along the major one
     float t_min, t_max;
@@ -56,6 +56,7 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
         ray.upper_origin[k] = ray.origin[k] - margin;
         const bool is_negative = ray.reciprocal[k] < 0;
         ray.near_plane[k] = is_negative ? 3 + k : k;
+        ray.far_plane[k] = is_negative ? k : 3 + k;
         ray.near_origin[k] = is_negative ? ray.upper_origin[k] : ray.lower_origin[k];
         ray.far_origin[k] = is_negative ? ray.lower_origin[k] : ray.upper_origin[k];
     }
@@ -95,8 +96,7 @@ HWY_INLINE LaneMask test_node(const float (&bounds)[6][W], const RayState& ray, 
     for (int k = 0; k < 3; ++k) {
         const Lanes<W> reciprocal(ray.reciprocal[k]);
         near[k] = (Lanes<W>::load(bounds[ray.near_plane[k]]) - Lanes<W>(ray.near_origin[k])) * reciprocal;
-        far[k] = (Lanes<W>::load(bounds[2 * k + 3 - ray.near_plane[k]]) - Lanes<W>(ray.far_origin[k])) *
-                 reciprocal;
+        far[k] = (Lanes<W>::load(bounds[ray.far_plane[k]]) - Lanes<W>(ray.far_origin[k])) * reciprocal;
     }
     entry = max(max(near[0], near[1]), max(near[2], Lanes<W>(ray.t_min)));
     const Lanes<W> exit = min(min(far[0], far[1]), min(far[2], Lanes<W>(ray.t_max)));
@@ -180,7 +180,6 @@ HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RaySt
 /// One coordinate of the fifteen vertices of a block, row by row: `first` is its first vertex in a grid with
 /// `columns` vertices a row. Lane 15 is any number; reads up to one number past the last vertex.
 HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
-    alignas(64) static constexpr float kNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     constexpr size_t kRow = 5;
     const Lanes16::D d;
     // Where the lanes of each row would begin if they were the first of all.
@@ -189,12 +188,11 @@ HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
     Lanes16 r;
     for (size_t p = 0; p < Lanes16::kParts; ++p) {
         const size_t begin = p * Lanes16::kLanes, end = begin + Lanes16::kLanes;
-        const auto number = hn::Load(d, kNumbers + begin);
         auto v = hn::LoadU(d, (begin < kRow ? first : begin < 2 * kRow ? second : third) + begin);
         if (begin < kRow && kRow < end)
-            v = hn::IfThenElse(hn::Lt(number, hn::Set(d, float(kRow))), v, hn::LoadU(d, second + begin));
+            v = hn::IfThenElse(hn::FirstN(d, kRow - begin), v, hn::LoadU(d, second + begin));
         if (begin < 2 * kRow && 2 * kRow < end)
-            v = hn::IfThenElse(hn::Lt(number, hn::Set(d, float(2 * kRow))), v, hn::LoadU(d, third + begin));
+            v = hn::IfThenElse(hn::FirstN(d, 2 * kRow - begin), v, hn::LoadU(d, third + begin));
         r.part[p] = v;
     }
     return r;
