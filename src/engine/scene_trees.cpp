@@ -23,10 +23,10 @@ std::vector<Box> compute_instance_boxes(const PreparedScene& scene, std::span<co
     return boxes;
 }
 
-Bvh build_surface_bvh(const Surface& surface) {
+Bvh build_surface_bvh(const Surface& surface, std::span<const Box> boxes) {
     SahBvhBuilder::Config config;
     config.max_leaf_size = surface.has_displacement ? 1 : 4;
-    return SahBvhBuilder::build(compute_patch_boxes(surface), config);
+    return SahBvhBuilder::build(boxes, config);
 }
 
 Bvh build_instance_bvh(const PreparedScene& scene, std::span<const Box> surface_boxes) {

@@ -81,6 +81,40 @@ HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
     }
 }
 
+/// Extends `box` by (cells + 1)^2 vertices.
+HWY_INLINE void extend_by_grid(Box& box, const VertexGrid& grid, uint32_t cells) {
+    for (int axis = 0; axis < 3; ++axis) {
+        Lanes4 least(get_component(box.lower, axis)), greatest(get_component(box.upper, axis));
+        const auto extend = [&](const Lanes4& v) { least = min(least, v), greatest = max(greatest, v); };
+        for (uint32_t r = 0; r <= cells; ++r) {
+            const float* const row = grid.axis[axis] + r * VertexGrid::kPitch;
+            if (cells < 4) {
+                for (uint32_t c = 0; c <= cells; ++c) extend(Lanes4(row[c]));
+                continue;
+            }
+            for (uint32_t c = 0; c < cells; c += 4) extend(Lanes4::load_unaligned(row + c));
+            extend(Lanes4::load_unaligned(row + cells - 3));
+        }
+        set_component(box.lower, axis, reduce_min(least));
+        set_component(box.upper, axis, reduce_max(greatest));
+    }
+}
+
+/// Box of all vertices of a patch at a level. Those of lower levels, of its own or of edges, are among them:
+/// they are the same function of the same places.
+Box find_box(const Surface& surface, uint32_t patch, uint32_t level) {
+    const uint32_t cells = 1u << HWY_MIN(level, uint32_t(cpu::kTileLevel)), side = 1u << level;
+    const PatchLevels levels = unpack_levels(scalar::pack_uniform_level(level));
+    Box box;
+    for (uint32_t y = 0; y < side; y += cells)
+        for (uint32_t x = 0; x < side; x += cells) {
+            VertexGrid grid;
+            evaluate_tile(surface, {patch, levels, x, y, cells}, grid);
+            extend_by_grid(box, grid, cells);
+        }
+    return box;
+}
+
 void build_tree(const Surface& surface, const PatchLevels& levels, cpu::BottomTree& tree) {
     VertexGrid grid;
     evaluate_tile(surface, {tree.key.patch, levels, tree.cell_x, tree.cell_y, 1u << tree.level}, grid);

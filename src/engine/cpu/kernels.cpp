@@ -111,9 +111,13 @@ void evaluate_cells(const Surface& surface, const cpu::PatchCells& cells, Vec3f*
 } // namespace
 
 const cpu::Kernels& kernels(const char* name) {
-    static const cpu::Kernels kKernels{
-        name,       closest_hits,   any_hits,
-        build_tree, evaluate_cells, {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
+    static const cpu::Kernels kKernels{name,
+                                       closest_hits,
+                                       any_hits,
+                                       build_tree,
+                                       find_box,
+                                       evaluate_cells,
+                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

@@ -17,10 +17,10 @@ struct SceneView {
     const Instance* instances = nullptr;
     const Surface* surfaces = nullptr;
     uint32_t instance_count = 0;
-    const WideBvh* surface_trees = nullptr; ///< one a surface, over its patches; empty without displacement
-    const OpenNodes* open_nodes = nullptr;  ///< of surface_trees, or empty
+    const WideBvh* surface_trees = nullptr; ///< these three are those of UpperTrees
+    const OpenNodes* open_nodes = nullptr;
+    const WideBvh* instance_tree = nullptr;
     const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
-    const WideBvh* instance_tree = nullptr;     ///< over the instances
     BottomCache* cache = nullptr;
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;
@@ -49,6 +49,8 @@ struct Kernels {
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
+    /// Holds a displaced patch at `level` and below, whatever the levels of its edges.
+    Box (*find_box)(const Surface&, uint32_t patch, uint32_t level);
     /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; a row starts `stride` after
     /// the one before.
     void (*evaluate_cells)(const Surface&, const PatchCells& cells, Vec3f* vertices, size_t stride);

@@ -80,7 +80,7 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
 
 /// Where the vertices of a block are in the grid of its tile.
 struct BlockPlace {
-    const float* first;              ///< of the lowest row and column, x
+    const float* first;               ///< of the lowest row and column, x
     uint32_t column_count, axis_step; ///< from row to row and from axis to axis
 
     /// `level` is that of the tree: where the caller knows it, most of this is known, too.

@@ -32,8 +32,8 @@ struct RayState {
     float lower_origin[3], upper_origin[3]; ///< that lower and upper planes of boxes are measured from
     float near_origin[3], far_origin[3];    ///< the same, in the order in which the ray meets the planes
     int near_plane[3], far_plane[3]; ///< rows of a node's bounds that the ray meets first and last: k, 3 + k
-    int axis[3];                            ///< two minor axes and the major one
-    float shear[3];                         ///< of the minor axes; 1 / direction along the major one
+    int axis[3];                     ///< two minor axes and the major one
+    float shear[3];                  ///< of the minor axes; 1 / direction along the major one
     float t_min, t_max;
     uint32_t instance = kNoIndex;
     cpu::TraceHit hit;

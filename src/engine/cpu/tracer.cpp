@@ -10,10 +10,9 @@
 #include "engine/cpu/kernels.h"
 #include "engine/cpu/surface_points.h"
 #include "engine/cpu/tree_walks.h"
-#include "engine/scene_trees.h"
+#include "engine/cpu/upper_trees.h"
 #include "math/scalar.h"
 #include "relief/error.h"
-#include "structures/wide_refit.h"
 
 namespace relief::cpu {
 
@@ -30,12 +29,10 @@ struct Tracer::Implementation {
     const ShadingKernels* shading = nullptr;
     WalkFunctions walk{}; ///< of a traversal asked for by name; null: the wide trees
     WalkTrees walk_trees;
-    std::vector<WideBvh> surface_trees;
-    std::vector<OpenNodes> surface_nodes;
     std::vector<PolygonTree> polygon_trees;
-    WideBvh instance_tree;
     std::unique_ptr<BottomCache> cache;
-    SceneView view;
+    SceneView view;                         ///< but for the upper trees
+    std::unique_ptr<UpperTreeHolder> trees; ///< null: those of a walk asked for by name
 
     void make_trees(const PreparedScene& scene, const RenderSettings& settings) {
         const TraversalKind traversal = choose_traversal(settings, EngineKind::cpu);
@@ -44,36 +41,19 @@ struct Tracer::Implementation {
             walk = find_walk(traversal, walk_trees.depth);
             return;
         }
-        for (const Surface& surface : scene.surfaces) {
-            surface_trees.emplace_back(), polygon_trees.emplace_back();
-            if (surface.has_displacement)
-                surface_trees.back() = make_wide_bvh(build_surface_bvh(surface));
-            else
-                polygon_trees.back() = build_polygon_tree(surface);
-        }
-        for (const WideBvh& tree : surface_trees) surface_nodes.push_back(open_nodes(tree));
-        make_instance_tree(scene);
+        for (const Surface& surface : scene.surfaces)
+            polygon_trees.push_back(surface.has_displacement ? PolygonTree{} : build_polygon_tree(surface));
+        trees = std::make_unique<UpperTreeHolder>(scene, *kernels, polygon_trees);
     }
 
-    void make_instance_tree(const PreparedScene& scene) {
-        std::vector<Box> boxes;
-        for (size_t k = 0; k < scene.surfaces.size(); ++k)
-            boxes.push_back(scene.surfaces[k].has_displacement ? surface_trees[k].bounds
-                                                               : polygon_trees[k].bounds);
-        instance_tree = make_wide_bvh(build_instance_bvh(scene, boxes));
-    }
-
-    /// Boxes of those patches of a surface in all its instances.
-    void add_places(const PreparedScene& scene, const SurfaceChange& change, std::vector<Box>& places) const {
-        for (const WideNode& node : surface_trees[change.surface].nodes)
-            for (int k = 0; k < node.child_count; ++k) {
-                if (!WideNode::is_leaf(node.child[k])) continue;
-                const uint32_t first = WideNode::leaf_first(node.child[k]);
-                if (!change.looks_different[surface_trees[change.surface].primitive_at(first)]) continue;
-                for (const Instance& instance : scene.instances)
-                    if (instance.surface == change.surface)
-                        places.push_back(transform_box(instance.world_from_object, node.child_box(k)));
-            }
+    /// trace(kernels' view, context), by the kernels' own trees.
+    template <class Trace> void trace_wide(size_t cast, size_t rays, const Trace& trace) const {
+        const std::shared_ptr<const UpperTrees> current = trees->current();
+        SceneView full = view;
+        full.surface_trees = current->surfaces.data(), full.open_nodes = current->open.data();
+        full.instance_tree = &current->instances;
+        trace_batch(cast, rays, [&](TraceContext& context) { trace(full, context); });
+        trees->count_rays(rays);
     }
 
     WalkView make_walk_view() const { return {view, walk_trees, kernels->primitive}; }
@@ -128,17 +108,13 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
-    self.view = {scene_->instances.data(),
-                 scene_->surfaces.data(),
-                 uint32_t(scene_->instances.size()),
-                 self.surface_trees.data(),
-                 self.surface_nodes.data(),
-                 self.polygon_trees.data(),
-                 &self.instance_tree,
-                 self.cache.get(),
-                 settings.leaf,
-                 settings.lod,
-                 settings.pixel_error * pixel};
+    self.view.instances = scene_->instances.data();
+    self.view.surfaces = scene_->surfaces.data();
+    self.view.instance_count = uint32_t(scene_->instances.size());
+    self.view.polygon_trees = self.polygon_trees.data();
+    self.view.cache = self.cache.get();
+    self.view.leaf = settings.leaf, self.view.lod = settings.lod;
+    self.view.pixel_angle = settings.pixel_error * pixel;
 }
 
 Tracer::~Tracer() = default;
@@ -146,26 +122,19 @@ Tracer::~Tracer() = default;
 Box Tracer::displaced_bounds() const {
     const Implementation& self = *implementation_;
     Box bounds;
-    if (self.walk.closest_hits) return bounds;
+    if (!self.trees) return bounds;
+    const std::shared_ptr<const UpperTrees> trees = self.trees->current();
     for (const Instance& instance : scene_->instances)
         if (scene_->surfaces[instance.surface].has_displacement)
             bounds.extend(
-                transform_box(instance.world_from_object, self.surface_trees[instance.surface].bounds));
+                transform_box(instance.world_from_object, trees->surfaces[instance.surface].bounds));
     return bounds;
 }
 
 bool Tracer::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     Implementation& self = *implementation_;
-    if (self.walk.closest_hits) return false;
-    for (const SurfaceChange& change : changes) {
-        const Surface& surface = scene_->surfaces[change.surface];
-        self.add_places(*scene_, change, places);
-        refit_wide_bvh(self.surface_trees[change.surface], change.is_changed,
-                       [&](uint32_t patch) { return compute_patch_box(surface, patch); });
-        self.surface_nodes[change.surface] = open_nodes(self.surface_trees[change.surface]);
-        self.add_places(*scene_, change, places);
-    }
-    self.make_instance_tree(*scene_);
+    if (!self.trees) return false;
+    self.trees->follow(changes, places);
     self.cache->remove([&](const TreeKey& key) {
         return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
             return key.surface == change.surface && change.is_changed[key.patch];
@@ -175,23 +144,29 @@ bool Tracer::follow(std::span<const SurfaceChange> changes, std::vector<Box>& pl
 }
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
-    implementation_->trace_batch(2 * size_t(depth), rays.size(), [&](TraceContext& context) {
-        const Implementation& self = *implementation_;
-        if (self.walk.closest_hits)
+    const Implementation& self = *implementation_;
+    const size_t cast = 2 * size_t(depth);
+    if (self.trees)
+        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->closest_hits(view, context, rays.data(), hits.data(), rays.size());
+        });
+    else
+        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
             self.walk.closest_hits(self.make_walk_view(), context, rays.data(), hits.data(), rays.size());
-        else
-            self.kernels->closest_hits(self.view, context, rays.data(), hits.data(), rays.size());
-    });
+        });
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
-    implementation_->trace_batch(2 * size_t(depth) + 1, rays.size(), [&](TraceContext& context) {
-        const Implementation& self = *implementation_;
-        if (self.walk.any_hits)
+    const Implementation& self = *implementation_;
+    const size_t cast = 2 * size_t(depth) + 1;
+    if (self.trees)
+        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->any_hits(view, context, rays.data(), occluded.data(), rays.size());
+        });
+    else
+        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
             self.walk.any_hits(self.make_walk_view(), context, rays.data(), occluded.data(), rays.size());
-        else
-            self.kernels->any_hits(self.view, context, rays.data(), occluded.data(), rays.size());
-    });
+        });
 }
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
@@ -228,10 +203,8 @@ void Tracer::add_statistics(Statistics& statistics) const {
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
     self.add_casts(statistics);
-    statistics.structures_bytes += self.instance_tree.byte_count() + self.walk_trees.byte_count();
-    for (const WideBvh& tree : self.surface_trees) statistics.structures_bytes += tree.byte_count();
-    for (const OpenNodes& nodes : self.surface_nodes)
-        statistics.structures_bytes += nodes.size() * sizeof(PolygonNode);
+    statistics.structures_bytes += self.walk_trees.byte_count();
+    if (self.trees) statistics.structures_bytes += self.trees->current()->byte_count();
     for (const PolygonTree& tree : self.polygon_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();
     for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();

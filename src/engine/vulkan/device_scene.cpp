@@ -160,7 +160,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
 
 void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
     for (const Surface& surface : scene.surfaces) {
-        const Bvh bvh = build_surface_bvh(surface);
+        const Bvh bvh = build_surface_bvh(surface, compute_patch_boxes(surface));
         arrays.deepest_surface = std::max(arrays.deepest_surface, compute_depth(bvh));
         const uint32_t first_id = uint32_t(arrays.primitive_ids.size());
         if (!surface.has_displacement) append(arrays.primitive_ids, bvh.primitive_ids);

@@ -1,0 +1,53 @@
+#include "engine/cpu/patch_boxes.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "engine/scene_trees.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr uint32_t kMostLevel = kTileLevel + 1; ///< finer patches are not evaluated as a whole
+
+} // namespace
+
+/// The highest in any instance.
+uint32_t PatchBoxes::find_level(uint32_t surface, uint32_t patch) const {
+    uint32_t level = 0;
+    for (const Instance& instance : scene_.instances)
+        if (instance.surface == surface)
+            level = std::max(level, scalar::packed_patch_level(instance.levels->packed_at(patch)));
+    return level;
+}
+
+Box PatchBoxes::find(uint32_t surface, uint32_t patch) const {
+    if (source_ == BoxSource::vertices)
+        if (const uint32_t level = find_level(surface, patch); level <= kMostLevel)
+            return kernels_.find_box(scene_.surfaces[surface], patch, level);
+    return compute_patch_box(scene_.surfaces[surface], patch);
+}
+
+std::vector<Box> PatchBoxes::find_all(uint32_t surface) const {
+    if (source_ == BoxSource::bounds) return compute_patch_boxes(scene_.surfaces[surface]);
+    std::vector<Box> boxes(scene_.surfaces[surface].patch_count());
+    parallel_for("patch_boxes", boxes.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) boxes[k] = find(surface, uint32_t(k));
+    });
+    return boxes;
+}
+
+uint64_t PatchBoxes::count_vertices() const {
+    uint64_t count = 0;
+    for (uint32_t surface = 0; surface < scene_.surfaces.size(); ++surface) {
+        if (source_ == BoxSource::bounds || !scene_.surfaces[surface].has_displacement) continue;
+        for (uint32_t patch = 0; patch < scene_.surfaces[surface].patch_count(); ++patch) {
+            const uint32_t level = find_level(surface, patch);
+            if (level <= kMostLevel) count += uint64_t((1u << level) + 1) * ((1u << level) + 1);
+        }
+    }
+    return count;
+}
+
+} // namespace relief::cpu
