@@ -19,12 +19,22 @@ namespace relief::HWY_NAMESPACE {
 /// Fewer rays than this go on alone: sixteen lanes for two rays waste more than they share.
 inline constexpr int kLeastPacket = 3;
 
+/// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
+/// bounds go through the operations of test_box in the same order and rounding keeps that order.
+struct PacketBounds {
+    int near_plane[3], far_plane[3]; ///< rows of a node's bounds
+    float near_origin[3], far_origin[3];
+    float least_reciprocal[3], greatest_reciprocal[3];
+    float t_min, t_max;
+};
+
 struct Packet {
     const cpu::TraceRay* world;
     RayState ray[16]; ///< in the space of the current object; hits and t_max live here
     Lanes16 lower_origin[3], upper_origin[3], reciprocal[3], t_min;
     alignas(64) float t_max[16];
     LaneMask active; ///< Query::any: lanes without a hit so far
+    PacketBounds bounds;
 
     void load_lanes() {
         alignas(64) float lower[3][16], upper[3][16], r[3][16], least[16];
@@ -40,8 +50,58 @@ struct Packet {
             reciprocal[k] = Lanes16::load(r[k]);
         }
         t_min = Lanes16::load(least);
+        find_bounds();
     }
+    void find_bounds() {
+        for (int k = 0; k < 3; ++k) {
+            bounds.least_reciprocal[k] = reduce_min(reciprocal[k]);
+            bounds.greatest_reciprocal[k] = reduce_max(reciprocal[k]);
+            const float lower = reduce_max(lower_origin[k]), upper = reduce_min(upper_origin[k]);
+            const bool is_negative = bounds.greatest_reciprocal[k] < 0;
+            bounds.near_plane[k] = is_negative ? 3 + k : k, bounds.far_plane[k] = is_negative ? k : 3 + k;
+            bounds.near_origin[k] = is_negative ? upper : lower;
+            bounds.far_origin[k] = is_negative ? lower : upper;
+            if (is_negative || bounds.least_reciprocal[k] > 0) continue;
+            // Both ways along this axis: it excludes nothing.
+            constexpr float kFar = 1e25f;
+            bounds.least_reciprocal[k] = bounds.greatest_reciprocal[k] = 1;
+            bounds.near_origin[k] = kFar, bounds.far_origin[k] = -kFar;
+        }
+        bounds.t_min = reduce_min(t_min);
+        update_reach();
+    }
+    /// After changes of t_max.
+    HWY_INLINE void update_reach() { bounds.t_max = reduce_max(Lanes16::load(t_max)); }
 };
+
+/// Children that some ray of the packet may enter; load(plane) gives a plane of their boxes.
+template <size_t W, class Load> HWY_INLINE LaneMask test_planes(const PacketBounds& bounds, Load load) {
+    Lanes<W> entry(bounds.t_min), exit(bounds.t_max);
+    for (int k = 0; k < 3; ++k) {
+        const Lanes<W> least(bounds.least_reciprocal[k]), greatest(bounds.greatest_reciprocal[k]);
+        const Lanes<W> near = load(bounds.near_plane[k]) - Lanes<W>(bounds.near_origin[k]);
+        const Lanes<W> far = load(bounds.far_plane[k]) - Lanes<W>(bounds.far_origin[k]);
+        entry = max(entry, min(near * least, near * greatest));
+        exit = min(exit, max(far * least, far * greatest));
+    }
+    return less_equal(entry, exit * Lanes<W>(kBoxSlack));
+}
+template <size_t W>
+HWY_INLINE LaneMask test_children(const float (&planes)[6][W], const PacketBounds& bounds) {
+    return test_planes<W>(bounds, [&](int plane) { return Lanes<W>::load(planes[plane]); });
+}
+HWY_INLINE LaneMask test_children(const cpu::PolygonNode& node, const PacketBounds& bounds) {
+    return test_children(node.bounds, bounds);
+}
+HWY_INLINE LaneMask test_children(const WideNode& node, const PacketBounds& bounds) {
+    const auto load = [&](int plane) {
+        const int axis = plane % 3;
+        const uint8_t* const codes = plane < 3 ? node.lower[axis] : node.upper[axis];
+        return Lanes8(node.origin[axis]) +
+               Lanes8::load_codes(codes) * Lanes8(WideNode::decode_scale(node.exponent[axis]));
+    };
+    return test_planes<8>(bounds, load) & ((1u << node.child_count) - 1);
+}
 
 /// Lanes of `mask` that enter a box, and the nearest entry among them (other lanes included: a bound from
 /// below).
@@ -77,10 +137,11 @@ HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packe
 
 /// Calls visit(child, mask) for the children that any lane enters, nearest first.
 template <class Node, class Visit>
-HWY_INLINE void visit_children(const Node& node, uint32_t count, Packet& packet, LaneMask mask, Visit visit) {
+HWY_INLINE void visit_children(const Node& node, Packet& packet, LaneMask mask, Visit visit) {
     PacketEntry order[16];
     uint32_t size = 0;
-    for (uint32_t k = 0; k < count; ++k) {
+    for (LaneMask children = test_children(node.bounds, packet.bounds); children; children &= children - 1) {
+        const uint32_t k = uint32_t(__builtin_ctz(children));
         float nearest = 0;
         const LaneMask entered = test_child(node, k, packet, mask, nearest);
         if (!entered) continue;
@@ -102,6 +163,7 @@ HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree
         packet.t_max[lane] = packet.ray[lane].t_max;
         if constexpr (kQuery == Query::any) packet.active &= ~(1u << lane);
     }
+    if constexpr (kQuery == Query::closest) packet.update_reach();
 }
 
 template <Query kQuery>
@@ -113,18 +175,18 @@ void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& pa
     };
     nodes += tree.level >= 3;
     if (tree.level == 5) {
-        visit_children(tree.root(), 16, packet, mask, [&](uint32_t g, LaneMask entered) {
+        visit_children(tree.root(), packet, mask, [&](uint32_t g, LaneMask entered) {
             ++nodes;
-            visit_children(tree.group(int(g)), 8, packet, entered,
+            visit_children(tree.group(int(g)), packet, entered,
                            [&](uint32_t k, LaneMask left) { test_block(g * 8 + k, left); });
         });
     } else if (tree.level == 4) {
-        visit_children(tree.root(), 16, packet, mask, [&](uint32_t g, LaneMask entered) {
+        visit_children(tree.root(), packet, mask, [&](uint32_t g, LaneMask entered) {
             test_block(2 * g, entered);
             test_block(2 * g + 1, entered);
         });
     } else if (tree.level == 3) {
-        visit_children(tree.group(0), 8, packet, mask, test_block);
+        visit_children(tree.group(0), packet, mask, test_block);
     } else {
         for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
             test_block(block, mask);
@@ -139,7 +201,7 @@ void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
     const uint32_t side = TileDirectory::step_side(depth, step), x = index % side, y = index / side;
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + index];
     ++visit.context->counters.patch_nodes;
-    visit_children(node, fanout * fanout, packet, mask, [&](uint32_t child, LaneMask entered) {
+    visit_children(node, packet, mask, [&](uint32_t child, LaneMask entered) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
         if (step + 1 == TileDirectory::step_count(depth))
             trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), packet, entered, hits);
@@ -220,9 +282,10 @@ uint32_t walk_packet(const Nodes& nodes, Packet& packet, LaneMask mask, VisitLea
         }
         const Node& node = nodes[top.child];
         ++visited;
-        const uint32_t base = size, count = count_children(node);
+        const uint32_t base = size;
         DCHECK(size + 8 <= kStackSize);
-        for (uint32_t k = 0; k < count; ++k) {
+        for (LaneMask children = test_children(node, packet.bounds); children; children &= children - 1) {
+            const uint32_t k = uint32_t(__builtin_ctz(children));
             float nearest = 0;
             const LaneMask entered = test_child(node, k, packet, top.mask, nearest);
             if (!entered) continue;
