@@ -107,7 +107,8 @@ LevelField LevelField::compute(const Surface& surface, const Affine& world_from_
     field.packed_.resize(surface.patch_count());
     parallel_for("level field", field.packed_.size(), 256, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
-            field.packed_[patch] = pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
+            field.packed_[patch] =
+                pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
     });
     field.find_max_level();
     return field;
@@ -119,7 +120,8 @@ void LevelField::update(const Surface& surface, const Affine& world_from_object,
     parallel_for("level field of an edit", packed_.size(), 256, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
             if (is_changed[patch])
-                packed_[patch] = pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
+                packed_[patch] =
+                    pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
     });
     find_max_level();
 }
