@@ -15,14 +15,16 @@ enum class Shape {
     creased_cube,
     semi_sharp_cube,
     sharp_corner_grid,
-    tangled_cube,   ///< semi-sharp creases that end, turn and change, and a semi-sharp point
-    crossed_grid,   ///< semi-sharp creases that cross, end and meet the boundary
-    creased_pyramid ///< semi-sharp creases along triangles
+    tangled_cube,    ///< semi-sharp creases that end, turn and change, and a semi-sharp point
+    crossed_grid,    ///< semi-sharp creases that cross, end and meet the boundary
+    creased_pyramid, ///< semi-sharp creases along triangles
+    changing_grid    ///< a semi-sharp crease that goes on straight with another sharpness
 };
 
 inline constexpr Shape kAllShapes[] = {Shape::cube,         Shape::pyramid,         Shape::grid,
                                        Shape::creased_cube, Shape::semi_sharp_cube, Shape::sharp_corner_grid,
-                                       Shape::tangled_cube, Shape::crossed_grid,    Shape::creased_pyramid};
+                                       Shape::tangled_cube, Shape::crossed_grid,    Shape::creased_pyramid,
+                                       Shape::changing_grid};
 
 inline void PrintTo(Shape shape, std::ostream* stream) { *stream << int(shape); }
 
@@ -49,6 +51,7 @@ inline Mesh make_shape(Shape shape) {
     case Shape::grid:
     case Shape::sharp_corner_grid:
     case Shape::crossed_grid:
+    case Shape::changing_grid:
         mesh = make_random_grid(4, 3, 0, 9);
         mesh.subdivision.boundary =
             shape == Shape::sharp_corner_grid ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
@@ -66,6 +69,7 @@ inline Mesh make_shape(Shape shape) {
     if (shape == Shape::crossed_grid)
         mesh.creases = {{2, 7, 3.0f}, {7, 12, 3.0f}, {6, 7, 5.0f}, {7, 8, 5.0f}, {8, 13, 4.5f}};
     if (shape == Shape::creased_pyramid) mesh.creases = {{0, 1, 4.0f}, {1, 2, 4.0f}, {0, 4, 2.5f}};
+    if (shape == Shape::changing_grid) mesh.creases = {{6, 7, 6.0f}, {7, 8, 4.5f}};
     mesh.subdivision.scheme = SubdivisionScheme::catmark;
     mesh.subdivision.level = 2;
     return mesh;
