@@ -1,6 +1,8 @@
 // Meshes for tests of subdivision: irregular points, polygons, boundaries, creases.
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <ostream>
 #include <vector>
 
@@ -18,13 +20,21 @@ enum class Shape {
     tangled_cube,    ///< semi-sharp creases that end, turn and change, and a semi-sharp point
     crossed_grid,    ///< semi-sharp creases that cross, end and meet the boundary
     creased_pyramid, ///< semi-sharp creases along triangles
-    changing_grid    ///< a semi-sharp crease that goes on straight with another sharpness
+    changing_grid,   ///< a semi-sharp crease that goes on straight with another sharpness
+    pole             ///< nine quads around a point
 };
 
-inline constexpr Shape kAllShapes[] = {Shape::cube,         Shape::pyramid,         Shape::grid,
-                                       Shape::creased_cube, Shape::semi_sharp_cube, Shape::sharp_corner_grid,
-                                       Shape::tangled_cube, Shape::crossed_grid,    Shape::creased_pyramid,
-                                       Shape::changing_grid};
+inline constexpr Shape kAllShapes[] = {Shape::cube,
+                                       Shape::pyramid,
+                                       Shape::grid,
+                                       Shape::creased_cube,
+                                       Shape::semi_sharp_cube,
+                                       Shape::sharp_corner_grid,
+                                       Shape::tangled_cube,
+                                       Shape::crossed_grid,
+                                       Shape::creased_pyramid,
+                                       Shape::changing_grid,
+                                       Shape::pole};
 
 inline void PrintTo(Shape shape, std::ostream* stream) { *stream << int(shape); }
 
@@ -38,6 +48,20 @@ inline Mesh make_cube() {
     for (const std::vector<uint32_t>& face : std::vector<std::vector<uint32_t>>{
              {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
         add_face(mesh, face, uvs);
+    return mesh;
+}
+
+/// Quads around a point that is above all others.
+inline Mesh make_pole(uint32_t quad_count) {
+    Mesh mesh;
+    mesh.name = "pole";
+    mesh.positions = {{0, 0, 1}};
+    for (uint32_t k = 0; k < 2 * quad_count; ++k) {
+        const double angle = std::numbers::pi * k / quad_count;
+        mesh.positions.push_back({float(std::cos(angle)), float(std::sin(angle)), 0});
+    }
+    for (uint32_t k = 0; k < 2 * quad_count; k += 2)
+        add_face(mesh, {0, k + 1, k + 2, (k + 2) % (2 * quad_count) + 1}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     return mesh;
 }
 
@@ -55,6 +79,9 @@ inline Mesh make_shape(Shape shape) {
         mesh = make_random_grid(4, 3, 0, 9);
         mesh.subdivision.boundary =
             shape == Shape::sharp_corner_grid ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
+        break;
+    case Shape::pole:
+        mesh = make_pole(9);
         break;
     default:
         mesh = make_cube();

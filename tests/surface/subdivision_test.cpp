@@ -23,7 +23,7 @@ namespace {
 using test::Shape;
 
 constexpr Shape kOpenShapes[] = {Shape::grid, Shape::sharp_corner_grid, Shape::crossed_grid,
-                                 Shape::changing_grid};
+                                 Shape::changing_grid, Shape::pole};
 
 /// What make_surface goes through, with the places of the patches on the mesh.
 struct Subdivided {
