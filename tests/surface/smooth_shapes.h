@@ -21,7 +21,8 @@ enum class Shape {
     crossed_grid,    ///< semi-sharp creases that cross, end and meet the boundary
     creased_pyramid, ///< semi-sharp creases along triangles
     changing_grid,   ///< a semi-sharp crease that goes on straight with another sharpness
-    pole             ///< nine quads around a point
+    pole,            ///< nine quads around a point
+    sharp_point_grid ///< a semi-sharp point that takes longer to wear off than other points have rings
 };
 
 inline constexpr Shape kAllShapes[] = {Shape::cube,
@@ -34,7 +35,8 @@ inline constexpr Shape kAllShapes[] = {Shape::cube,
                                        Shape::crossed_grid,
                                        Shape::creased_pyramid,
                                        Shape::changing_grid,
-                                       Shape::pole};
+                                       Shape::pole,
+                                       Shape::sharp_point_grid};
 
 inline void PrintTo(Shape shape, std::ostream* stream) { *stream << int(shape); }
 
@@ -76,6 +78,7 @@ inline Mesh make_shape(Shape shape) {
     case Shape::sharp_corner_grid:
     case Shape::crossed_grid:
     case Shape::changing_grid:
+    case Shape::sharp_point_grid:
         mesh = make_random_grid(4, 3, 0, 9);
         mesh.subdivision.boundary =
             shape == Shape::sharp_corner_grid ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
@@ -97,6 +100,10 @@ inline Mesh make_shape(Shape shape) {
         mesh.creases = {{2, 7, 3.0f}, {7, 12, 3.0f}, {6, 7, 5.0f}, {7, 8, 5.0f}, {8, 13, 4.5f}};
     if (shape == Shape::creased_pyramid) mesh.creases = {{0, 1, 4.0f}, {1, 2, 4.0f}, {0, 4, 2.5f}};
     if (shape == Shape::changing_grid) mesh.creases = {{6, 7, 6.0f}, {7, 8, 4.5f}};
+    if (shape == Shape::sharp_point_grid) {
+        mesh.creases = {{7, 7, 9.0f}};
+        mesh.positions[7].z += 0.1f;
+    }
     mesh.subdivision.scheme = SubdivisionScheme::catmark;
     mesh.subdivision.level = 2;
     return mesh;

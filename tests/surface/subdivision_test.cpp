@@ -22,8 +22,9 @@ namespace {
 
 using test::Shape;
 
-constexpr Shape kOpenShapes[] = {Shape::grid, Shape::sharp_corner_grid, Shape::crossed_grid,
-                                 Shape::changing_grid, Shape::pole};
+constexpr Shape kOpenShapes[] = {Shape::grid,         Shape::sharp_corner_grid,
+                                 Shape::crossed_grid, Shape::changing_grid,
+                                 Shape::pole,         Shape::sharp_point_grid};
 
 /// What make_surface goes through, with the places of the patches on the mesh.
 struct Subdivided {
