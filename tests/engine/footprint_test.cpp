@@ -2,6 +2,7 @@
 #include "engine/cpu/footprint.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -63,6 +64,58 @@ TEST(Footprint, holds_every_place_that_a_ray_passes) {
             const float off = 1e-6f * (length(origin) + length(through));
             EXPECT_TRUE(meet(rays, cover(grid, make_box(through, off)))) << voxels << " voxels, ray " << k;
         }
+    }
+}
+
+/// The box of floats around a place.
+Box make_box_around(const std::array<double, 3>& p) {
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float nearest = float(p[size_t(axis)]);
+        set_component(box.lower, axis, nearest > p[size_t(axis)] ? std::nextafter(nearest, -2.0f) : nearest);
+        set_component(box.upper, axis, nearest < p[size_t(axis)] ? std::nextafter(nearest, 2.0f) : nearest);
+    }
+    return box;
+}
+
+/// Ten voxels along each axis, and faces at 0, beside which floats are closest.
+VoxelGrid make_even_grid() {
+    VoxelGrid grid({{-1, -1, -1}, {1, 1, 1}}, 12 * 12 * 12);
+    EXPECT_EQ(grid.voxel_count(), 12u * 12 * 12);
+    return grid;
+}
+
+TEST(Footprint, holds_rays_that_go_along_a_face_closer_than_rounding) {
+    const VoxelGrid grid = make_even_grid();
+    for (const float aside : {1e-9f, -1e-9f})
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3f origin{0.3f, 0.3f, 0.3f}, direction{0, 0, 0};
+            set_component(origin, axis, -3), set_component(origin, (axis + 1) % 3, aside);
+            set_component(direction, axis, 1);
+            const Vec3f place = origin + direction * 2.5f;
+            EXPECT_TRUE(meet(trace(grid, origin, direction, 4), cover(grid, {place, place})))
+                << aside << " beside axis " << axis;
+        }
+}
+
+TEST(Footprint, holds_the_ends_of_rays_that_reach_just_through_a_face) {
+    const VoxelGrid grid = make_even_grid();
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(-0.9f, 0.9f);
+    for (int k = 0; k < 3000; ++k) {
+        const int axis = k % 3;
+        const Vec3f origin{3 * unit(random), 3 * unit(random), 3 * unit(random)};
+        Vec3f end{unit(random), unit(random), unit(random)};
+        set_component(end, axis, 0);
+        const Vec3f direction = end - origin;
+        const auto find_place = [&](float t, int c) {
+            return double(get_component(origin, c)) + double(t) * double(get_component(direction, c));
+        };
+        float t = 1;
+        const bool is_falling = get_component(direction, axis) < 0;
+        while (is_falling ? find_place(t, axis) >= 0 : find_place(t, axis) <= 0) t = std::nextafter(t, 2.0f);
+        const Box box = make_box_around({find_place(t, 0), find_place(t, 1), find_place(t, 2)});
+        EXPECT_TRUE(meet(trace(grid, origin, direction, t), cover(grid, box))) << "ray " << k;
     }
 }
 
