@@ -210,6 +210,28 @@ TEST(Session, sees_shading_normals_that_read_beyond_their_patch) {
     }
 }
 
+TEST(Session, traces_what_an_edit_has_taken_away_from_far_off) {
+    Scene fresh = make_plane_scene(256);
+    MapEdit edit = make_edit(36, 100, 8, 8, 0);
+    const MapEdit flat = edit;
+    // A tongue from a patch on the left to over those on the right.
+    for (size_t k = 0; k < edit.texels.floats.size(); k += 4)
+        edit.texels.floats[k] = 0.5f, edit.texels.floats[k + 2] = 0.2f;
+    bake(fresh, edit);
+    RenderSettings settings;
+    settings.width = settings.height = 320, settings.spp = 1, settings.bounces = 0;
+    settings.level = 3;
+    settings.layers = {"depth", "N"};
+    Session session(fresh, settings);
+    const RenderResult before = session.render();
+    session.edit(flat);
+    bake(fresh, flat);
+    const RenderResult after = session.render();
+    expect_same(after.image, render(fresh, settings).image);
+    EXPECT_GT(count_differing(before.image, after.image), 1000u);
+    EXPECT_LT(count_rays(after) - count_rays(before), count_rays(before) / 2) << "nothing was kept";
+}
+
 TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
     Scene fresh = make_torus_scene(DisplacementSpace::tangent);
     fresh.camera.aperture_radius = 0.05f, fresh.camera.focus_distance = 2.5f;
