@@ -154,24 +154,6 @@ double measure_best_tangent_gap(const std::vector<SeamSample>& seams) {
     return best;
 }
 
-/// Which space the uv seams speak for: nothing where they do not tell.
-bool guess_space_by_seams(const MapSamples& samples, MapConvention& result) {
-    constexpr size_t kFewest = 32;
-    constexpr double kFits = 0.5;
-    if (samples.seams.size() < kFewest) return false;
-    const double object = measure_object_gap(samples.seams),
-                 tangent = measure_best_tangent_gap(samples.seams);
-    const bool is_object = object < kFits && kClearRatio * object < tangent;
-    const bool is_tangent = tangent < kFits && kClearRatio * tangent < object;
-    if (!is_object && !is_tangent) return false;
-    result.space = {
-        is_object ? DisplacementSpace::object : DisplacementSpace::tangent, true,
-        fmt::format("both sides of the uv seams differ by {:.0f} % as {} space, by {:.0f} % as {}",
-                    100 * std::min(object, tangent), is_object ? "object" : "tangent",
-                    100 * std::max(object, tangent), is_object ? "tangent" : "object")};
-    return true;
-}
-
 void guess_space_by_normals(const MapSamples& samples, const MapSurvey& survey, MapConvention& result) {
     constexpr double kLeast = 0.3;
     double object = 0, tangent = 0;
@@ -213,14 +195,17 @@ void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh&
         return;
     }
     const MapSamples samples = sample_map(*surface);
-    const bool is_by_seams = guess_space_by_seams(samples, result);
-    if (!is_by_seams) guess_space_by_normals(samples, survey, result);
+    const std::optional<Guess<DisplacementSpace>> by_seams = guess_space_by_seams(samples.seams);
+    if (by_seams)
+        result.space = *by_seams;
+    else
+        guess_space_by_normals(samples, survey, result);
     if (result.space.value == DisplacementSpace::object) {
         guess_object_axes(samples, result);
         return;
     }
     guess_tangent_axes(map, survey, result);
-    if (is_by_seams) refine_by_seams(samples.seams, survey, result);
+    if (by_seams) refine_by_seams(samples.seams, survey, result);
 }
 
 } // namespace
@@ -236,6 +221,21 @@ MapConvention guess_convention(const Displacement& map, const MapSurvey& survey,
     }
     guess_tangent_axes(map, survey, result);
     return result;
+}
+
+std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams) {
+    constexpr size_t kFewest = 32;
+    constexpr double kFits = 0.5;
+    if (seams.size() < kFewest) return std::nullopt;
+    const double object = measure_object_gap(seams), tangent = measure_best_tangent_gap(seams);
+    const bool is_object = object < kFits && kClearRatio * object < tangent;
+    const bool is_tangent = tangent < kFits && kClearRatio * tangent < object;
+    if (!is_object && !is_tangent) return std::nullopt;
+    return Guess<DisplacementSpace>{
+        is_object ? DisplacementSpace::object : DisplacementSpace::tangent, true,
+        fmt::format("both sides of the uv seams differ by {:.0f} % as {} space, by {:.0f} % as {}",
+                    100 * std::min(object, tangent), is_object ? "object" : "tangent",
+                    100 * std::max(object, tangent), is_object ? "tangent" : "object")};
 }
 
 std::optional<double> measure_fold_share(const Displacement& map, const Mesh* mesh) {

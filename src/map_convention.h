@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "map_on_mesh.h"
 #include "map_survey.h"
 #include "relief/scene.h"
 
@@ -24,6 +25,9 @@ struct MapConvention {
 
 /// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.
 MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh);
+
+/// Which space the uv seams speak for; nothing where they do not tell.
+std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams);
 
 /// Share of the places looked at where the surface faces away from its base: on its mesh, or without one on a
 /// plane 2 units wide. Nothing where that cannot be told: a map with tiles or in object space without a mesh,

@@ -37,21 +37,6 @@ void sample_places(const Surface& surface, MapSamples& samples) {
     }
 }
 
-void sample_seams(const Surface& surface, MapSamples& samples) {
-    const size_t step = std::max<size_t>(1, surface.overrides.size() / kMostEdges);
-    for (size_t k = 0; k < surface.overrides.size(); k += step) {
-        const EdgeOverride& entry = surface.overrides[k];
-        const Quad& quad = surface.quads[entry.patch_edge / 4];
-        const uint32_t a = quad.vertex[entry.patch_edge & 3], b = quad.vertex[(entry.patch_edge + 1) & 3];
-        if (a == entry.first && b == entry.second) continue;
-        const VertexData own[2] = {load_vertex(surface, a), load_vertex(surface, b)};
-        const VertexData other[2] = {load_vertex(surface, entry.first), load_vertex(surface, entry.second)};
-        for (const float s : {0.25f, 0.75f})
-            samples.seams.push_back({sample_vertex_data(surface, blend_line(own[0], own[1], s)),
-                                     sample_vertex_data(surface, blend_line(other[0], other[1], s))});
-    }
-}
-
 std::vector<AxisMap> make_all_axis_maps() {
     std::vector<AxisMap> all;
     std::array<uint8_t, 3> axis{0, 1, 2};
@@ -81,8 +66,25 @@ template <class Turn> double measure_gap(const std::vector<SeamSample>& seams, c
 MapSamples sample_map(const Surface& surface) {
     MapSamples samples;
     sample_places(surface, samples);
-    sample_seams(surface, samples);
+    samples.seams = sample_seams(surface, kMostEdges);
     return samples;
+}
+
+std::vector<SeamSample> sample_seams(const Surface& surface, size_t most) {
+    std::vector<SeamSample> seams;
+    const size_t step = std::max<size_t>(1, surface.overrides.size() / most);
+    for (size_t k = 0; k < surface.overrides.size(); k += step) {
+        const EdgeOverride& entry = surface.overrides[k];
+        const Quad& quad = surface.quads[entry.patch_edge / 4];
+        const uint32_t a = quad.vertex[entry.patch_edge & 3], b = quad.vertex[(entry.patch_edge + 1) & 3];
+        if (a == entry.first && b == entry.second) continue;
+        const VertexData own[2] = {load_vertex(surface, a), load_vertex(surface, b)};
+        const VertexData other[2] = {load_vertex(surface, entry.first), load_vertex(surface, entry.second)};
+        for (const float s : {0.25f, 0.75f})
+            seams.push_back({sample_vertex_data(surface, blend_line(own[0], own[1], s)),
+                             sample_vertex_data(surface, blend_line(other[0], other[1], s))});
+    }
+    return seams;
 }
 
 const std::vector<AxisMap>& get_all_axis_maps() {

@@ -30,6 +30,9 @@ struct MapSamples {
 /// Of a surface made with axes 0, 1, 2, scale 1 and tangent frames.
 MapSamples sample_map(const Surface& surface);
 
+/// Those of at most `most` edges, spread over all seams, of a surface in any space.
+std::vector<SeamSample> sample_seams(const Surface& surface, size_t most);
+
 /// All 48 signed permutations.
 const std::vector<AxisMap>& get_all_axis_maps();
 

@@ -9,6 +9,7 @@
 #include "engine/cpu/kernels.h"
 #include "engine/engine.h"
 #include "picture_report.h"
+#include "space_warnings.h"
 #include "validate_settings.h"
 
 namespace relief {
@@ -23,7 +24,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     with_threads(settings.threads, [&] {
         // First, so that a picture that cannot be held is refused before the scene is prepared.
         Film film(settings.width, settings.height, settings.crop, settings.layers);
-        std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
+        std::shared_ptr<const PreparedScene> prepared = prepare_with_warnings(std::move(scene), settings);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 

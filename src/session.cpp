@@ -15,6 +15,7 @@
 #include "engine/engine.h"
 #include "picture_report.h"
 #include "relief/error.h"
+#include "space_warnings.h"
 #include "surface/displacement_map.h"
 #include "surface/map_edit.h"
 #include "validate_settings.h"
@@ -80,7 +81,7 @@ struct Session::Implementation {
                                            "session", "render it directly"});
         const Timer timer;
         with_threads(settings.threads, [&] {
-            prepared = prepare_scene(std::move(scene), settings);
+            prepared = prepare_with_warnings(std::move(scene), settings);
             own_maps();
             start_engine();
         });

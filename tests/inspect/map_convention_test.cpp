@@ -7,6 +7,8 @@
 
 #include "inspect/findings.h"
 #include "math/affine.h"
+#include "relief/render.h"
+#include "support/bodies.h"
 #include "support/sculpt.h"
 #include "surface/surface.h"
 
@@ -157,6 +159,29 @@ TEST(MapConvention, seams_of_the_mesh_tell_object_space) {
     EXPECT_HAS_PART(get_fact(inspection, "looks_like"), "object space, axes x,z,y");
     EXPECT_TRUE(has_code(inspect_map(object, MapMeaning::declared, &cube), "I-SPACE"));
     EXPECT_EQ(count_severe(inspection), 0u);
+}
+
+std::vector<std::string> render_for_warnings(const Mesh& mesh, Displacement map, DisplacementSpace space) {
+    map.space = space;
+    RenderSettings settings;
+    settings.width = settings.height = 4, settings.spp = 1, settings.bounces = 0;
+    return render(make_body_scene(mesh, std::move(map)), settings).statistics.warnings;
+}
+
+TEST(MapConvention, a_render_warns_of_object_space_that_is_read_as_tangent) {
+    const Mesh cube = make_cube();
+    const Displacement object =
+        bake(cube, [](const Vec3f& p, const Frame&) { return p * (0.1f + 0.05f * p.y); });
+    const Displacement tangent = bake(cube, [](const Vec3f& p, const Frame& frame) {
+        const Vec3f d = Vec3f{0.03f * p.z, 0.05f, 0.04f * p.x} + frame.n * 0.15f;
+        return Vec3f{dot(d, frame.t), dot(d, frame.b), dot(d, frame.n)};
+    });
+    const std::vector<std::string> warnings = render_for_warnings(cube, object, DisplacementSpace::tangent);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS_PART(warnings[0], "looks like object space");
+    EXPECT_HAS_PART(warnings[0], "say space object");
+    EXPECT_TRUE(render_for_warnings(cube, object, DisplacementSpace::object).empty());
+    EXPECT_TRUE(render_for_warnings(cube, tangent, DisplacementSpace::tangent).empty());
 }
 
 TEST(MapConvention, seams_of_the_mesh_tell_tangent_space) {
