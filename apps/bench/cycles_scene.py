@@ -91,7 +91,7 @@ def add_displacement(tree, entry, folder):
         moved.operation = "MULTIPLY_ADD"
         scale = sign * entry["scale"][channel]
         moved.inputs[1].default_value = scale
-        moved.inputs[2].default_value = -scale * entry["midlevel"][channel]
+        moved.inputs[2].default_value = -scale * entry.get("midlevel", (0, 0, 0))[channel]
         tree.links.new(parts.outputs[channel], moved.inputs[0])
         # Cycles takes tangent, normal, bitangent.
         tree.links.new(moved.outputs[0], joined.inputs[(0, 2, 1)[axis] if is_tangent else axis])
