@@ -11,14 +11,28 @@ namespace {
 
 constexpr uint32_t kMostLevel = kTileLevel + 1; ///< finer patches are not evaluated as a whole
 
+constexpr uint32_t kSampleCount = 4096;
+
 } // namespace
+
+PatchBoxes::PatchBoxes(const PreparedScene& scene, const Kernels& kernels, BoxSource source)
+    : scene_(scene), kernels_(kernels), source_(source), fields_(scene.surfaces.size()) {
+    if (source == BoxSource::bounds) return;
+    for (const Instance& instance : scene.instances) {
+        std::vector<const LevelField*>& fields = fields_[instance.surface];
+        // One level everywhere has one field for all.
+        if (fields.empty() || !instance.levels->is_uniform() || !fields.back()->is_uniform())
+            fields.push_back(instance.levels.get());
+        else if (instance.levels->max_level() > fields.back()->max_level())
+            fields.back() = instance.levels.get();
+    }
+}
 
 /// The highest in any instance.
 uint32_t PatchBoxes::find_level(uint32_t surface, uint32_t patch) const {
     uint32_t level = 0;
-    for (const Instance& instance : scene_.instances)
-        if (instance.surface == surface)
-            level = std::max(level, scalar::packed_patch_level(instance.levels->packed_at(patch)));
+    for (const LevelField* field : fields_[surface])
+        level = std::max(level, scalar::packed_patch_level(field->packed_at(patch)));
     return level;
 }
 
@@ -42,9 +56,11 @@ uint64_t PatchBoxes::count_vertices() const {
     uint64_t count = 0;
     for (uint32_t surface = 0; surface < scene_.surfaces.size(); ++surface) {
         if (source_ == BoxSource::bounds || !scene_.surfaces[surface].has_displacement) continue;
-        for (uint32_t patch = 0; patch < scene_.surfaces[surface].patch_count(); ++patch) {
+        const uint32_t patch_count = scene_.surfaces[surface].patch_count();
+        const uint32_t step = std::max(1u, patch_count / kSampleCount);
+        for (uint32_t patch = 0; patch < patch_count; patch += step) {
             const uint32_t level = find_level(surface, patch);
-            if (level <= kMostLevel) count += uint64_t((1u << level) + 1) * ((1u << level) + 1);
+            if (level <= kMostLevel) count += uint64_t(step) * ((1u << level) + 1) * ((1u << level) + 1);
         }
     }
     return count;

@@ -14,8 +14,7 @@ enum class BoxSource { bounds, vertices };
 class PatchBoxes {
   public:
     /// `scene` and `kernels` outlive this.
-    PatchBoxes(const PreparedScene& scene, const Kernels& kernels, BoxSource source)
-        : scene_(scene), kernels_(kernels), source_(source) {}
+    PatchBoxes(const PreparedScene& scene, const Kernels& kernels, BoxSource source);
 
     /// Holds a patch of a displaced surface in all its instances, for any bias.
     Box find(uint32_t surface, uint32_t patch) const;
@@ -23,7 +22,7 @@ class PatchBoxes {
     /// Those of all patches of a displaced surface, in parallel.
     std::vector<Box> find_all(uint32_t surface) const;
 
-    /// Vertices that find() evaluates for the patches of all surfaces.
+    /// Vertices that find() evaluates for the patches of all surfaces; of large surfaces by samples.
     uint64_t count_vertices() const;
 
   private:
@@ -32,6 +31,7 @@ class PatchBoxes {
     const PreparedScene& scene_;
     const Kernels& kernels_;
     BoxSource source_;
+    std::vector<std::vector<const LevelField*>> fields_; ///< of the instances of each surface
 };
 
 } // namespace relief::cpu
