@@ -1,5 +1,6 @@
 // Boxes of displaced patches: from the bounds of their maps, found for all patches before the first ray, or
-// from the vertices themselves, a third smaller, which takes as long as to build what is inside them.
+// from the vertices themselves, with a quarter to a third less area, which takes as long as to build what is
+// inside them.
 #pragma once
 
 #include <cstdint>
