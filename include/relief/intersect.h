@@ -35,8 +35,8 @@ class Intersector {
     Intersector(Intersector&&) noexcept;
     Intersector& operator=(Intersector&&) noexcept;
 
-    /// Nearest hits with t in (t_min, t_max]; spans of equal length. Thread safe, uses all of
-    /// `settings.threads`.
+    /// Nearest hits with t in (t_min, t_max]; spans of equal length. A ray of which something but t_max is
+    /// infinite, or no number, hits nothing. Thread safe, uses all of `settings.threads`.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const;
 
     /// hits[i] = 1 where anything lies in (t_min, t_max], else 0. The rest as above.

@@ -10,6 +10,7 @@
 #include "engine/cpu/packet_traversal-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
 #include "engine/cpu/ray_pairs-inl.h"
+#include "engine/finite_ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -286,8 +287,10 @@ inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
 /// How many of the rays, at most kBundleSize, leave one point together.
 inline uint32_t find_bundle(const cpu::TraceRay* rays, size_t count) {
     const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
-    uint32_t size = 1;
-    while (size < most && rays[size].origin == rays[0].origin && rays[size].bias == rays[0].bias) ++size;
+    uint32_t size = 0;
+    while (size < most && rays[size].origin == rays[0].origin && rays[size].bias == rays[0].bias &&
+           can_hit(rays[size]))
+        ++size;
     return size;
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/cpu/bundle_traversal-inl.h"
 #include "engine/cpu/kernels.h"
+#include "engine/finite_ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -20,10 +21,11 @@ namespace {
 bool is_coherent(const cpu::TraceRay* rays) {
     const Vec3f& first = rays[0].direction;
     const float squared = dot(first, first);
+    if (!can_hit(rays[0])) return false;
     for (int k = 1; k < 16; ++k) {
         const Vec3f& other = rays[k].direction;
         const float projection = dot(first, other);
-        if (rays[k].bias != rays[0].bias || !(projection > 0) ||
+        if (rays[k].bias != rays[0].bias || !can_hit(rays[k]) || !(projection > 0) ||
             projection * projection < 0.82f * squared * dot(other, other))
             return false;
     }
@@ -45,7 +47,7 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
             for (size_t k = 0; k < size; ++k) {
                 const cpu::TraceRay& world = rays[begin + k];
                 RayState ray;
-                const bool has_hit = trace_ray<kQuery>(scene, context, world, ray);
+                const bool has_hit = can_hit(world) && trace_ray<kQuery>(scene, context, world, ray);
                 store(begin + k, ray.hit, has_hit);
             }
         }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "engine/finite_ray.h"
 #include "math/scalar.h"
 
 namespace relief {
@@ -230,7 +231,8 @@ void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* r
                   size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
+        if (can_hit(rays[k]))
+            SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
         hits[k] = best;
         hits[k].bias = uint8_t(rays[k].bias);
     });
@@ -241,7 +243,8 @@ void any_hits(const WalkView& view, TraceContext& context, const TraceRay* rays,
               size_t count) {
     trace_each(view, context, count, [&](size_t k) {
         TraceHit best;
-        occluded[k] = SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.any).run(best);
+        occluded[k] = can_hit(rays[k]) &&
+                      SceneWalk<kTraversal, Width>(view, context, rays[k], view.primitive.any).run(best);
     });
 }
 

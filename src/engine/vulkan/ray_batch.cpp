@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/finite_ray.h"
+
 namespace relief::vulkan {
 
 namespace {
@@ -37,7 +39,10 @@ RayBatch::RayBatch(Tracer& tracer)
 void RayBatch::upload(std::span<const Ray> rays) {
     std::vector<scalar::RayData> data;
     data.reserve(rays.size());
-    for (const Ray& ray : rays) data.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, 0});
+    constexpr scalar::RayData kNoRay{{0, 0, 0}, 0, {0, 0, 1}, -1, 0};
+    for (const Ray& ray : rays)
+        data.push_back(can_hit(ray) ? scalar::RayData{ray.origin, ray.t_min, ray.direction, ray.t_max, 0}
+                                      : kNoRay);
     tracer_.rays().upload(data);
 }
 

@@ -1,0 +1,17 @@
+// Rays that are asked about from outside may be anything. One that is no ray hits nothing: walks count on
+// numbers, and where all comparisons are false, an empty slot of a node is entered like any other.
+#pragma once
+
+#include "math/vec.h"
+
+namespace relief {
+
+/// `Ray`: origin, t_min, direction, t_max. False where origin or direction is infinite or no number, or where
+/// the interval is empty.
+template <class Ray> bool can_hit(const Ray& ray) {
+    const Vec3f sum = ray.origin + ray.direction;
+    const float all = sum.x + sum.y + sum.z;
+    return all - all == 0 && ray.t_min <= ray.t_max;
+}
+
+} // namespace relief
