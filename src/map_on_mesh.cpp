@@ -72,7 +72,7 @@ MapSamples sample_map(const Surface& surface) {
 
 std::vector<SeamSample> sample_seams(const Surface& surface, size_t most) {
     std::vector<SeamSample> seams;
-    const size_t step = std::max<size_t>(1, surface.overrides.size() / most);
+    const size_t step = std::max<size_t>(1, (surface.overrides.size() + most - 1) / most);
     for (size_t k = 0; k < surface.overrides.size(); k += step) {
         const EdgeOverride& entry = surface.overrides[k];
         const Quad& quad = surface.quads[entry.patch_edge / 4];

@@ -184,6 +184,36 @@ TEST(MapConvention, a_render_warns_of_object_space_that_is_read_as_tangent) {
     EXPECT_TRUE(render_for_warnings(cube, tangent, DisplacementSpace::tangent).empty());
 }
 
+TEST(MapConvention, a_render_warns_of_no_heights_and_of_no_map_that_is_laid_over_a_mesh_twice) {
+    const Mesh cube = make_cube();
+    const Displacement vectors =
+        bake(cube, [](const Vec3f& p, const Frame&) { return p * (0.1f + 0.05f * p.y); });
+    Displacement heights = vectors;
+    heights.type = DisplacementType::height;
+    EXPECT_TRUE(render_for_warnings(cube, heights, DisplacementSpace::tangent).empty());
+    // Each face has the whole map, whose sides hold the same texels.
+    Mesh tiled = cube;
+    for (size_t face = 0; face < tiled.face_sizes.size(); ++face) {
+        Vec2f low{1e9f, 1e9f}, high{-1e9f, -1e9f};
+        for (size_t k = 0; k < 4; ++k) {
+            const Vec2f& uv = cube.uvs[cube.uv_indices[4 * face + k]];
+            low = {std::min(low.x, uv.x), std::min(low.y, uv.y)};
+            high = {std::max(high.x, uv.x), std::max(high.y, uv.y)};
+        }
+        for (size_t k = 0; k < 4; ++k) {
+            Vec2f& uv = tiled.uvs[tiled.uv_indices[4 * face + k]];
+            uv = {(uv.x - low.x) / (high.x - low.x), (uv.y - low.y) / (high.y - low.y)};
+        }
+    }
+    auto texture = std::make_shared<Texture>(*vectors.tiles[0].texture);
+    for (size_t k = 0; k < texture->floats.size(); ++k)
+        texture->floats[k] = 0.05f + 0.1f * float(k % 4); // leans to one side: torn at every edge
+    Displacement leaning = vectors;
+    leaning.tiles[0].texture = texture;
+    EXPECT_TRUE(render_for_warnings(tiled, leaning, DisplacementSpace::tangent).empty());
+    EXPECT_FALSE(render_for_warnings(cube, leaning, DisplacementSpace::tangent).empty());
+}
+
 TEST(MapConvention, seams_of_the_mesh_tell_tangent_space) {
     const Mesh cube = make_cube();
     const Displacement tangent = bake(cube, [](const Vec3f& p, const Frame& frame) {
