@@ -94,6 +94,7 @@ class CpuEngine final : public Engine {
     }
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override {
+        tracer_.improve_trees();
         parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
             std::vector<TraceHit> found(batch.size());
@@ -103,6 +104,7 @@ class CpuEngine final : public Engine {
     }
 
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override {
+        tracer_.improve_trees();
         parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
             tracer_.any_hits(batch, hits.subspan(begin, end - begin));
@@ -139,6 +141,7 @@ class CpuEngine final : public Engine {
         first_image_s_ = 0;
         int done = 0, length = 1;
         while (done < settings_.spp && !reporter.is_cancelled()) {
+            tracer_.improve_trees();
             const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
             render_pass(film, tiles, samples, reporter);
             if (reporter.is_cancelled()) break;

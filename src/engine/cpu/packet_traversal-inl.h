@@ -9,6 +9,7 @@
 #define RELIEF_PACKET_TRAVERSAL_INL_H
 #endif
 
+#include <limits>
 #include <optional>
 
 #include "engine/cpu/scene_traversal-inl.h"
@@ -20,7 +21,9 @@ namespace relief::HWY_NAMESPACE {
 inline constexpr int kLeastPacket = 3;
 
 /// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
-/// bounds go through the operations of test_box in the same order and rounding keeps that order.
+/// bounds go through the operations of test_box in the same order and rounding keeps that order. After
+/// Boulos, Wald, Shirley 2006 (Geometric and Arithmetic Culling Methods for Entire Ray Packets). The rays are
+/// finite; empty slots, from +inf to -inf, are excluded.
 struct PacketBounds {
     int near_plane[3], far_plane[3]; ///< rows of a node's bounds
     float near_origin[3], far_origin[3];
@@ -63,14 +66,14 @@ struct Packet {
             bounds.far_origin[k] = is_negative ? lower : upper;
             if (is_negative || bounds.least_reciprocal[k] > 0) continue;
             // Both ways along this axis: it excludes nothing.
-            constexpr float kFar = 1e25f;
+            constexpr float kFar = std::numeric_limits<float>::max();
             bounds.least_reciprocal[k] = bounds.greatest_reciprocal[k] = 1;
             bounds.near_origin[k] = kFar, bounds.far_origin[k] = -kFar;
         }
         bounds.t_min = reduce_min(t_min);
         update_reach();
     }
-    /// After changes of t_max.
+    /// After t_max has become less.
     HWY_INLINE void update_reach() { bounds.t_max = reduce_max(Lanes16::load(t_max)); }
 };
 
@@ -163,7 +166,7 @@ HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree
         packet.t_max[lane] = packet.ray[lane].t_max;
         if constexpr (kQuery == Query::any) packet.active &= ~(1u << lane);
     }
-    if constexpr (kQuery == Query::closest) packet.update_reach();
+    if (kQuery == Query::closest && hits != 0) packet.update_reach();
 }
 
 template <Query kQuery>
@@ -304,6 +307,7 @@ HWY_INLINE void walk_surface(const cpu::SceneView& scene, cpu::TraceContext& con
     const auto take_hit = [&](uint32_t lane, bool has_hit) {
         packet.t_max[lane] = packet.ray[lane].t_max;
         if (kQuery == Query::any && has_hit) packet.active &= ~(1u << lane);
+        if (kQuery == Query::closest && has_hit) packet.update_reach();
     };
     const auto go_alone = [&](uint32_t child, uint32_t lane) {
         take_hit(lane, trace_instance<kQuery>(scene, context, packet.world[lane], child, packet.ray[lane]));
@@ -354,6 +358,7 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
         world.ray[lane].hit = local.ray[lane].hit;
         world.ray[lane].t_max = world.t_max[lane] = local.ray[lane].t_max;
     }
+    world.update_reach();
     world.active &= ~(mask & ~local.active);
 }
 
@@ -385,6 +390,7 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
             RayState& ray = packet.ray[lane];
             const bool has_hit = trace_scene<kQuery>(scene, context, rays[lane], child, ray);
             packet.t_max[lane] = ray.t_max;
+            if (kQuery == Query::closest && has_hit) packet.update_reach();
             if (kQuery == Query::any && has_hit) packet.active &= ~(1u << lane);
         });
     return ~packet.active & 0xffff;

@@ -11,7 +11,12 @@ namespace {
 
 constexpr uint32_t kMostLevel = kTileLevel + 1; ///< finer patches are not evaluated as a whole
 
-constexpr uint32_t kSampleCount = 4096;
+constexpr uint32_t kSampleCount = 4096; ///< patches of a surface that are looked at, at most
+
+/// Others are evaluated vertex by vertex, which takes too long.
+bool is_evaluated_wide(const Surface& surface) {
+    return surface.has_displacement && surface.map.wrap != WrapMode::black;
+}
 
 } // namespace
 
@@ -37,7 +42,7 @@ uint32_t PatchBoxes::find_level(uint32_t surface, uint32_t patch) const {
 }
 
 Box PatchBoxes::find(uint32_t surface, uint32_t patch) const {
-    if (source_ == BoxSource::vertices)
+    if (source_ == BoxSource::vertices && is_evaluated_wide(scene_.surfaces[surface]))
         if (const uint32_t level = find_level(surface, patch); level <= kMostLevel)
             return kernels_.find_box(scene_.surfaces[surface], patch, level);
     return compute_patch_box(scene_.surfaces[surface], patch);
@@ -55,9 +60,9 @@ std::vector<Box> PatchBoxes::find_all(uint32_t surface) const {
 uint64_t PatchBoxes::count_vertices() const {
     uint64_t count = 0;
     for (uint32_t surface = 0; surface < scene_.surfaces.size(); ++surface) {
-        if (source_ == BoxSource::bounds || !scene_.surfaces[surface].has_displacement) continue;
+        if (source_ == BoxSource::bounds || !is_evaluated_wide(scene_.surfaces[surface])) continue;
         const uint32_t patch_count = scene_.surfaces[surface].patch_count();
-        const uint32_t step = std::max(1u, patch_count / kSampleCount);
+        const uint32_t step = std::max(1u, (patch_count + kSampleCount - 1) / kSampleCount);
         for (uint32_t patch = 0; patch < patch_count; patch += step) {
             const uint32_t level = find_level(surface, patch);
             if (level <= kMostLevel) count += uint64_t(step) * ((1u << level) + 1) * ((1u << level) + 1);

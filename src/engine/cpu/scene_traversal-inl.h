@@ -178,9 +178,6 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
     }
     ray.instance = 0;
     enter_object(world, scene.instances[0].object_from_world, ray);
-    const uint32_t surface = scene.instances[0].surface;
-    if (!scene.surfaces[surface].has_displacement)
-        return trace_polygons<kQuery>(scene.polygon_trees[surface], 0, ray);
     return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 

@@ -119,6 +119,10 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
 
 Tracer::~Tracer() = default;
 
+void Tracer::improve_trees() const {
+    if (implementation_->trees) implementation_->trees->improve();
+}
+
 Box Tracer::displaced_bounds() const {
     const Implementation& self = *implementation_;
     Box bounds;

@@ -58,8 +58,8 @@ struct PointScratch {
     std::vector<uint32_t> order;
 };
 
-/// Immutable after construction apart from the bottom-tree cache, which takes care of itself, and from
-/// `follow`. Thread safe but for that.
+/// Immutable after construction apart from the bottom-tree cache and the upper trees, which take care of
+/// themselves, and from `follow`. Thread safe but for that.
 class Tracer {
   public:
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
@@ -68,7 +68,11 @@ class Tracer {
     /// As Engine::follow. Boxes of what has changed, before and after, are added to `places`, world space.
     bool follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
-    /// The box of all that has a displacement, world space; empty where follow() would be false.
+    /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
+    void improve_trees() const;
+
+    /// The box of all that has a displacement, world space; empty where follow() would be false. It may
+    /// become smaller with improve_trees().
     Box displaced_bounds() const;
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in

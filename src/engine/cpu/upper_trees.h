@@ -33,10 +33,15 @@ class UpperTreeHolder {
     /// To be walked while the result lives. Thread safe.
     std::shared_ptr<const UpperTrees> current() const;
 
-    /// After rays have been traced. Thread safe; the call that makes the trees anew takes that long.
-    void count_rays(size_t rays);
+    /// After rays have been traced. Thread safe.
+    void count_rays(size_t rays) { rays_to_come_.fetch_sub(int64_t(rays), std::memory_order_relaxed); }
 
-    /// As Engine::follow. Boxes of what has changed, before and after, are added to `places`, world space.
+    /// Makes the trees anew if that pays by now; once. Between batches, so that what is counted in them does
+    /// not depend on the order of threads. Thread safe.
+    void improve();
+
+    /// As Engine::follow: not while rays are traced. Boxes of what has changed, before and after, are added
+    /// to `places`, world space.
     void follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
   private:
@@ -47,7 +52,8 @@ class UpperTreeHolder {
     const PreparedScene& scene_;
     const Kernels& kernels_;
     std::span<const PolygonTree> polygon_trees_;
-    std::atomic<int64_t> rays_to_come_; ///< until it pays; 0 or less: it has
+    std::atomic<int64_t> rays_to_come_; ///< until it pays; 0 or less: it does
+    std::atomic<bool> is_improved_;     ///< or there is nothing to be made smaller
     mutable std::mutex mutex_;          ///< of the pointer
     std::shared_ptr<UpperTrees> trees_;
 };

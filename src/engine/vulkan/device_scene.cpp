@@ -204,11 +204,11 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         data.is_mirrored = instance.is_mirrored;
         data.first_level = kNone;
         if (instance.levels->is_uniform()) {
-            data.levels = surface.patch_count() > 0 ? pack_levels(instance.levels->at(0)) : 0;
+            data.levels = surface.patch_count() > 0 ? instance.levels->packed_at(0) : 0;
         } else {
             data.first_level = uint32_t(arrays.levels.size());
             for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
-                arrays.levels.push_back(pack_levels(instance.levels->at(patch)));
+                arrays.levels.push_back(instance.levels->packed_at(patch));
         }
         tables_.instances.push_back(data);
     }

@@ -91,7 +91,7 @@ Rasteriser::Wave Rasteriser::take_wave(Cursor& cursor) const {
 bool Rasteriser::append_item(Cursor& cursor, Wave& wave) const {
     const Instance& instance = tracer_.scene().instances[cursor.instance];
     const bool is_displaced = tracer_.scene().surfaces[instance.surface].has_displacement;
-    const uint32_t levels = is_displaced ? pack_levels(instance.levels->at(cursor.patch)) : 0;
+    const uint32_t levels = is_displaced ? instance.levels->packed_at(cursor.patch) : 0;
     const uint32_t side = 1u << scalar::packed_patch_level(levels);
     const uint64_t vertex_room = buffers_.vertices->byte_count() / sizeof(Vec3f) - wave.vertex_count;
     const uint64_t vertex_rows = vertex_room / (side + 1);

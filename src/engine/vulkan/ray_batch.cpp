@@ -42,7 +42,7 @@ void RayBatch::upload(std::span<const Ray> rays) {
     constexpr scalar::RayData kNoRay{{0, 0, 0}, 0, {0, 0, 1}, -1, 0};
     for (const Ray& ray : rays)
         data.push_back(can_hit(ray) ? scalar::RayData{ray.origin, ray.t_min, ray.direction, ray.t_max, 0}
-                                      : kNoRay);
+                                    : kNoRay);
     tracer_.rays().upload(data);
 }
 
