@@ -79,6 +79,25 @@ TEST_F(MeshTreesTest, every_walk_of_every_tree_finds_the_hits_of_brute_force) {
     }
 }
 
+TEST_F(MeshTreesTest, rays_that_are_no_numbers_hit_nothing) {
+    for (size_t k = 0; k < rays_.size(); k += 7) {
+        Ray& ray = rays_[k];
+        float* const places[] = {&ray.origin.x,    &ray.origin.z,    &ray.direction.x,
+                                 &ray.direction.y, &ray.direction.z, &ray.t_min};
+        *places[k / 7 % std::size(places)] = k % 2 == 0 ? NAN : INFINITY;
+        expected_[k] = {};
+    }
+    for (const TreeKind kind : tree_kinds()) {
+        trees_.build(kind);
+        for (const TraversalKind traversal : tree_traversals(kind))
+            for (const HitKind wanted : {HitKind::closest, HitKind::any}) {
+                const TreeQuery query{traversal, wanted};
+                trees_.cast(query, {rays_, hits_, {}});
+                expect_hits(query, std::string(tree_name(kind)) + ", " + traversal_name(traversal));
+            }
+    }
+}
+
 TEST_F(MeshTreesTest, walks_of_heaps_start_at_the_last_hit) {
     for (const TreeKind kind : {TreeKind::heap, TreeKind::succinct_lbvh, TreeKind::succinct_sah}) {
         trees_.build(kind);
