@@ -1,4 +1,5 @@
 // What a map looks like: channels, signs and space.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -188,8 +189,11 @@ TEST(MapConvention, a_render_warns_of_no_heights_and_of_no_map_that_is_laid_over
     const Mesh cube = make_cube();
     const Displacement vectors =
         bake(cube, [](const Vec3f& p, const Frame&) { return p * (0.1f + 0.05f * p.y); });
+    // The same height on both sides of an edge, along two normals.
+    auto level = std::make_shared<Texture>(*vectors.tiles[0].texture);
+    std::fill(level->floats.begin(), level->floats.end(), 0.1f);
     Displacement heights = vectors;
-    heights.type = DisplacementType::height;
+    heights.type = DisplacementType::height, heights.tiles[0].texture = level;
     EXPECT_TRUE(render_for_warnings(cube, heights, DisplacementSpace::tangent).empty());
     // Each face has the whole map, whose sides hold the same texels.
     Mesh tiled = cube;
