@@ -1,5 +1,7 @@
 // The whole engine on a validated device: pictures, cancellation, rays of other programs, from several
 // threads; and what it finds is what the CPU engine finds.
+#include <cmath>
+#include <iterator>
 #include <thread>
 
 #include "cast_fixture.h"
@@ -118,6 +120,29 @@ TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {
             EXPECT_EQ(hits[k][i].patch, expected[i].patch) << i;
             EXPECT_LT(length(hits[k][i].normal - expected[i].normal), 1e-3f) << i;
         }
+    }
+}
+
+TEST_F(EngineTest, rays_that_are_no_numbers_hit_nothing_and_leave_the_others_theirs) {
+    prepare();
+    std::vector<Ray> rays;
+    for (const cpu::TraceRay& ray : make_rays(600, 5))
+        rays.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max});
+    std::vector<RayHit> whole(rays.size()), hits(rays.size());
+    engine_->closest_hits(rays, whole);
+    for (size_t k = 0; k < rays.size(); k += 7) {
+        Ray& ray = rays[k];
+        float* const places[] = {&ray.origin.x, &ray.direction.y, &ray.direction.z, &ray.t_min};
+        *places[k / 7 % std::size(places)] = k % 2 == 0 ? NAN : INFINITY;
+        whole[k] = {};
+    }
+    std::vector<uint8_t> any(rays.size());
+    engine_->closest_hits(rays, hits);
+    engine_->any_hits(rays, any);
+    for (size_t k = 0; k < rays.size(); ++k) {
+        ASSERT_EQ(hits[k].t, whole[k].t) << k;
+        ASSERT_EQ(hits[k].object, whole[k].object) << k;
+        ASSERT_EQ(any[k] != 0, whole[k].object != kNoIndex) << k;
     }
 }
 
