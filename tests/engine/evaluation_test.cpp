@@ -61,7 +61,12 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
                     << kernels.name << " patch " << patch << " vertex " << i << " " << j;
                 for (int axis = 0; axis < 3; ++axis) {
                     const float value = tree->vertices(axis)[number];
-                    if (tree->level == 5) {
+                    if (tree->level == 6) {
+                        EXPECT_LE(tree->root().bounds[axis][b / 32], value);
+                        EXPECT_GE(tree->root().bounds[3 + axis][b / 32], value);
+                        EXPECT_LE(tree->wide_group(int(b / 32)).bounds[axis][b / 2 % 16], value);
+                        EXPECT_GE(tree->wide_group(int(b / 32)).bounds[3 + axis][b / 2 % 16], value);
+                    } else if (tree->level == 5) {
                         EXPECT_LE(tree->root().bounds[axis][b / 8], value);
                         EXPECT_GE(tree->root().bounds[3 + axis][b / 8], value);
                         EXPECT_LE(tree->group(int(b / 8)).bounds[axis][b % 8], value);
@@ -92,8 +97,9 @@ void expect_definition(const Displacement& displacement, SubdivisionScheme schem
     const auto prepared = prepare_scene(scene, settings);
     const Surface& surface = prepared->surfaces[0];
     if (has_mips) EXPECT_GT(std::set(surface.mips.begin(), surface.mips.end()).size(), 4u);
-    const PatchLevels cases[] = {{0, {0, 0, 0, 0}}, {1, {1, 0, 1, 0}}, {2, {2, 1, 0, 2}}, {3, {3, 1, 2, 0}},
-                                 {4, {2, 4, 3, 4}}, {5, {5, 3, 0, 4}}, {6, {4, 6, 5, 2}}, {7, {7, 7, 3, 6}}};
+    const PatchLevels cases[] = {{0, {0, 0, 0, 0}}, {1, {1, 0, 1, 0}}, {2, {2, 1, 0, 2}},
+                                 {3, {3, 1, 2, 0}}, {4, {2, 4, 3, 4}}, {5, {5, 3, 0, 4}},
+                                 {6, {4, 6, 5, 2}}, {7, {7, 7, 3, 6}}, {8, {8, 2, 7, 8}}};
     for (const Isa isa : test::machine_isas())
         for (const PatchLevels& levels : cases)
             for (const uint32_t patch : {0u, 5u, 18u, 23u}) {
@@ -167,7 +173,7 @@ TEST(Evaluation, is_the_definition_through_every_kind_of_frame) {
 }
 
 TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {
-    for (const uint8_t level : {uint8_t(6), uint8_t(7), uint8_t(8)}) {
+    for (const uint8_t level : {uint8_t(7), uint8_t(8), uint8_t(9)}) {
         const Scene scene = test::make_body_scene(
             test::make_torus(4, 6),
             test::make_displacement(test::make_random_map(256, 192, 0.1f, 4), DisplacementSpace::tangent));
@@ -188,7 +194,8 @@ TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {
             for (uint32_t i = 0; i <= 1u << level; i += 3) {
                 const Vec3f p = evaluate_vertex(surface, 7, levels, i, j);
                 const float value[3] = {p.x, p.y, p.z};
-                uint32_t x = std::min(i >> 5, (1u << depth) - 1), y = std::min(j >> 5, (1u << depth) - 1);
+                uint32_t x = std::min(i >> cpu::kTileLevel, (1u << depth) - 1),
+                         y = std::min(j >> cpu::kTileLevel, (1u << depth) - 1);
                 for (uint32_t step = steps; step-- > 0;) {
                     const uint32_t fanout = cpu::TileDirectory::fanout(depth, step),
                                    side = cpu::TileDirectory::step_side(depth, step);

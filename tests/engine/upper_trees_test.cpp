@@ -98,7 +98,7 @@ TEST(PatchBoxes, hold_all_instances_at_any_bias_and_touch_their_vertices) {
 }
 
 TEST(PatchBoxes, touch_the_vertices_of_every_level_that_is_evaluated_as_a_whole) {
-    for (int level = 0; level <= kTileLevel + 1; ++level) {
+    for (int level = 0; level <= kTileLevel; ++level) {
         const auto scene = prepare_with_level(level);
         expect_smallest_boxes(*scene, 0);
         const uint64_t side = (1u << level) + 1;
@@ -108,7 +108,7 @@ TEST(PatchBoxes, touch_the_vertices_of_every_level_that_is_evaluated_as_a_whole)
 }
 
 TEST(PatchBoxes, are_those_of_the_map_where_patches_are_finer) {
-    const auto scene = prepare_with_level(kTileLevel + 2);
+    const auto scene = prepare_with_level(kTileLevel + 1);
     const PatchBoxes boxes(*scene, *find_kernels(Isa::best), BoxSource::vertices);
     EXPECT_EQ(boxes.count_vertices(), 0u);
     for (uint32_t patch = 0; patch < scene->surfaces[0].patch_count(); ++patch)

@@ -58,24 +58,38 @@ HWY_INLINE void store_box(const cpu::BottomTree& tree, uint32_t first, uint32_t 
     }
 }
 
+/// What holds all of `boxes`, into one slot of the node above.
+template <size_t W>
+HWY_INLINE void store_union(const float (&boxes)[6][W], cpu::Node16& above, uint32_t slot) {
+    for (int axis = 0; axis < 3; ++axis) {
+        above.bounds[axis][slot] = reduce_min(Lanes<W>::load(boxes[axis]));
+        above.bounds[3 + axis][slot] = reduce_max(Lanes<W>::load(boxes[3 + axis]));
+    }
+}
+
 HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
     const int level = int(tree.level);
     const auto store_blocks = [&](uint32_t first_block, cpu::Node8& node) {
         for (uint32_t k = 0; k < 8; ++k)
             store_box(tree, cpu::BottomTree::find_first_vertex(level, first_block + k), 3, node.bounds, k);
     };
-    if (level == 5) {
+    const auto store_squares = [&](uint32_t first_block, cpu::Node16& node) {
+        for (uint32_t k = 0; k < 16; ++k)
+            store_box(tree, cpu::BottomTree::find_first_vertex(level, first_block + 2 * k), 5, node.bounds,
+                      k);
+    };
+    if (level == 6) {
         for (uint32_t g = 0; g < 16; ++g) {
-            cpu::Node8& node = tree.group(int(g));
-            store_blocks(g * 8, node);
-            for (int axis = 0; axis < 3; ++axis) {
-                tree.root().bounds[axis][g] = reduce_min(Lanes8::load(node.bounds[axis]));
-                tree.root().bounds[3 + axis][g] = reduce_max(Lanes8::load(node.bounds[3 + axis]));
-            }
+            store_squares(g * 32, tree.wide_group(int(g)));
+            store_union(tree.wide_group(int(g)).bounds, tree.root(), g);
+        }
+    } else if (level == 5) {
+        for (uint32_t g = 0; g < 16; ++g) {
+            store_blocks(g * 8, tree.group(int(g)));
+            store_union(tree.group(int(g)).bounds, tree.root(), g);
         }
     } else if (level == 4) {
-        for (uint32_t g = 0; g < 16; ++g)
-            store_box(tree, cpu::BottomTree::find_first_vertex(level, 2 * g), 5, tree.root().bounds, g);
+        store_squares(0, tree.root());
     } else if (level == 3) {
         store_blocks(0, tree.group(0));
     }

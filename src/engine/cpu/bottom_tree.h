@@ -2,7 +2,7 @@
 // blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
 // stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
-// A bottom tree covers one tile of at most 32 x 32 cells. A patch finer than that has a directory: a tree of
+// A bottom tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
 // the same sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever
 // evaluated.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace relief::cpu {
 
-inline constexpr int kTileLevel = 5;                    ///< a tile has at most 2^5 cells a side
+inline constexpr int kTileLevel = 6;                    ///< a tile has at most 2^6 cells a side
 inline constexpr uint32_t kDirectoryTile = 0xffffffffu; ///< in place of a tile index: the patch's directory
 
 /// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
@@ -46,6 +46,8 @@ struct alignas(64) CachedTree {
 
 /// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Boxes and vertices
 /// follow the head:
+/// - level 6: root, 16 Node16, 512 blocks; child g of the root covers 16 x 16 cells, its child k 4 x 4 of
+///   them: blocks 2 (16 g + k) and the next;
 /// - level 5: root, 16 Node8, 128 blocks; child g of the root covers 8 x 8 cells, its block k 4 x 2 of them;
 /// - level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1;
 /// - level 3: one Node8, 8 blocks;
@@ -55,11 +57,12 @@ struct BottomTree : CachedTree {
     uint32_t cell_x = 0, cell_y = 0; ///< first cell of the tile on the patch
 
     static constexpr uint32_t block_count(int level) {
-        constexpr uint32_t kCounts[] = {1, 1, 2, 8, 32, 128};
+        constexpr uint32_t kCounts[] = {1, 1, 2, 8, 32, 128, 512};
         return kCounts[level];
     }
     static constexpr size_t node_bytes(int level) {
-        return level == 5   ? sizeof(Node16) + 16 * sizeof(Node8)
+        return level == 6   ? 17 * sizeof(Node16)
+               : level == 5 ? sizeof(Node16) + 16 * sizeof(Node8)
                : level == 4 ? sizeof(Node16)
                : level == 3 ? sizeof(Node8)
                             : 0;
@@ -79,6 +82,9 @@ struct BottomTree : CachedTree {
     char* data();
     const Node16& root() const { return *reinterpret_cast<const Node16*>(data()); }
     Node16& root() { return *reinterpret_cast<Node16*>(data()); }
+    /// Level 6: node of group g.
+    const Node16& wide_group(int g) const { return (&root())[1 + g]; }
+    Node16& wide_group(int g) { return (&root())[1 + g]; }
     /// Level 5: node of group g; level 3: the only one (g = 0).
     const Node8& group(int g) const {
         return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
@@ -104,7 +110,10 @@ struct BottomTree : CachedTree {
 
     /// First cell (column, row) of a block within the tile.
     static void block_cell(int level, uint32_t block, uint32_t& column, uint32_t& row) {
-        if (level == 5) {
+        if (level == 6) {
+            const uint32_t g = block >> 5, k = block >> 1 & 15;
+            column = (g & 3) * 16 + (k & 3) * 4, row = (g >> 2) * 16 + (k >> 2) * 4 + (block & 1) * 2;
+        } else if (level == 5) {
             const uint32_t g = block >> 3, k = block & 7;
             column = (g & 3) * 8 + (k & 1) * 4, row = (g >> 2) * 8 + (k >> 1) * 2;
         } else if (level == 4) {

@@ -100,15 +100,20 @@ HWY_INLINE void visit_boxes(const float (&bounds)[6][W], const RayBundle& bundle
 HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayBundle& bundle) {
     uint64_t& nodes = visit.patch.context->counters.patch_nodes;
     const auto test_block = [&](uint32_t block) { trace_block(visit, tree, block, bundle); };
+    const auto test_square = [&](uint32_t square) { test_block(2 * square), test_block(2 * square + 1); };
     nodes += tree.level >= 3;
-    if (tree.level == 5) {
+    if (tree.level == 6) {
+        visit_boxes(tree.root().bounds, bundle, [&](uint32_t g) {
+            ++nodes;
+            visit_boxes(tree.wide_group(int(g)).bounds, bundle, [&](uint32_t k) { test_square(g * 16 + k); });
+        });
+    } else if (tree.level == 5) {
         visit_boxes(tree.root().bounds, bundle, [&](uint32_t g) {
             ++nodes;
             visit_boxes(tree.group(int(g)).bounds, bundle, [&](uint32_t k) { test_block(g * 8 + k); });
         });
     } else if (tree.level == 4) {
-        visit_boxes(tree.root().bounds, bundle,
-                    [&](uint32_t g) { test_block(2 * g), test_block(2 * g + 1); });
+        visit_boxes(tree.root().bounds, bundle, test_square);
     } else if (tree.level == 3) {
         visit_boxes(tree.group(0).bounds, bundle, test_block);
     } else {

@@ -176,18 +176,25 @@ void trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, Packet& pa
     const auto test_block = [&](uint32_t block, LaneMask entered) {
         trace_block<kQuery>(visit, tree, block, packet, entered, hits);
     };
+    const auto test_square = [&](uint32_t square, LaneMask entered) {
+        test_block(2 * square, entered);
+        test_block(2 * square + 1, entered);
+    };
     nodes += tree.level >= 3;
-    if (tree.level == 5) {
+    if (tree.level == 6) {
+        visit_children(tree.root(), packet, mask, [&](uint32_t g, LaneMask entered) {
+            ++nodes;
+            visit_children(tree.wide_group(int(g)), packet, entered,
+                           [&](uint32_t k, LaneMask left) { test_square(g * 16 + k, left); });
+        });
+    } else if (tree.level == 5) {
         visit_children(tree.root(), packet, mask, [&](uint32_t g, LaneMask entered) {
             ++nodes;
             visit_children(tree.group(int(g)), packet, entered,
                            [&](uint32_t k, LaneMask left) { test_block(g * 8 + k, left); });
         });
     } else if (tree.level == 4) {
-        visit_children(tree.root(), packet, mask, [&](uint32_t g, LaneMask entered) {
-            test_block(2 * g, entered);
-            test_block(2 * g + 1, entered);
-        });
+        visit_children(tree.root(), packet, mask, test_square);
     } else if (tree.level == 3) {
         visit_children(tree.group(0), packet, mask, test_block);
     } else {

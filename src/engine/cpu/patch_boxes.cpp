@@ -9,7 +9,7 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr uint32_t kMostLevel = kTileLevel + 1; ///< finer patches are not evaluated as a whole
+constexpr uint32_t kMostLevel = kTileLevel; ///< finer patches are not evaluated as a whole
 
 constexpr uint32_t kSampleCount = 4096; ///< patches of a surface that are looked at, at most
 

@@ -19,8 +19,8 @@ namespace relief::HWY_NAMESPACE {
 
 /// Vertices of a tile, row by row; rows are padded so that sixteen lanes can be stored anywhere.
 struct VertexGrid {
-    static constexpr int kPitch = 48;
-    alignas(64) float axis[3][33 * kPitch];
+    static constexpr int kPitch = (1 << cpu::kTileLevel) + 16;
+    alignas(64) float axis[3][((1 << cpu::kTileLevel) + 1) * kPitch];
 };
 
 /// What is interpolated over a patch or along an edge: position, uv and, in tangent space, the frame.

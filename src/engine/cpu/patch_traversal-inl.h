@@ -167,16 +167,20 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
-/// Blocks of a list, nearest first; for Query::any as they come, since all of them are at hand already.
-template <Query kQuery>
-HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
-                             EntryList& blocks, RayState& ray) {
+/// Leaves of a list, nearest first; for Query::any as they come, since all of them are at hand already.
+/// Leaf k is the blocks [k kBlocks, (k + 1) kBlocks).
+template <Query kQuery, uint32_t kBlocks, class List>
+HWY_INLINE bool trace_leaves(const PatchVisit& visit, const cpu::BottomTree& tree, int level, List& leaves,
+                             RayState& ray) {
     bool has_hit = false;
-    if constexpr (kQuery == Query::closest) blocks.sort();
-    for (uint32_t k = 0; k < blocks.count; ++k) {
-        if (kQuery == Query::closest && blocks.distance(k) > ray.t_max * kBoxSlack) continue;
-        has_hit |= intersect_block<kQuery>(visit, tree, level, blocks.child(k), ray);
-        if (kQuery == Query::any && has_hit) return true;
+    if constexpr (kQuery == Query::closest) leaves.sort();
+    for (uint32_t k = 0; k < leaves.count; ++k) {
+        if (kQuery == Query::closest && leaves.distance(k) > ray.t_max * kBoxSlack) continue;
+        const uint32_t first = leaves.child(k) * kBlocks;
+        for (uint32_t block = first; block < first + kBlocks; ++block) {
+            has_hit |= intersect_block<kQuery>(visit, tree, level, block, ray);
+            if (kQuery == Query::any && has_hit) return true;
+        }
     }
     return has_hit;
 }
@@ -184,24 +188,36 @@ HWY_INLINE bool trace_blocks(const PatchVisit& visit, const cpu::BottomTree& tre
 /// Everything of a tile along one ray. The boxes of all groups are tested before the first block: their loads
 /// overlap, and one list is sorted instead of many.
 template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
-    EntryList blocks;
     Lanes8 entry8;
     Lanes16 entry;
     uint64_t& nodes = visit.context->counters.patch_nodes;
     nodes += tree.level >= 3;
+    if (tree.level == 6) {
+        EntryList<256> squares;
+        for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
+            const uint32_t g = uint32_t(__builtin_ctz(groups));
+            ++nodes;
+            Lanes16 inner;
+            const LaneMask mask = test_node(tree.wide_group(int(g)).bounds, ray, inner);
+            squares.append(mask, inner, g * 16);
+        }
+        return trace_leaves<kQuery, 2>(visit, tree, 6, squares, ray);
+    }
     if (tree.level == 5) {
+        EntryList<128> blocks;
         for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
             const uint32_t g = uint32_t(__builtin_ctz(groups));
             ++nodes;
             const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
             blocks.append(mask, entry8, g * 8);
         }
-        return trace_blocks<kQuery>(visit, tree, 5, blocks, ray);
+        return trace_leaves<kQuery, 1>(visit, tree, 5, blocks, ray);
     }
     if (tree.level == 3) {
+        EntryList<8> blocks;
         const LaneMask mask = test_node(tree.group(0).bounds, ray, entry8);
         blocks.append(mask, entry8, 0);
-        return trace_blocks<kQuery>(visit, tree, 3, blocks, ray);
+        return trace_leaves<kQuery, 1>(visit, tree, 3, blocks, ray);
     }
     bool has_hit = false;
     const auto test_block = [&](uint32_t block) {

@@ -122,9 +122,9 @@ HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8&
 
 /// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child,
 /// so that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will
-/// do).
-struct EntryList {
-    static constexpr uint32_t kChildMask = 127, kCapacity = 128;
+/// do). Up to kCapacity children, a power of two.
+template <uint32_t kCapacity> struct EntryList {
+    static constexpr uint32_t kChildMask = kCapacity - 1;
     alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored
     uint32_t count = 0;
 
@@ -169,7 +169,7 @@ struct EntryList {
 template <size_t W, class Visit>
 HWY_INLINE bool visit_in_order(LaneMask mask, const Lanes<W>& entry, const RayState& ray, Visit visit) {
     if ((mask & (mask - 1)) == 0) return mask != 0 && visit(uint32_t(__builtin_ctz(mask)));
-    EntryList entries;
+    EntryList<16> entries;
     entries.append(mask, entry, 0);
     entries.sort();
     for (uint32_t k = 0; k < entries.count; ++k)
