@@ -172,7 +172,7 @@ TEST(Evaluation, is_the_definition_through_every_kind_of_frame) {
         }
 }
 
-TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {
+TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_cells) {
     for (const uint8_t level : {uint8_t(7), uint8_t(8), uint8_t(9)}) {
         const Scene scene = test::make_body_scene(
             test::make_torus(4, 6),
@@ -182,7 +182,7 @@ TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {
         const auto prepared = prepare_scene(scene, settings);
         const Surface& surface = prepared->surfaces[0];
         const PatchLevels levels{level, {level, 3, uint8_t(level - 1), 0}};
-        const uint32_t depth = level - cpu::kTileLevel;
+        const uint32_t depth = level - cpu::kQuarterLevel;
         const std::unique_ptr<void, Free> memory(
             std::aligned_alloc(64, (cpu::TileDirectory::size_bytes(depth) + 63) / 64 * 64));
         auto* directory = new (memory.get()) cpu::TileDirectory;
@@ -194,8 +194,8 @@ TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_tiles) {
             for (uint32_t i = 0; i <= 1u << level; i += 3) {
                 const Vec3f p = evaluate_vertex(surface, 7, levels, i, j);
                 const float value[3] = {p.x, p.y, p.z};
-                uint32_t x = std::min(i >> cpu::kTileLevel, (1u << depth) - 1),
-                         y = std::min(j >> cpu::kTileLevel, (1u << depth) - 1);
+                uint32_t x = std::min(i >> cpu::kQuarterLevel, (1u << depth) - 1),
+                         y = std::min(j >> cpu::kQuarterLevel, (1u << depth) - 1);
                 for (uint32_t step = steps; step-- > 0;) {
                     const uint32_t fanout = cpu::TileDirectory::fanout(depth, step),
                                    side = cpu::TileDirectory::step_side(depth, step);

@@ -147,7 +147,7 @@ const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context,
     if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
     const Timer timer;
     const PatchLevels levels = unpack_levels(key.levels);
-    const uint32_t depth = uint32_t(levels.patch - kTileLevel);
+    const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
     const size_t bytes = TileDirectory::size_bytes(depth);
     void* memory = allocate(context, bytes);
     if (!memory && context.directory_scratch_bytes < bytes) {

@@ -3,8 +3,8 @@
 // stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
 // A bottom tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
-// the same sixteen-wide nodes over the boxes of its tiles, so that only the tiles that rays enter are ever
-// evaluated.
+// the same sixteen-wide nodes over the boxes of its tiles' quarters, so that only the tiles that rays enter
+// are ever evaluated.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,7 @@
 namespace relief::cpu {
 
 inline constexpr int kTileLevel = 6;                    ///< a tile has at most 2^6 cells a side
+inline constexpr int kQuarterLevel = kTileLevel - 1;    ///< of what directories have boxes of
 inline constexpr uint32_t kDirectoryTile = 0xffffffffu; ///< in place of a tile index: the patch's directory
 
 /// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
@@ -137,9 +138,10 @@ inline char* BottomTree::data() {
     return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
 }
 
-/// Tree over the tiles of a patch above kTileLevel: 2^depth tiles a side. Step s has step_side(s)^2 nodes,
-/// row by row; a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd);
-/// the last step's children are tiles.
+/// Tree over the quarters of the tiles of a patch above kTileLevel, 2^depth of them a side: their boxes come
+/// from the map, and those of whole tiles would be a good deal larger. Step s has step_side(s)^2 nodes, row
+/// by row; a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd); those
+/// of the last step are the quarters of four tiles.
 struct TileDirectory : CachedTree {
     uint32_t depth = 0;
 
@@ -157,6 +159,13 @@ struct TileDirectory : CachedTree {
         for (uint32_t s = 0; s < step; ++s) begin += step_side(depth, s) * step_side(depth, s);
         return begin;
     }
+    /// The tile that quarter (x, y) of the patch belongs to, and which of the four of its node it is.
+    static constexpr uint32_t find_tile(uint32_t depth, uint32_t x, uint32_t y) {
+        return (y / 2) << (depth - 1) | x / 2;
+    }
+    static constexpr uint32_t find_tile_of_node(uint32_t child) {
+        return (child >> 2 & 2) | (child >> 1 & 1);
+    }
     static constexpr size_t size_bytes(uint32_t depth) {
         return (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64 +
                size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
@@ -171,7 +180,7 @@ struct TileDirectory : CachedTree {
 /// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
 using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, BottomTree& tree);
 
-/// Builds `directory`, whose key and depth are set, from conservative tile boxes.
+/// Builds `directory`, whose key and depth are set, from conservative boxes.
 void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory);
 
 } // namespace relief::cpu

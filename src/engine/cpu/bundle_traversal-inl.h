@@ -128,13 +128,18 @@ inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& direct
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step);
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + y * side + x];
+    const bool is_last = step + 1 == TileDirectory::step_count(depth);
+    uint32_t visited = 0; // a bit a tile
     ++visit.patch.context->counters.patch_nodes;
     visit_boxes(node.bounds, bundle, [&](uint32_t child) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
-        if (step + 1 == TileDirectory::step_count(depth))
-            trace_tree(visit, find_tree(visit.patch, cy << depth | cx), bundle);
-        else
+        if (!is_last) {
             trace_directory(visit, directory, step + 1, cx, cy, bundle);
+        } else if (const uint32_t bit = 1u << TileDirectory::find_tile_of_node(child); !(visited & bit)) {
+            visited |= bit;
+            const uint32_t tile = TileDirectory::find_tile(depth, cx, cy);
+            trace_tree(visit, find_tree(visit.patch, tile), bundle);
+        }
     });
 }
 

@@ -210,14 +210,22 @@ void trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step), x = index % side, y = index / side;
     const cpu::Node16& node = directory.nodes()[TileDirectory::step_begin(depth, step) + index];
+    const bool is_last = step + 1 == TileDirectory::step_count(depth);
+    LaneMask visited[4] = {}; // of a tile, by these lanes
     ++visit.context->counters.patch_nodes;
     visit_children(node, packet, mask, [&](uint32_t child, LaneMask entered) {
         const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
-        if (step + 1 == TileDirectory::step_count(depth))
-            trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), packet, entered, hits);
-        else
+        if (!is_last) {
             trace_directory<kQuery>(visit, directory, step + 1, cy * side * fanout + cx, packet, entered,
                                     hits);
+            return;
+        }
+        LaneMask& before = visited[TileDirectory::find_tile_of_node(child)];
+        if (const LaneMask left = entered & ~before) {
+            before |= left;
+            const uint32_t tile = TileDirectory::find_tile(depth, cx, cy);
+            trace_tree<kQuery>(visit, find_tree(visit, tile), packet, left, hits);
+        }
     });
 }
 

@@ -245,14 +245,20 @@ bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& director
         TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x;
     Lanes16 entry;
     const LaneMask mask = test_node(directory.nodes()[node].bounds, ray, entry);
+    const bool is_last = step + 1 == TileDirectory::step_count(depth);
+    uint32_t visited = 0; // a bit a tile
     bool has_hit = false;
     ++visit.context->counters.patch_nodes;
     visit_in_order(mask, entry, ray, [&](uint32_t child) {
         const uint32_t cx = (x << shift) + (child & ((1u << shift) - 1)),
                        cy = (y << shift) + (child >> shift);
-        has_hit |= step + 1 == TileDirectory::step_count(depth)
-                       ? trace_tree<kQuery>(visit, find_tree(visit, cy << depth | cx), ray)
-                       : trace_directory<kQuery>(visit, directory, step + 1, cx, cy, ray);
+        if (!is_last) {
+            has_hit |= trace_directory<kQuery>(visit, directory, step + 1, cx, cy, ray);
+        } else if (const uint32_t bit = 1u << TileDirectory::find_tile_of_node(child); !(visited & bit)) {
+            visited |= bit;
+            const uint32_t tile = TileDirectory::find_tile(depth, cx, cy);
+            has_hit |= trace_tree<kQuery>(visit, find_tree(visit, tile), ray);
+        }
         return kQuery == Query::any && has_hit;
     });
     return has_hit;

@@ -38,7 +38,7 @@ void build_tile_directory(const Surface& surface, const PatchLevels& levels, Til
                 Box box;
                 if (child < fanout * fanout) {
                     const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
-                    constexpr uint32_t kSide = 1u << kTileLevel;
+                    constexpr uint32_t kSide = 1u << kQuarterLevel;
                     box = step + 1 == steps
                               ? compute_tile_box(surface, directory.key.patch, levels,
                                                  {cx * kSide, cy * kSide, (cx + 1) * kSide, (cy + 1) * kSide})
