@@ -9,6 +9,10 @@
 #define RELIEF_MATH_LANES_INL_H
 #endif
 
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
 #include <hwy/highway.h>
 
 #include "math/vec.h"
@@ -84,12 +88,21 @@ template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
     return r;
 }
 
+/// In one piece from the mask to the number and back: a word that is stored by bytes, or the other way round,
+/// has to wait for its stores.
+static_assert(std::endian::native == std::endian::little);
 template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     alignas(8) uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
-    LaneMask bits = bytes[0];
-    if constexpr (hn::MaxLanes(D()) > 8) bits |= LaneMask(bytes[1]) << 8;
+    std::conditional_t<(hn::MaxLanes(D()) > 8), uint16_t, uint8_t> bits;
+    std::memcpy(&bits, bytes, sizeof(bits));
     return bits;
+}
+
+/// Stores the lanes of `mask` one after another. A whole register is written: what follows them is undefined.
+template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, uint32_t* target) {
+    const uint64_t bits = mask;
+    hn::StoreU(hn::CompressBits(v, reinterpret_cast<const uint8_t*>(&bits)), d, target);
 }
 
 #define RELIEF_LANES_COMPARE(name, function)                                                                 \

@@ -98,9 +98,8 @@ struct PairList {
         constexpr size_t kLanes = Lanes<W>::kLanes;
         for (size_t p = 0; p < Lanes<W>::kParts; ++p) {
             const LaneMask part = mask >> (p * kLanes);
-            const uint8_t bits[8] = {uint8_t(part), uint8_t(part >> 8)};
-            hn::CompressStore(hn::Add(hn::Set(d, first), hn::Load(d, kSteps + p * kLanes)),
-                              hn::LoadMaskBits(d, bits), d, code + count);
+            store_compressed(d, hn::Add(hn::Set(d, first), hn::Load(d, kSteps + p * kLanes)), part,
+                             code + count);
             count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
         }
     }

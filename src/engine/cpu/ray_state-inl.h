@@ -139,8 +139,7 @@ template <uint32_t kCapacity> struct EntryList {
             const auto distance = hn::AndNot(hn::Set(d, kChildMask), hn::BitCast(d, entry.part[p]));
             const auto child = hn::Or(hn::Set(d, first), hn::Load(d, kNumbers + p * kLanes));
             const LaneMask part = mask >> (p * kLanes);
-            const uint8_t bits[8] = {uint8_t(part), uint8_t(part >> 8)};
-            hn::CompressStore(hn::Or(distance, child), hn::LoadMaskBits(d, bits), d, key + count);
+            store_compressed(d, hn::Or(distance, child), part, key + count);
             count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
         }
     }
