@@ -10,7 +10,6 @@
 #include "engine/cpu/packet_traversal-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
 #include "engine/cpu/ray_pairs-inl.h"
-#include "engine/finite_ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -231,20 +230,24 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
                                      RayBundle& bundle) {
     const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
     Lanes8 v[3][3];
-    alignas(64) float stored[3][3][8];
+    alignas(64) float stored[3][3][16] = {};
     for (int c = 0; c < 3; ++c) {
         for (int axis = 0; axis < 3; ++axis) {
             v[c][axis] = Lanes8::load(block.corner[c][axis]) - Lanes8(origin[axis]);
             v[c][axis].store(stored[c][axis]);
         }
     }
+    const auto make_table = [&](int c, int axis) { return LaneTable(Lanes16::load(stored[c][axis])); };
+    const LaneTable table[3][3] = {{make_table(0, 0), make_table(0, 1), make_table(0, 2)},
+                                   {make_table(1, 0), make_table(1, 1), make_table(1, 2)},
+                                   {make_table(2, 0), make_table(2, 1), make_table(2, 2)}};
     LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {}, dirty = 0;
     uint64_t count = 0;
     visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
         const PairLanes pairs(list);
         Lanes16 corner[3][3];
         shear_corners(
-            pairs, bundle, [&](int c, int axis) { return gather(stored[c][axis], pairs.part); }, corner);
+            pairs, bundle, [&](int c, int axis) { return table[c][axis].pick(pairs.part); }, corner);
         TriangleTest<16> test;
         if (!test_pairs<1, 2>(pairs, corner, bundle, test)) return;
         offer_pairs(pairs, test, bundle, hit_rays, dirty,
@@ -294,30 +297,15 @@ inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
     return true;
 }
 
-/// How many of the rays, at most kBundleSize, leave one point together.
-inline uint32_t find_bundle(const cpu::TraceRay* rays, size_t count) {
-    const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
-    uint32_t size = 0;
-    while (size < most && rays[size].origin == rays[0].origin && rays[size].bias == rays[0].bias &&
-           can_hit(rays[size]))
-        ++size;
-    return size;
-}
-
 /// Nearest hits of up to kBundleSize rays from one point and of one bias. False where they are no bundle;
 /// `hits` is undefined then.
-inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* world,
-                         uint32_t count, cpu::TraceHit* hits) {
-    BundleRays rays;
-    rays.world = world, rays.hits = hits, rays.count = count;
-    for (uint32_t k = 0; k < kBundleSize; ++k) {
-        const cpu::TraceRay& ray = world[HWY_MIN(k, count - 1)];
-        rays.t[k] = k < count ? ray.t_max : 0.0f;
-        rays.t_min[k] = ray.t_min;
-        rays.direction[0][k] = ray.direction.x, rays.direction[1][k] = ray.direction.y;
-        rays.direction[2][k] = ray.direction.z;
-    }
-    for (uint32_t k = 0; k < count; ++k) hits[k] = {}, hits[k].bias = uint8_t(world[k].bias);
+inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays,
+                         cpu::TraceHit* hits) {
+    fill_rest(rays);
+    cpu::TraceHit none;
+    none.bias = uint8_t(rays.world[0].bias);
+    std::fill_n(hits, rays.count, none);
+    rays.hits = hits;
     if (scene.instance_count == 1) return trace_instance(scene, context, 0, rays);
     RayBundle bundle;
     bundle.rays = &rays;

@@ -59,10 +59,11 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
 size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                    cpu::TraceHit* hits, size_t count) {
     if (scene.lod != LodRule::field || scene.leaf != LeafKind::exact) return 0;
-    const uint32_t size = find_bundle(rays, count);
-    if (size < kLeastBundle) return 0;
+    BundleRays bundle;
+    load_rays(rays, count, bundle);
+    if (bundle.count < kLeastBundle) return 0;
     scene.cache->refresh(context);
-    return trace_bundle(scene, context, rays, size, hits) ? size : 0;
+    return trace_bundle(scene, context, bundle, hits) ? bundle.count : 0;
 }
 
 void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,

@@ -385,7 +385,7 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
     packet.active = 0xffff;
     const bool is_alone = scene.instance_count == 1;
     for (int lane = 0; lane < 16; ++lane) {
-        packet.ray[lane] = start_ray(rays[lane], is_alone ? scene.instances[0].object_from_world : Affine{});
+        start_ray(rays[lane], is_alone ? scene.instances[0].object_from_world : Affine{}, packet.ray[lane]);
         if (is_alone) packet.ray[lane].instance = 0;
     }
     packet.load_lanes();

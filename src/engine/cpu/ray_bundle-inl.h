@@ -11,6 +11,10 @@
 #define RELIEF_RAY_BUNDLE_INL_H
 #endif
 
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
 #include "engine/cpu/bottom_build-inl.h"
 #include "engine/cpu/ray_state-inl.h"
 
@@ -42,6 +46,54 @@ struct BundleRays {
         return count >= first + kGroupSize ? 0xffffu : count > first ? (1u << (count - first)) - 1 : 0u;
     }
 };
+
+/// Which of sixteen rays, repeated where there are fewer, can be in one bundle with `first`: can_hit, its
+/// origin and its bias. Writes what the bundle keeps of them.
+HWY_INLINE LaneMask load_group(const cpu::TraceRay* world, uint32_t count, const cpu::TraceRay& first,
+                               size_t at, BundleRays& rays) {
+    static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
+                  offsetof(cpu::TraceRay, t_max) == 28);
+    LaneQuads starts, ends;
+    LaneMask fits = 0;
+    for (uint32_t lane = 0; lane < kGroupSize; ++lane) {
+        const cpu::TraceRay& ray = world[HWY_MIN(lane, count - 1)];
+        std::memcpy(starts.lane[lane], &ray.origin, 16);
+        std::memcpy(ends.lane[lane], &ray.direction, 16);
+        fits |= LaneMask(lane < count && ray.bias == first.bias) << lane;
+    }
+    Lanes16 o[3], d[3], t_min, t_max;
+    starts.transpose(o[0], o[1], o[2], t_min);
+    ends.transpose(d[0], d[1], d[2], t_max);
+    const float origin[3] = {first.origin.x, first.origin.y, first.origin.z};
+    for (int k = 0; k < 3; ++k) {
+        fits &= ~not_equal(o[k], Lanes16(origin[k]));
+        d[k].store(rays.direction[k] + at);
+    }
+    const Lanes16 all = (o[0] + d[0]) + (o[1] + d[1]) + (o[2] + d[2]);
+    t_min.store(rays.t_min + at), t_max.store(rays.t + at);
+    return fits & ~not_equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);
+}
+
+/// Takes the rays at the front that leave one point together, at most kBundleSize.
+inline void load_rays(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
+    rays.world = world, rays.count = 0;
+    const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
+    while (rays.count < most) {
+        const uint32_t left = HWY_MIN(most - rays.count, kGroupSize);
+        const LaneMask fits = load_group(world + rays.count, left, world[0], rays.count, rays);
+        const uint32_t taken = hwy::Num0BitsBelowLS1Bit_Nonzero32(~fits);
+        rays.count += taken;
+        if (taken < kGroupSize) break;
+    }
+}
+
+/// Places behind the last ray repeat it and reach nothing.
+inline void fill_rest(BundleRays& rays) {
+    for (uint32_t last = rays.count - 1, k = rays.count; k < kBundleSize; ++k) {
+        rays.t[k] = 0, rays.t_min[k] = rays.t_min[last];
+        for (float* direction : rays.direction) direction[k] = direction[last];
+    }
+}
 
 /// A part of the plane, and the least depth of what is seen in it.
 struct Window {
