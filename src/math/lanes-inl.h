@@ -100,7 +100,7 @@ template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
 }
 
 /// Stores the lanes of `mask` one after another. A whole register is written: what follows them is undefined.
-template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, uint32_t* target) {
+template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, hn::TFromD<D>* target) {
     const uint64_t bits = mask;
     hn::StoreU(hn::CompressBits(v, reinterpret_cast<const uint8_t*>(&bits)), d, target);
 }

@@ -59,8 +59,8 @@ HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& 
             shear_corners(
                 pairs, bundle, [&](int c, int axis) { return table[axis].pick(at[c]); }, corner);
             TriangleTest<16> test;
-            if (test_pairs<1, 2>(pairs, corner, bundle, test)) offer(pairs, 0, test);
-            if (test_pairs<2, 3>(pairs, corner, bundle, test)) offer(pairs, 8, test);
+            if (test_pairs<1, 2>(pairs, corner, test)) offer(pairs, 0, test);
+            if (test_pairs<2, 3>(pairs, corner, test)) offer(pairs, 8, test);
         });
     update_groups(bundle, dirty);
 }
@@ -249,7 +249,7 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
         shear_corners(
             pairs, bundle, [&](int c, int axis) { return table[c][axis].pick(pairs.part); }, corner);
         TriangleTest<16> test;
-        if (!test_pairs<1, 2>(pairs, corner, bundle, test)) return;
+        if (!test_pairs<1, 2>(pairs, corner, test)) return;
         offer_pairs(pairs, test, bundle, hit_rays, dirty,
                     [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
                         hit.patch = block.triangle[lane] / 2;

@@ -80,27 +80,50 @@ HWY_INLINE PartWindows find_triangle_windows(const Lanes8 (&v)[3][3], const RayB
     return part;
 }
 
-/// Up to all pairs of a group of rays and eight parts, and what a step left over.
+/// Up to all pairs of a group of rays and eight parts, and what a step left over. With each pair goes what
+/// its test reads of the ray: lanes that look it up elsewhere are slow.
 struct PairList {
     static constexpr uint32_t kCapacity = 8 * kGroupSize + 16;
     alignas(64) uint32_t code[kCapacity + 16]; ///< ray * 8 + part; a little more, for whole registers
+    alignas(64) float shear[2][kCapacity + 16];
     uint32_t count = 0;
 
-    /// The first sixteen are always codes: a step with fewer pairs than lanes loads what lies behind them.
-    PairList() { std::memset(code, 0, 16 * sizeof(uint32_t)); }
+    /// The first sixteen are always pairs: a step with fewer pairs than lanes loads what lies behind them.
+    PairList() {
+        std::memset(code, 0, 16 * sizeof(uint32_t));
+        for (float* s : shear) std::memset(s, 0, 16 * sizeof(float));
+    }
 
-    /// Appends first + step * lane for the lanes of `mask`.
-    template <size_t W, uint32_t kStep> HWY_INLINE void append(LaneMask mask, uint32_t first) {
-        alignas(64) static constexpr uint32_t kSteps[16] = {
-            0 * kStep, 1 * kStep, 2 * kStep,  3 * kStep,  4 * kStep,  5 * kStep,  6 * kStep,  7 * kStep,
-            8 * kStep, 9 * kStep, 10 * kStep, 11 * kStep, 12 * kStep, 13 * kStep, 14 * kStep, 15 * kStep};
-        const hn::RebindToUnsigned<typename Lanes<W>::D> d;
-        constexpr size_t kLanes = Lanes<W>::kLanes;
-        for (size_t p = 0; p < Lanes<W>::kParts; ++p) {
-            const LaneMask part = mask >> (p * kLanes);
-            store_compressed(d, hn::Add(hn::Set(d, first), hn::Load(d, kSteps + p * kLanes)), part,
+    /// The rays of `mask` of a group with one part.
+    HWY_INLINE void append_rays(LaneMask mask, uint32_t first_ray, uint32_t part, const Lanes16& shear_x,
+                                const Lanes16& shear_y) {
+        alignas(64) static constexpr uint32_t kRays[16] = {0,  8,  16, 24, 32, 40,  48,  56,
+                                                           64, 72, 80, 88, 96, 104, 112, 120};
+        constexpr size_t kLanes = Lanes16::kLanes;
+        const Lanes16::D d;
+        const hn::RebindToUnsigned<Lanes16::D> du;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) {
+            const LaneMask of_part = mask >> (p * kLanes) & ((1u << kLanes) - 1);
+            const auto codes = hn::Add(hn::Set(du, first_ray * 8 + part), hn::Load(du, kRays + p * kLanes));
+            store_compressed(du, codes, of_part, code + count);
+            store_compressed(d, shear_x.part[p], of_part, shear[0] + count);
+            store_compressed(d, shear_y.part[p], of_part, shear[1] + count);
+            count += uint32_t(__builtin_popcount(of_part));
+        }
+    }
+
+    /// One ray with the parts of `mask`.
+    HWY_INLINE void append_parts(LaneMask mask, uint32_t ray, float shear_x, float shear_y) {
+        alignas(32) static constexpr uint32_t kParts[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+        Lanes8(shear_x).store_unaligned(shear[0] + count);
+        Lanes8(shear_y).store_unaligned(shear[1] + count);
+        constexpr size_t kLanes = Lanes8::kLanes;
+        const hn::RebindToUnsigned<Lanes8::D> du;
+        for (size_t p = 0; p < Lanes8::kParts; ++p) {
+            const LaneMask of_part = mask >> (p * kLanes) & ((1u << kLanes) - 1);
+            store_compressed(du, hn::Add(hn::Set(du, ray * 8), hn::Load(du, kParts + p * kLanes)), of_part,
                              code + count);
-            count += uint32_t(__builtin_popcount(part & ((1u << kLanes) - 1)));
+            count += uint32_t(__builtin_popcount(of_part));
         }
     }
 };
@@ -117,11 +140,13 @@ HWY_INLINE LaneMask find_parts(const PartWindows& part, const RayBundle& bundle,
 /// Sixteen rays as the windows see them.
 struct GroupLanes {
     Lanes16 x, y, depth; ///< depth of the nearest hit
+    Lanes16 shear_x, shear_y;
 
     GroupLanes(const RayBundle& bundle, uint32_t group) {
         const size_t at = group * kGroupSize;
         x = Lanes16::load(bundle.x + at), y = Lanes16::load(bundle.y + at);
         depth = Lanes16::load(bundle.rays->t + at) * Lanes16::load(bundle.speed + at);
+        shear_x = Lanes16::load(bundle.shear[0] + at), shear_y = Lanes16::load(bundle.shear[1] + at);
     }
     HWY_INLINE LaneMask find_inside(float lower_x, float upper_x, float lower_y, float upper_y,
                                     float nearest) const {
@@ -144,7 +169,7 @@ HWY_INLINE LaneMask append_pairs(const PartWindows& part, const RayBundle& bundl
             const LaneMask inside = less_equal(part.lower_x, x) & less_equal(x, part.upper_x) &
                                     less_equal(part.lower_y, y) & less_equal(y, part.upper_y) &
                                     less_equal(part.depth, Lanes8(bundle.rays->t[ray] * bundle.speed[ray]));
-            pairs.append<8, 1>(inside, ray * 8);
+            pairs.append_parts(inside, ray, bundle.shear[0][ray], bundle.shear[1][ray]);
             paired |= LaneMask(inside != 0) << lane;
         }
         return paired;
@@ -156,7 +181,7 @@ HWY_INLINE LaneMask append_pairs(const PartWindows& part, const RayBundle& bundl
         const uint32_t q = uint32_t(__builtin_ctz(parts));
         const LaneMask inside =
             left & rays.find_inside(bound[0][q], bound[1][q], bound[2][q], bound[3][q], bound[4][q]);
-        pairs.append<16, 8>(inside, at * 8 + q);
+        pairs.append_rays(inside, at, q, rays.shear_x, rays.shear_y);
         paired |= inside;
     }
     return paired;
@@ -196,6 +221,7 @@ HWY_INLINE void update_groups(RayBundle& bundle, LaneMask dirty) {
 /// Sixteen rays and the parts that they may meet.
 struct PairLanes {
     LaneIndices ray, part;
+    Lanes16 shear_x, shear_y;
     LaneMask valid;
 
     /// Takes up to sixteen pairs from the end of the list.
@@ -205,6 +231,8 @@ struct PairLanes {
         valid = (1u << count) - 1;
         const LaneIndices code = LaneIndices::load(list.code + list.count);
         ray = code.shifted_down<3>(), part = code.masked(7);
+        shear_x = Lanes16::load_unaligned(list.shear[0] + list.count);
+        shear_y = Lanes16::load_unaligned(list.shear[1] + list.count);
     }
 };
 
@@ -213,19 +241,19 @@ struct PairLanes {
 template <int kCount, class Pick>
 HWY_INLINE void shear_corners(const PairLanes& pairs, const RayBundle& bundle, Pick pick,
                               Lanes16 (&corner)[3][kCount]) {
-    const Lanes16 shear_x = gather(bundle.shear[0], pairs.ray), shear_y = gather(bundle.shear[1], pairs.ray);
     for (int c = 0; c < kCount; ++c) {
         const Lanes16 z = pick(c, bundle.axis[2]);
-        corner[0][c] = pick(c, bundle.axis[0]) - shear_x * z;
-        corner[1][c] = pick(c, bundle.axis[1]) - shear_y * z;
+        corner[0][c] = pick(c, bundle.axis[0]) - pairs.shear_x * z;
+        corner[1][c] = pick(c, bundle.axis[1]) - pairs.shear_y * z;
         corner[2][c] = z;
     }
 }
 
-/// The triangles of corners 0, kSecond and kThird. False where no ray meets one.
+/// The triangles of corners 0, kSecond and kThird, however far along the rays: test.t is the place along the
+/// major axis. False where no ray's line meets one.
 template <int kSecond, int kThird, int kCount>
 HWY_INLINE bool test_pairs(const PairLanes& pairs, const Lanes16 (&corner)[3][kCount],
-                           const RayBundle& bundle, TriangleTest<16>& test) {
+                           TriangleTest<16>& test) {
     const auto pick = [&](int k, Lanes16(&of)[3]) __attribute__((always_inline)) {
         of[0] = corner[k][0], of[1] = corner[k][kSecond], of[2] = corner[k][kThird];
     };
@@ -233,21 +261,23 @@ HWY_INLINE bool test_pairs(const PairLanes& pairs, const Lanes16 (&corner)[3][kC
     pick(0, x), pick(1, y), pick(2, z);
     test_edges(x, y, test);
     if (!(test.mask &= pairs.valid)) return false;
-    test_distances(z, gather(bundle.shear[2], pairs.ray), gather(bundle.rays->t_min, pairs.ray),
-                   gather(bundle.rays->t, pairs.ray), test);
-    return test.mask != 0;
+    const Lanes16 sum = test.u + test.v + test.w;
+    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
+    return (test.mask &= not_equal(sum, Lanes16(0.0f))) != 0;
 }
 
-/// Takes over what is nearest among the hits of pairs; locate(part, weight_b, weight_c, hit) as in offer_hit.
-/// Sets the bits of rays with hits, and of their groups in `dirty`.
+/// Takes over what is nearest among the hits of pairs, by the operations of test_distances; locate(part,
+/// weight_b, weight_c, hit) as in offer_hit. Sets the bits of rays with hits, and of their groups in `dirty`.
 template <class Locate>
 HWY_INLINE void offer_pairs(const PairLanes& pairs, const TriangleTest<16>& test, RayBundle& bundle,
                             LaneMask (&hit_rays)[kGroupCount], LaneMask& dirty, Locate locate) {
-    const TriangleHits<16> hits(test);
+    TriangleHits<16> hits(test);
     alignas(64) int32_t ray[16], part[16];
     pairs.ray.store(ray), pairs.part.store(part);
     for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask)), k = uint32_t(ray[lane]);
+        hits.t[lane] *= bundle.shear[2][k];
+        if (!(bundle.rays->t_min[k] < hits.t[lane] && hits.t[lane] <= bundle.rays->t[k])) continue;
         hit_rays[k / kGroupSize] |= 1u << k % kGroupSize;
         dirty |= 1u << k / kGroupSize;
         offer_hit(bundle.rays->hits[k], bundle.rays->t[k], bundle.instance, hits, lane,
