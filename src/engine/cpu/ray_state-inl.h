@@ -197,10 +197,22 @@ HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
     return r;
 }
 
+/// One corner of the eight quads of a block out of two registers: the first kFromFirst come from the first
+/// one.
+template <size_t kFromFirst, size_t W>
+HWY_INLINE auto pick_corner(const Lanes<W>& vertex, const int32_t (&number_in_register)[8]) {
+    const Lanes8::D d;
+    const auto index = hn::SetTableIndices(d, number_in_register);
+    return hn::IfThenElse(hn::FirstN(d, kFromFirst), hn::TableLookupLanes(vertex.part[0], index),
+                          hn::TableLookupLanes(vertex.part[1], index));
+}
+
 /// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00,
 /// 11, 01) of cells 0..3 of the first row, then of the second.
-HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, Lanes16& c) {
-    if constexpr (Lanes16::kParts == 1) {
+template <size_t W>
+HWY_INLINE void gather_corners(const Lanes<W>& vertex, Lanes<W>& a, Lanes<W>& b, Lanes<W>& c) {
+    static_assert(W == 16);
+    if constexpr (Lanes<W>::kParts == 1) {
         alignas(64) static constexpr int32_t kA[16] = {0, 1, 2, 3, 5, 6, 7, 8, 0, 1, 2, 3, 5, 6, 7, 8};
         alignas(64) static constexpr int32_t kB[16] = {1, 2, 3, 4, 6, 7, 8, 9, 6, 7, 8, 9, 11, 12, 13, 14};
         alignas(64) static constexpr int32_t kC[16] = {6, 7, 8, 9, 11, 12, 13, 14,
@@ -209,6 +221,16 @@ HWY_INLINE void gather_corners(const Lanes16& vertex, Lanes16& a, Lanes16& b, La
         a.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kA));
         b.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kB));
         c.part[0] = hn::TableLookupLanes(vertex.part[0], hn::SetTableIndices(d, kC));
+    } else if constexpr (Lanes<W>::kParts == 2) {
+        // Not through memory: loads across two stores have to wait for them.
+        alignas(32) static constexpr int32_t k00[8] = {0, 1, 2, 3, 5, 6, 7, 0},
+                                             k10[8] = {1, 2, 3, 4, 6, 7, 0, 1},
+                                             k11[8] = {6, 7, 0, 1, 3, 4, 5, 6},
+                                             k01[8] = {5, 6, 7, 0, 2, 3, 4, 5};
+        a.part[0] = a.part[1] = pick_corner<7>(vertex, k00);
+        b.part[0] = pick_corner<6>(vertex, k10);
+        c.part[0] = b.part[1] = pick_corner<2>(vertex, k11);
+        c.part[1] = pick_corner<3>(vertex, k01);
     } else {
         alignas(64) float v[16], p00[8], p10[8], p11[8], p01[8];
         vertex.store(v);
