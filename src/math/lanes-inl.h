@@ -171,19 +171,41 @@ HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
     return r;
 }
 
-/// Sixteen floats that lanes pick from: out of a register where one holds all, else out of memory.
-struct LaneTable {
-    Lanes16 lanes;
-    alignas(64) float stored[Lanes16::kParts == 1 ? 1 : 16];
+/// kCount floats, eight or sixteen, that lanes pick from by indices below kCount: out of registers where two
+/// hold all, else out of memory, which is slower.
+template <size_t kCount> struct LaneTable {
+    using Values = Lanes<kCount>;
+    static constexpr bool kIsInRegisters = Lanes16::kLanes >= 8;
+    Values lanes;
+    alignas(64) float stored[kIsInRegisters ? 1 : kCount];
 
-    HWY_INLINE explicit LaneTable(const Lanes16& values) : lanes(values) {
-        if constexpr (Lanes16::kParts > 1) values.store(stored);
+    HWY_INLINE explicit LaneTable(const Values& values) : lanes(values) {
+        if constexpr (!kIsInRegisters) values.store(stored);
     }
     HWY_INLINE Lanes16 pick(const LaneIndices& index) const {
-        if constexpr (Lanes16::kParts > 1) return gather(stored, index);
+        if constexpr (!kIsInRegisters) return gather(stored, index);
         Lanes16 r;
-        r.part[0] = hn::TableLookupLanes(lanes.part[0], hn::IndicesFromVec(Lanes16::D(), index.part[0]));
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = look_up(*this, index.part[p]);
         return r;
+    }
+
+  private:
+    /// `table` is this one: a template, so that each instruction set compiles its own way only.
+    template <class Table, class Index> static HWY_INLINE auto look_up(const Table& table, Index index) {
+        const Lanes16::D d;
+        const hn::Rebind<int32_t, Lanes16::D> d32;
+        if constexpr (Table::Values::kLanes < Lanes16::kLanes) {
+            const auto values = hn::Combine(d, table.lanes.part[0], table.lanes.part[0]);
+            return hn::TableLookupLanes(values, hn::IndicesFromVec(d, index));
+        } else if constexpr (Table::Values::kParts == 1) {
+            return hn::TableLookupLanes(table.lanes.part[0], hn::IndicesFromVec(d, index));
+        } else {
+            const auto last = hn::Set(d32, int32_t(Lanes16::kLanes - 1));
+            const auto within = hn::IndicesFromVec(d, hn::And(index, last));
+            return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, last)),
+                                  hn::TableLookupLanes(table.lanes.part[1], within),
+                                  hn::TableLookupLanes(table.lanes.part[0], within));
+        }
     }
 };
 

@@ -38,7 +38,7 @@ HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& 
     for (int k = 0; k < 3; ++k) v[k] = place.load(k) - Lanes16(origin[k]);
     Window all;
     const PartWindows windows = find_quad_windows(v, bundle, all);
-    const LaneTable table[3] = {LaneTable(v[0]), LaneTable(v[1]), LaneTable(v[2])};
+    const LaneTable<16> table[3] = {LaneTable<16>(v[0]), LaneTable<16>(v[1]), LaneTable<16>(v[2])};
     LaneMask dirty = 0;
     // Lower triangles come before upper ones in a block.
     const auto offer = [&](const PairLanes& pairs, uint32_t first, const TriangleTest<16>& test) {
@@ -230,17 +230,13 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
                                      RayBundle& bundle) {
     const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
     Lanes8 v[3][3];
-    alignas(64) float stored[3][3][16] = {};
-    for (int c = 0; c < 3; ++c) {
-        for (int axis = 0; axis < 3; ++axis) {
+    for (int c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis)
             v[c][axis] = Lanes8::load(block.corner[c][axis]) - Lanes8(origin[axis]);
-            v[c][axis].store(stored[c][axis]);
-        }
-    }
-    const auto make_table = [&](int c, int axis) { return LaneTable(Lanes16::load(stored[c][axis])); };
-    const LaneTable table[3][3] = {{make_table(0, 0), make_table(0, 1), make_table(0, 2)},
-                                   {make_table(1, 0), make_table(1, 1), make_table(1, 2)},
-                                   {make_table(2, 0), make_table(2, 1), make_table(2, 2)}};
+    using Table = LaneTable<8>;
+    const Table table[3][3] = {{Table(v[0][0]), Table(v[0][1]), Table(v[0][2])},
+                               {Table(v[1][0]), Table(v[1][1]), Table(v[1][2])},
+                               {Table(v[2][0]), Table(v[2][1]), Table(v[2][2])}};
     LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {}, dirty = 0;
     uint64_t count = 0;
     visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
