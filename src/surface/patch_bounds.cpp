@@ -8,7 +8,8 @@
 #include <span>
 
 #include "surface/patch_samples.h"
-#include "surface/texels.h"
+#include "surface/texel_range.h"
+#include "surface/wrapped_range.h"
 
 namespace relief {
 
@@ -94,26 +95,26 @@ ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::Image
     const Texture& texture = image.texture;
     if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
         return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
-    const bool is_inside =
-        columns[0] >= 0 && rows[0] >= 0 && columns[1] < texture.width && rows[1] < texture.height;
-    if (is_inside)
-        if (const auto range = find_texel_range(
-                texture, {uint32_t(columns[0]), uint32_t(rows[0]), uint32_t(columns[1]), uint32_t(rows[1])}))
-            return *range;
+    const WrappedRange x = wrap_range(columns[0], columns[1], texture.width, map.wrap),
+                       y = wrap_range(rows[0], rows[1], texture.height, map.wrap);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     ChannelRange range{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    for (int64_t y = rows[0]; y <= rows[1]; ++y) {
-        const int64_t row = wrap_index(y, texture.height, map.wrap);
-        for (int64_t x = columns[0]; x <= columns[1]; ++x) {
-            const int64_t column = wrap_index(x, texture.width, map.wrap);
-            const std::array<float, 3> texel =
-                row < 0 || column < 0 ? middle : read_texel(texture, column, row);
-            for (int c = 0; c < 3; ++c) {
-                range.low[c] = std::min(range.low[c], texel[c]);
-                range.high[c] = std::max(range.high[c], texel[c]);
-            }
+    const auto extend = [&](const ChannelRange& by) {
+        for (size_t c = 0; c < 3; ++c) {
+            range.low[c] = std::min(range.low[c], by.low[c]);
+            range.high[c] = std::max(range.high[c], by.high[c]);
         }
-    }
+    };
+    if (x.is_outside_read || y.is_outside_read) extend({middle, middle});
+    for (int j = 0; j < y.count; ++j)
+        for (int i = 0; i < x.count; ++i) {
+            const auto& [x0, x1] = x.parts[size_t(i)];
+            const auto& [y0, y1] = y.parts[size_t(j)];
+            const auto part =
+                find_texel_range(texture, {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)});
+            if (!part) return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+            extend(*part);
+        }
     return range;
 }
 
