@@ -115,7 +115,8 @@ template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask 
     }
 RELIEF_LANES_COMPARE(less_equal, Le)
 RELIEF_LANES_COMPARE(less, Lt)
-RELIEF_LANES_COMPARE(not_equal, Ne)
+RELIEF_LANES_COMPARE(equal, Eq)
+RELIEF_LANES_COMPARE(not_equal, Ne) // of a NaN: true or false, by instruction set
 #undef RELIEF_LANES_COMPARE
 
 /// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
@@ -183,10 +184,13 @@ template <size_t kCount> struct LaneTable {
         if constexpr (!kIsInRegisters) values.store(stored);
     }
     HWY_INLINE Lanes16 pick(const LaneIndices& index) const {
-        if constexpr (!kIsInRegisters) return gather(stored, index);
-        Lanes16 r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = look_up(*this, index.part[p]);
-        return r;
+        if constexpr (kIsInRegisters) {
+            Lanes16 r;
+            for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = look_up(*this, index.part[p]);
+            return r;
+        } else {
+            return gather(stored, index);
+        }
     }
 
   private:
@@ -199,7 +203,7 @@ template <size_t kCount> struct LaneTable {
             return hn::TableLookupLanes(values, hn::IndicesFromVec(d, index));
         } else if constexpr (Table::Values::kParts == 1) {
             return hn::TableLookupLanes(table.lanes.part[0], hn::IndicesFromVec(d, index));
-        } else {
+        } else if constexpr (Table::Values::kParts == 2) {
             const auto last = hn::Set(d32, int32_t(Lanes16::kLanes - 1));
             const auto within = hn::IndicesFromVec(d, hn::And(index, last));
             return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, last)),

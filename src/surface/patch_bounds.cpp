@@ -18,7 +18,7 @@ namespace {
 constexpr double kUnit = 0x1p-24;       // half an ulp of 1: relative error of a float operation
 constexpr double kUnderflow = 0x1p-140; // more than the absolute error of a few operations on denormals
 constexpr int kTexelsOfPart = 8;        // parts of a patch are not made smaller than this
-constexpr int64_t kFewTexels = 256;     // read one by one
+constexpr int64_t kFewTexels = 256;     // read themselves, not by blocks of the pyramid
 constexpr int kMostParts = 4;           // a side
 
 struct Interval {

@@ -34,7 +34,7 @@ std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
 }
 
 std::shared_ptr<const PreparedScene> prepare_torus(RenderSettings& settings) {
-    settings.level = 6;
+    settings.level = 7;
     const Displacement displacement =
         test::make_displacement(test::make_random_map(64, 64, 0.1f, 5), DisplacementSpace::tangent);
     return prepare_scene(test::make_body_scene(test::make_torus(6, 9), displacement), settings);

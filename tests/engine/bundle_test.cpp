@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -90,7 +91,7 @@ const Scene& rock() {
 
 TEST(Bundle, finds_what_single_rays_find_at_every_level) {
     for (const Isa isa : test::machine_isas())
-        for (const int level : {0, 1, 2, 3, 4, 5, 6, kAutoLevel}) {
+        for (const int level : {0, 1, 2, 3, 4, 5, 6, 7, 8, kAutoLevel}) {
             const cpu::Tracer tracer = make_tracer(rock(), level, isa);
             const size_t hits =
                 expect_same(tracer, make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 4),
@@ -208,13 +209,43 @@ TEST(Bundle, finds_the_same_triangles_on_a_tessellated_surface) {
 }
 
 TEST(Bundle, works_without_room_for_trees) {
-    RenderSettings settings;
-    settings.width = 320, settings.height = 180, settings.level = 6;
-    const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 3);
-    const auto scene = prepare_scene(rock(), settings);
-    const Hits with = trace(cpu::Tracer(scene, settings), rays, kBundle);
-    settings.bottom_cache_bytes = 0;
-    EXPECT_EQ(count_different(with, trace(cpu::Tracer(scene, settings), rays, kBundle)), 0u);
+    for (const int level : {6, 7}) {
+        RenderSettings settings;
+        settings.width = 320, settings.height = 180, settings.level = level;
+        const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 3);
+        const auto scene = prepare_scene(rock(), settings);
+        const Hits with = trace(cpu::Tracer(scene, settings), rays, kBundle);
+        settings.bottom_cache_bytes = 0;
+        EXPECT_EQ(count_different(with, trace(cpu::Tracer(scene, settings), rays, kBundle)), 0u);
+    }
+}
+
+/// Field k of a ray: origin, t_min, direction, t_max.
+float& get_field(cpu::TraceRay& ray, int k) {
+    float* const fields[8] = {&ray.origin.x,    &ray.origin.y,    &ray.origin.z,    &ray.t_min,
+                              &ray.direction.x, &ray.direction.y, &ray.direction.z, &ray.t_max};
+    return *fields[k];
+}
+
+TEST(Bundle, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.2f, 1);
+    for (const Isa isa : test::machine_isas()) {
+        const cpu::Tracer tracer = make_tracer(rock(), 2, isa);
+        const Hits whole = trace(tracer, rays, 1);
+        for (int field = 0; field < 8; ++field)
+            for (const float value : {std::nanf(""), kInfinity, -kInfinity})
+                for (const size_t index : {size_t(0), size_t(21), size_t(143), size_t(255)}) {
+                    Rays broken = rays;
+                    get_field(broken[index], field) = value;
+                    Hits found = trace(tracer, broken, kBundle);
+                    const bool is_ray = field % 4 == 3;
+                    if (!is_ray || std::isnan(value)) EXPECT_FALSE(found[index].is_hit());
+                    found[index] = whole[index];
+                    ASSERT_EQ(count_different(found, whole), 0u)
+                        << int(isa) << ", field " << field << " is " << value << ", ray " << index;
+                }
+    }
 }
 
 } // namespace

@@ -50,6 +50,7 @@ const Case kCases[] = {
     {"torus_tangent_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single},
     {"torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel, Placement::instances},
     {"torus_object_level6", Body::torus, DisplacementSpace::object, 6, Placement::single},
+    {"torus_tangent_level7", Body::torus, DisplacementSpace::tangent, 7, Placement::single},
     {"smooth_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
      SubdivisionScheme::catmark},
     {"smooth_sphere_object_auto_instances", Body::sphere, DisplacementSpace::object, kAutoLevel,

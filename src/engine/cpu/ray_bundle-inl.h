@@ -66,12 +66,12 @@ HWY_INLINE LaneMask load_group(const cpu::TraceRay* world, uint32_t count, const
     ends.transpose(d[0], d[1], d[2], t_max);
     const float origin[3] = {first.origin.x, first.origin.y, first.origin.z};
     for (int k = 0; k < 3; ++k) {
-        fits &= ~not_equal(o[k], Lanes16(origin[k]));
+        fits &= equal(o[k], Lanes16(origin[k]));
         d[k].store(rays.direction[k] + at);
     }
     const Lanes16 all = (o[0] + d[0]) + (o[1] + d[1]) + (o[2] + d[2]);
     t_min.store(rays.t_min + at), t_max.store(rays.t + at);
-    return fits & ~not_equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);
+    return fits & equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);
 }
 
 /// Takes the rays at the front that leave one point together, at most kBundleSize.

@@ -10,6 +10,7 @@
 
 #include <cstring>
 
+#include "base/check.h"
 #include "engine/cpu/ray_bundle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -88,7 +89,8 @@ struct PairList {
     alignas(64) float shear[2][kCapacity + 16];
     uint32_t count = 0;
 
-    /// The first sixteen are always pairs: a step with fewer pairs than lanes loads what lies behind them.
+    /// A step with fewer pairs than lanes loads what lies behind them: any numbers, which its mask leaves
+    /// out.
     PairList() {
         std::memset(code, 0, 16 * sizeof(uint32_t));
         for (float* s : shear) std::memset(s, 0, 16 * sizeof(float));
@@ -110,6 +112,7 @@ struct PairList {
             store_compressed(d, shear_y.part[p], of_part, shear[1] + count);
             count += uint32_t(__builtin_popcount(of_part));
         }
+        DCHECK(count <= kCapacity);
     }
 
     /// One ray with the parts of `mask`.

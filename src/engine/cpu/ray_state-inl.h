@@ -154,7 +154,7 @@ template <uint32_t kCapacity> struct EntryList {
     }
 
     uint32_t child(uint32_t k) const { return key[k] & kChildMask; }
-    /// Not above the entry distance.
+    /// Not above the entry distance (from t >= 0).
     float distance(uint32_t k) const {
         const uint32_t bits = key[k] & ~kChildMask;
         float result;

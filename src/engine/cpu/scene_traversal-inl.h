@@ -185,7 +185,7 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
 /// for its own stores when it is copied.
 HWY_INLINE void start_ray(const cpu::TraceRay& world, const Affine& space_from_world, RayState& ray) {
     ray.t_min = world.t_min, ray.t_max = world.t_max;
-    ray.hit = {};
+    ray.instance = kNoIndex, ray.hit = {};
     enter_object(world, space_from_world, ray);
 }
 
