@@ -1,7 +1,7 @@
 // What kernels are made of, lane by lane: masks and numbers, compressed stores, tables and the corners of
 // blocks go other ways on every instruction set.
-#define HWY_COMPILE_ALL_ATTAINABLE
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+
+#include "math/lane_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/lanes_test.cpp"

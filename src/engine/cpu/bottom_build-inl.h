@@ -8,6 +8,7 @@
 
 #include <cstring>
 
+#include "base/check.h"
 #include "engine/cpu/patch_evaluation-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -114,18 +115,15 @@ HWY_INLINE void extend_by_grid(Box& box, const VertexGrid& grid, uint32_t cells)
     }
 }
 
-/// Box of all vertices of a patch at a level. Those of lower levels, of its own or of edges, are among them:
-/// they are the same function of the same places.
+/// Box of all vertices of a patch at a level up to kTileLevel. Those of lower levels, of its own or of edges,
+/// are among them: they are the same function of the same places.
 Box find_box(const Surface& surface, uint32_t patch, uint32_t level) {
-    const uint32_t cells = 1u << HWY_MIN(level, uint32_t(cpu::kTileLevel)), side = 1u << level;
-    const PatchLevels levels = unpack_levels(scalar::pack_uniform_level(level));
+    DCHECK(level <= uint32_t(cpu::kTileLevel));
+    const uint32_t cells = 1u << level;
+    VertexGrid grid;
+    evaluate_tile(surface, {patch, unpack_levels(scalar::pack_uniform_level(level)), 0, 0, cells}, grid);
     Box box;
-    for (uint32_t y = 0; y < side; y += cells)
-        for (uint32_t x = 0; x < side; x += cells) {
-            VertexGrid grid;
-            evaluate_tile(surface, {patch, levels, x, y, cells}, grid);
-            extend_by_grid(box, grid, cells);
-        }
+    extend_by_grid(box, grid, cells);
     return box;
 }
 

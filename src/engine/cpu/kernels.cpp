@@ -1,9 +1,6 @@
 // Compiles the kernels once for each instruction set (Highway's foreach_target) and picks by name.
 
-// Every target that the compiler can reach, the one without SIMD included; those left out are close to a
-// neighbour.
-#define HWY_COMPILE_ALL_ATTAINABLE
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include "math/lane_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/cpu/kernels.cpp"

@@ -49,7 +49,7 @@ struct Kernels {
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
-    /// Holds a displaced patch at `level` and below, whatever the levels of its edges.
+    /// Holds a displaced patch at `level`, at most kTileLevel, and below, whatever the levels of its edges.
     Box (*find_box)(const Surface&, uint32_t patch, uint32_t level);
     /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; a row starts `stride` after
     /// the one before.

@@ -1,9 +1,7 @@
 // Compiles the kernels of shading once for each instruction set (Highway's foreach_target), apart from those
 // that trace: both take long.
 
-// As in kernels.cpp.
-#define HWY_COMPILE_ALL_ATTAINABLE
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include "math/lane_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/cpu/shading_kernels.cpp"
