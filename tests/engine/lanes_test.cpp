@@ -27,6 +27,7 @@ template <size_t W> void check_masks() {
         const Lanes<W> lanes = Lanes<W>::load(values), half(0.5f);
         ASSERT_EQ(less(half, lanes), bits) << target_name();
         ASSERT_EQ(equal(lanes, Lanes<W>(1.0f)), bits) << target_name();
+        ASSERT_EQ(equal(lanes, Lanes<W>(0.0f)), ~bits & ((1u << W) - 1)) << target_name();
         ASSERT_EQ(not_equal(lanes, Lanes<W>(0.0f)), bits) << target_name();
     }
 }
