@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "bench/cycles.h"
 #include "relief/error.h"
 #include "relief/peer_scenes.h"

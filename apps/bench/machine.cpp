@@ -6,6 +6,8 @@
 
 #include <sys/utsname.h>
 
+#include <nlohmann/json.hpp>
+
 #include "relief/devices.h"
 
 namespace relief::bench {

@@ -1,7 +1,7 @@
 // What every figure must name: the build it came from and the machine it was measured on.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/render.h"
 

@@ -1,7 +1,7 @@
 // Which of the project's goals a result tells about, and whether they are met.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace relief::bench {
 

@@ -1,7 +1,7 @@
 // What a result says about the worth of the structures, as ratios.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace relief::bench {
 

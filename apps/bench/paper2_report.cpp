@@ -1,5 +1,6 @@
 // The files of a result of paper2.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/bar_chart.h"
 #include "bench/paper2.h"

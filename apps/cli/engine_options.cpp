@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "values.h"

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "relief/render.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief::cli {
 

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "relief/io.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief::cli {
 

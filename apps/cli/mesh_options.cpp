@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include <CLI/CLI.hpp>
+
 #include "values.h"
 
 namespace relief::cli {

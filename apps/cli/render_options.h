@@ -7,12 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "engine_options.h"
 #include "progress.h"
 #include "relief/io.h"
 #include "relief/render.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief::cli {
 

@@ -1,5 +1,7 @@
 #include "statistics_json.h"
 
+#include <nlohmann/json.hpp>
+
 namespace relief::cli {
 
 namespace {

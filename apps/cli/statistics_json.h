@@ -1,7 +1,7 @@
 // The file of `--stats`: its keys are a contract with scripts.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/render.h"
 

@@ -1,6 +1,7 @@
 #include "bench/measure.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "support/bodies.h"
 

@@ -1,6 +1,7 @@
 #include "bench/paper1.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "relief/error.h"
 

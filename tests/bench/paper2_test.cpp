@@ -1,6 +1,7 @@
 #include "bench/paper2.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/paper2_goals.h"
 #include "relief/error.h"

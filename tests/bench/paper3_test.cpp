@@ -1,6 +1,7 @@
 #include "bench/paper3.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "relief/error.h"
 #include "support/xml.h"

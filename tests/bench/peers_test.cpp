@@ -4,6 +4,7 @@
 #include "bench/peers.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>
