@@ -143,13 +143,6 @@ Vec3f LightSet::environment_radiance(const Vec2f& position) const {
     return environment_ ? environment_->radiance(position) : Vec3f{};
 }
 
-Vec2f LightSet::locate_environment(const Vec3f& direction) const {
-    if (!environment_) return {};
-    const Vec2f position = environment_->locate(direction);
-    environment_->prefetch_radiance(position);
-    return position;
-}
-
 Vec3f LightSet::gather(const BounceRay& ray, const Vec2f& position) const {
     Vec3f sum{};
     const float total = total_irradiance(ray.origin);

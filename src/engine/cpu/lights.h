@@ -48,9 +48,14 @@ class LightSet {
     /// False: `u_emitter` is never looked at.
     bool has_emitters() const { return emitters_.size() > 0; }
 
-    /// Where the environment's image is seen along a direction. What is to be read there starts to be loaded:
-    /// locate all before reading any.
-    Vec2f locate_environment(const Vec3f& direction) const;
+    /// Where the environment's image is seen along a direction.
+    Vec2f locate_environment(const Vec3f& direction) const {
+        return environment_ ? environment_->locate(direction) : Vec2f{};
+    }
+    /// Has what is to be read there loaded: for places that lie apart, all of them before any is read.
+    void prefetch_environment(const Vec2f& position) const {
+        if (environment_) environment_->prefetch_radiance(position);
+    }
     /// Radiance of the environment there; black without one.
     Vec3f environment_radiance(const Vec2f& position) const;
 

@@ -66,6 +66,7 @@ class TileTracer {
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
     void add_backgrounds();
+    void gather_lights();
     void drop_misses();
     void draw_random();
     void draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
@@ -199,20 +200,29 @@ void TileTracer::shade_paths() {
     counters_.shade_s += timer.seconds();
 }
 
-/// Light of rays that leave the scene, and of lamps that are met on the way. The image is read in a loop of
-/// its own: waits for memory overlap.
+/// Light of rays that leave the scene, and of lamps that are met on the way.
 void TileTracer::add_backgrounds() {
-    places_.resize(active_.size());
+    if (depth_ > 0) return gather_lights();
     for (size_t k = 0; k < active_.size(); ++k)
-        if (!hits_[k].is_hit()) places_[k] = lights_.locate_environment(rays_[k].direction);
+        if (!hits_[k].is_hit())
+            paths_[active_[k]].result.radiance +=
+                lights_.environment_radiance(lights_.locate_environment(rays_[k].direction));
+}
+
+/// Of bounce rays, which look at places of the image far apart. It is read in a loop of its own: waits for
+/// memory overlap.
+void TileTracer::gather_lights() {
+    places_.resize(active_.size());
+    for (size_t k = 0; k < active_.size(); ++k) {
+        if (hits_[k].is_hit()) continue;
+        places_[k] = lights_.locate_environment(rays_[k].direction);
+        lights_.prefetch_environment(places_[k]);
+    }
     for (size_t k = 0; k < active_.size(); ++k) {
         Path& path = paths_[active_[k]];
-        if (depth_ > 0)
-            path.result.radiance +=
-                path.throughput *
-                lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, places_[k]);
-        else if (!hits_[k].is_hit())
-            path.result.radiance += lights_.environment_radiance(places_[k]);
+        path.result.radiance +=
+            path.throughput *
+            lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, places_[k]);
     }
 }
 
