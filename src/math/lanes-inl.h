@@ -119,6 +119,18 @@ RELIEF_LANES_COMPARE(equal, Eq)
 RELIEF_LANES_COMPARE(not_equal, Ne) // of a NaN: true or false, by instruction set
 #undef RELIEF_LANES_COMPARE
 
+template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
+    auto least = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
+    return hn::GetLane(hn::MinOfLanes(typename Lanes<W>::D(), least));
+}
+
+template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
+    auto greatest = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) greatest = hn::Max(greatest, a.part[p]);
+    return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
+}
+
 /// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
 /// triangle.
 template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {

@@ -14,18 +14,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
-    auto least = a.part[0];
-    for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
-    return hn::GetLane(hn::MinOfLanes(typename Lanes<W>::D(), least));
-}
-
-template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
-    auto greatest = a.part[0];
-    for (size_t p = 1; p < Lanes<W>::kParts; ++p) greatest = hn::Max(greatest, a.part[p]);
-    return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
-}
-
 /// The grid without its padding; see BottomTree::column_count.
 HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::BottomTree& tree) {
     const int level = int(tree.level);

@@ -14,41 +14,40 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace {
 
-/// Sixteen rays with one bias whose directions stay within some 25 degrees of the first.
-bool is_coherent(const cpu::TraceRay* rays) {
-    const Vec3f& first = rays[0].direction;
-    const float squared = dot(first, first);
-    if (!can_hit(rays[0])) return false;
-    for (int k = 1; k < 16; ++k) {
-        const Vec3f& other = rays[k].direction;
-        const float projection = dot(first, other);
-        if (rays[k].bias != rays[0].bias || !can_hit(rays[k]) || !(projection > 0) ||
-            projection * projection < 0.82f * squared * dot(other, other))
-            return false;
-    }
-    return true;
+/// Sixteen rays with the bias that was asked for, whose directions stay within some 25 degrees of the first.
+bool is_coherent(const RayLanes& rays, const Vec3f& first) {
+    const Lanes16(&d)[3] = rays.direction;
+    const Lanes16 projection = dot_lanes(d, first), least(0.82f * dot(first, first));
+    const LaneMask is_near =
+        less(Lanes16(0.0f), projection) &
+        less_equal(least * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), projection * projection);
+    return (is_near & rays.of_bias & rays.can_hit()) == 0xffff;
 }
+
+/// A look at two of the rays, which spares most of those that go different ways the way into lanes.
+bool may_be_coherent(const cpu::TraceRay* rays) { return dot(rays[0].direction, rays[15].direction) > 0; }
 
 template <Query kQuery, class Store>
 void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                 size_t count, Store store) {
-    size_t begin = 0;
-    while (begin < count) {
+    for (size_t begin = 0; begin < count; begin += 16) {
         scene.cache->refresh(context);
+        const cpu::TraceRay* const world = rays + begin;
         const size_t size = HWY_MIN(size_t(16), count - begin);
-        if (size == 16 && scene.lod == LodRule::field && is_coherent(rays + begin)) {
-            Packet packet;
-            const LaneMask occluded = trace_packet<kQuery>(scene, context, rays + begin, packet);
-            for (size_t k = 0; k < 16; ++k) store(begin + k, packet.ray[k].hit, (occluded >> k & 1) != 0);
-        } else {
-            for (size_t k = 0; k < size; ++k) {
-                const cpu::TraceRay& world = rays[begin + k];
-                RayState ray;
-                const bool has_hit = can_hit(world) && trace_ray<kQuery>(scene, context, world, ray);
-                store(begin + k, ray.hit, has_hit);
+        if (size == 16 && scene.lod == LodRule::field && may_be_coherent(world)) {
+            const RayLanes lanes(world, 16, world[0].bias);
+            if (is_coherent(lanes, world[0].direction)) {
+                Packet packet;
+                const LaneMask occluded = trace_packet<kQuery>(scene, context, world, lanes, packet);
+                for (size_t k = 0; k < 16; ++k) store(begin + k, packet.ray[k].hit, (occluded >> k & 1) != 0);
+                continue;
             }
         }
-        begin += size;
+        for (size_t k = 0; k < size; ++k) {
+            RayState ray;
+            const bool has_hit = can_hit(world[k]) && trace_ray<kQuery>(scene, context, world[k], ray);
+            store(begin + k, ray.hit, has_hit);
+        }
     }
 }
 

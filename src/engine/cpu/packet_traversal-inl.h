@@ -9,9 +9,9 @@
 #define RELIEF_PACKET_TRAVERSAL_INL_H
 #endif
 
-#include <limits>
 #include <optional>
 
+#include "engine/cpu/ray_packet-inl.h"
 #include "engine/cpu/scene_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,63 +19,6 @@ namespace relief::HWY_NAMESPACE {
 
 /// Fewer rays than this go on alone: sixteen lanes for two rays waste more than they share.
 inline constexpr int kLeastPacket = 3;
-
-/// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
-/// bounds go through the operations of test_box in the same order and rounding keeps that order. After
-/// Boulos, Wald, Shirley 2006 (Geometric and Arithmetic Culling Methods for Entire Ray Packets). The rays are
-/// finite; empty slots, from +inf to -inf, are excluded.
-struct PacketBounds {
-    int near_plane[3], far_plane[3]; ///< rows of a node's bounds
-    float near_origin[3], far_origin[3];
-    float least_reciprocal[3], greatest_reciprocal[3];
-    float t_min, t_max;
-};
-
-struct Packet {
-    const cpu::TraceRay* world;
-    RayState ray[16]; ///< in the space of the current object; hits and t_max live here
-    Lanes16 lower_origin[3], upper_origin[3], reciprocal[3], t_min;
-    alignas(64) float t_max[16];
-    LaneMask active; ///< Query::any: lanes without a hit so far
-    PacketBounds bounds;
-
-    void load_lanes() {
-        alignas(64) float lower[3][16], upper[3][16], r[3][16], least[16];
-        for (int lane = 0; lane < 16; ++lane) {
-            for (int k = 0; k < 3; ++k) {
-                lower[k][lane] = ray[lane].lower_origin[k], upper[k][lane] = ray[lane].upper_origin[k];
-                r[k][lane] = ray[lane].reciprocal[k];
-            }
-            least[lane] = ray[lane].t_min, t_max[lane] = ray[lane].t_max;
-        }
-        for (int k = 0; k < 3; ++k) {
-            lower_origin[k] = Lanes16::load(lower[k]), upper_origin[k] = Lanes16::load(upper[k]);
-            reciprocal[k] = Lanes16::load(r[k]);
-        }
-        t_min = Lanes16::load(least);
-        find_bounds();
-    }
-    void find_bounds() {
-        for (int k = 0; k < 3; ++k) {
-            bounds.least_reciprocal[k] = reduce_min(reciprocal[k]);
-            bounds.greatest_reciprocal[k] = reduce_max(reciprocal[k]);
-            const float lower = reduce_max(lower_origin[k]), upper = reduce_min(upper_origin[k]);
-            const bool is_negative = bounds.greatest_reciprocal[k] < 0;
-            bounds.near_plane[k] = is_negative ? 3 + k : k, bounds.far_plane[k] = is_negative ? k : 3 + k;
-            bounds.near_origin[k] = is_negative ? upper : lower;
-            bounds.far_origin[k] = is_negative ? lower : upper;
-            if (is_negative || bounds.least_reciprocal[k] > 0) continue;
-            // Both ways along this axis: it excludes nothing.
-            constexpr float kFar = std::numeric_limits<float>::max();
-            bounds.least_reciprocal[k] = bounds.greatest_reciprocal[k] = 1;
-            bounds.near_origin[k] = kFar, bounds.far_origin[k] = -kFar;
-        }
-        bounds.t_min = reduce_min(t_min);
-        update_reach();
-    }
-    /// After t_max has become less.
-    HWY_INLINE void update_reach() { bounds.t_max = reduce_max(Lanes16::load(t_max)); }
-};
 
 /// Children that some ray of the packet may enter; load(plane) gives a plane of their boxes.
 template <size_t W, class Load> HWY_INLINE LaneMask test_planes(const PacketBounds& bounds, Load load) {
@@ -359,14 +302,10 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
         return;
     }
     Packet local;
-    local.world = world.world;
+    local.world = world.world, local.lanes = world.lanes;
     local.active = mask;
-    for (int lane = 0; lane < 16; ++lane) {
-        local.ray[lane] = world.ray[lane];
-        local.ray[lane].instance = instance;
-        enter_object(world.world[lane], placed.object_from_world, local.ray[lane]);
-    }
-    local.load_lanes();
+    for (int lane = 0; lane < 16; ++lane) local.ray[lane].hit = world.ray[lane].hit;
+    enter_object(*world.lanes, Lanes16::load(world.t_max), placed.object_from_world, instance, local);
     walk_surface<kQuery>(scene, context, placed.surface, local, mask);
     for (LaneMask left = mask; left; left &= left - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(left));
@@ -377,18 +316,16 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
     world.active &= ~(mask & ~local.active);
 }
 
-/// The whole scene for sixteen rays. Returns the lanes with a hit (Query::any).
+/// The whole scene for sixteen rays, whose lanes are `lanes`. Returns the lanes with a hit (Query::any).
 template <Query kQuery>
 LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
-                      Packet& packet) {
-    packet.world = rays;
+                      const RayLanes& lanes, Packet& packet) {
+    packet.world = rays, packet.lanes = &lanes;
     packet.active = 0xffff;
+    for (RayState& ray : packet.ray) ray.hit = {};
     const bool is_alone = scene.instance_count == 1;
-    for (int lane = 0; lane < 16; ++lane) {
-        start_ray(rays[lane], is_alone ? scene.instances[0].object_from_world : Affine{}, packet.ray[lane]);
-        if (is_alone) packet.ray[lane].instance = 0;
-    }
-    packet.load_lanes();
+    const Affine space_from_world = is_alone ? scene.instances[0].object_from_world : Affine{};
+    enter_object(lanes, lanes.t_max, space_from_world, is_alone ? 0 : kNoIndex, packet);
     if (is_alone) {
         walk_surface<kQuery>(scene, context, scene.instances[0].surface, packet, 0xffff);
         return ~packet.active & 0xffff;

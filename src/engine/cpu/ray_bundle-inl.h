@@ -13,9 +13,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 #include "engine/cpu/bottom_build-inl.h"
+#include "engine/cpu/ray_lanes-inl.h"
 #include "engine/cpu/ray_state-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -51,27 +51,15 @@ struct BundleRays {
 /// origin and its bias. Writes what the bundle keeps of them.
 HWY_INLINE LaneMask load_group(const cpu::TraceRay* world, uint32_t count, const cpu::TraceRay& first,
                                size_t at, BundleRays& rays) {
-    static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
-                  offsetof(cpu::TraceRay, t_max) == 28);
-    LaneQuads starts, ends;
-    LaneMask fits = 0;
-    for (uint32_t lane = 0; lane < kGroupSize; ++lane) {
-        const cpu::TraceRay& ray = world[HWY_MIN(lane, count - 1)];
-        std::memcpy(starts.lane[lane], &ray.origin, 16);
-        std::memcpy(ends.lane[lane], &ray.direction, 16);
-        fits |= LaneMask(lane < count && ray.bias == first.bias) << lane;
-    }
-    Lanes16 o[3], d[3], t_min, t_max;
-    starts.transpose(o[0], o[1], o[2], t_min);
-    ends.transpose(d[0], d[1], d[2], t_max);
+    const RayLanes lanes(world, count, first.bias);
+    LaneMask fits = lanes.of_bias & lanes.can_hit();
     const float origin[3] = {first.origin.x, first.origin.y, first.origin.z};
     for (int k = 0; k < 3; ++k) {
-        fits &= equal(o[k], Lanes16(origin[k]));
-        d[k].store(rays.direction[k] + at);
+        fits &= equal(lanes.origin[k], Lanes16(origin[k]));
+        lanes.direction[k].store(rays.direction[k] + at);
     }
-    const Lanes16 all = (o[0] + d[0]) + (o[1] + d[1]) + (o[2] + d[2]);
-    t_min.store(rays.t_min + at), t_max.store(rays.t + at);
-    return fits & equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);
+    lanes.t_min.store(rays.t_min + at), lanes.t_max.store(rays.t + at);
+    return fits;
 }
 
 /// Takes the rays at the front that leave one point together, at most kBundleSize.
@@ -114,10 +102,6 @@ struct RayBundle {
     alignas(64) float lower_x[kGroupCount], upper_x[kGroupCount], lower_y[kGroupCount], upper_y[kGroupCount];
     alignas(64) float group_farthest[kGroupCount];
 };
-
-template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const Vec3f& n) {
-    return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
-}
 
 /// The farthest depth that a group still asks about, after hits.
 HWY_INLINE float find_farthest(const RayBundle& bundle, uint32_t group) {
