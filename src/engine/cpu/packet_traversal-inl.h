@@ -102,9 +102,15 @@ HWY_INLINE void visit_children(const Node& node, Packet& packet, LaneMask mask, 
 template <Query kQuery>
 HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                             Packet& packet, LaneMask mask, LaneMask& hits) {
-    for (mask &= packet.active; mask; mask &= mask - 1) {
+    if (!(mask &= packet.active)) return;
+    // Put together once for all rays.
+    const BlockPlace place(tree, int(tree.level), block);
+    alignas(64) float vertices[3][16];
+    for (int axis = 0; axis < 3; ++axis) place.load(axis).store(vertices[axis]);
+    const auto load = [&](int axis) { return Lanes16::load(vertices[axis]); };
+    for (; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
-        if (!intersect_block<kQuery>(visit, tree, int(tree.level), block, packet.ray[lane])) continue;
+        if (!intersect_block<kQuery>(visit, tree, block, load, packet.ray[lane])) continue;
         hits |= 1u << lane;
         packet.t_max[lane] = packet.ray[lane].t_max;
         if constexpr (kQuery == Query::any) packet.active &= ~(1u << lane);

@@ -93,13 +93,12 @@ struct BlockPlace {
     }
 };
 
-/// Exact leaf: sixteen triangles at once.
-template <Query kQuery>
-HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
-                                    uint32_t block, RayState& ray) {
+/// Exact leaf: sixteen triangles at once. load(axis) gives a coordinate of the vertices of the block.
+template <Query kQuery, class Load>
+HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                    Load load, RayState& ray) {
     Lanes16 x, y, z, cx[3], cy[3], cz[3];
-    const BlockPlace at(tree, level, block);
-    shear_vertices([&](int axis) { return at.load(axis); }, ray, x, y, z);
+    shear_vertices(load, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
     gather_corners(y, cy[0], cy[1], cy[2]);
     TriangleTest<16> test;
@@ -158,13 +157,21 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     return has_hit;
 }
 
+template <Query kQuery, class Load>
+HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                                Load load, RayState& ray) {
+    ++visit.context->counters.blocks;
+    return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, load, ray)
+                                                : intersect_boxes<kQuery>(visit, tree, block, ray);
+}
+
 /// `level` as for BlockPlace.
 template <Query kQuery>
 HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
                                 uint32_t block, RayState& ray) {
-    ++visit.context->counters.blocks;
-    return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, level, block, ray)
-                                                : intersect_boxes<kQuery>(visit, tree, block, ray);
+    const BlockPlace at(tree, level, block);
+    return intersect_block<kQuery>(
+        visit, tree, block, [&](int axis) { return at.load(axis); }, ray);
 }
 
 /// Leaves of a list, nearest first; for Query::any as they come, since all of them are at hand already.
