@@ -14,18 +14,30 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace {
 
-/// Sixteen rays with the bias that was asked for, whose directions stay within some 25 degrees of the first.
+/// The square of the cosine of some 25 degrees.
+constexpr float kPacketSpread = 0.82f;
+
+/// Sixteen rays with the bias that was asked for, whose directions lie near the first one.
 bool is_coherent(const RayLanes& rays, const Vec3f& first) {
     const Lanes16(&d)[3] = rays.direction;
-    const Lanes16 projection = dot_lanes(d, first), least(0.82f * dot(first, first));
+    const Lanes16 projection = dot_lanes(d, first), least(kPacketSpread * dot(first, first));
     const LaneMask is_near =
         less(Lanes16(0.0f), projection) &
         less_equal(least * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), projection * projection);
     return (is_near & rays.of_bias & rays.can_hit()) == 0xffff;
 }
 
-/// A look at two of the rays, which spares most of those that go different ways the way into lanes.
-bool may_be_coherent(const cpu::TraceRay* rays) { return dot(rays[0].direction, rays[15].direction) > 0; }
+/// A look at some of the rays, which spares most of those that go different ways the way into lanes.
+bool may_be_coherent(const cpu::TraceRay* rays) {
+    const Vec3f& first = rays[0].direction;
+    const float least = kPacketSpread * dot(first, first);
+    for (int k = 15; k > 0; k -= 5) {
+        const Vec3f& other = rays[k].direction;
+        const float projection = dot(first, other);
+        if (!(projection > 0 && projection * projection >= least * dot(other, other))) return false;
+    }
+    return true;
+}
 
 template <Query kQuery, class Store>
 void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
