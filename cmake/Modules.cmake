@@ -25,7 +25,7 @@ endfunction()
 
 # relief_precompile(NAME HEADERS... LIBRARIES ...): headers of other projects, compiled once for all targets that say
 # target_precompile_headers(TARGET REUSE_FROM NAME). For tests and applications, where they are most of what a compiler
-# reads; the flags of the folder must be those of the targets.
+# reads; the flags must be those of the targets.
 function(relief_precompile name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
   file(CONFIGURE OUTPUT ${name}.cpp CONTENT "" @ONLY)
