@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/render.h"
 #include "relief/scene.h"
@@ -31,13 +31,6 @@ using Measure = std::function<double()>;
 
 /// All in turn, first once to warm up, then `runs` times; seconds of every run that counts, of each.
 std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measures, int runs);
-
-/// The same of one number of each run.
-template <class Get> nlohmann::ordered_json summarize_runs(const std::vector<Statistics>& runs, Get get) {
-    std::vector<double> values;
-    for (const Statistics& run : runs) values.push_back(get(run));
-    return summarize(std::move(values));
-}
 
 /// Renders all variants once to warm up, then `runs` times in turn (a, b, c, a, b, c ...), so that a machine
 /// that changes its speed changes it for all. A variant that is refused for want of memory keeps the reason.
