@@ -14,13 +14,13 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace {
 
-/// The square of the cosine of some 25 degrees.
-constexpr float kPacketSpread = 0.82f;
+/// Of the angle between two rays of a packet: some 25 degrees.
+constexpr float kLeastSquaredCosine = 0.82f;
 
-/// Sixteen rays with the bias that was asked for, whose directions lie near the first one.
+/// Sixteen rays that can hit and have the bias that was asked for, whose directions lie near the first one.
 bool is_coherent(const RayLanes& rays, const Vec3f& first) {
     const Lanes16(&d)[3] = rays.direction;
-    const Lanes16 projection = dot_lanes(d, first), least(kPacketSpread * dot(first, first));
+    const Lanes16 projection = dot_lanes(d, first), least(kLeastSquaredCosine * dot(first, first));
     const LaneMask is_near =
         less(Lanes16(0.0f), projection) &
         less_equal(least * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), projection * projection);
@@ -30,7 +30,7 @@ bool is_coherent(const RayLanes& rays, const Vec3f& first) {
 /// A look at some of the rays, which spares most of those that go different ways the way into lanes.
 bool may_be_coherent(const cpu::TraceRay* rays) {
     const Vec3f& first = rays[0].direction;
-    const float least = kPacketSpread * dot(first, first);
+    const float least = kLeastSquaredCosine * dot(first, first);
     for (int k = 15; k > 0; k -= 5) {
         const Vec3f& other = rays[k].direction;
         const float projection = dot(first, other);

@@ -322,13 +322,13 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
     world.active &= ~(mask & ~local.active);
 }
 
-/// The whole scene for sixteen rays, whose lanes are `lanes`. Returns the lanes with a hit (Query::any).
+/// The whole scene for sixteen rays, whose lanes are `lanes`; `packet` is a new one. Returns the lanes with a
+/// hit (Query::any).
 template <Query kQuery>
 LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                       const RayLanes& lanes, Packet& packet) {
     packet.world = rays, packet.lanes = &lanes;
     packet.active = 0xffff;
-    for (RayState& ray : packet.ray) ray.hit = {};
     const bool is_alone = scene.instance_count == 1;
     const Affine space_from_world = is_alone ? scene.instances[0].object_from_world : Affine{};
     enter_object(lanes, lanes.t_max, space_from_world, is_alone ? 0 : kNoIndex, packet);

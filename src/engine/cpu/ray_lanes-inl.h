@@ -1,4 +1,4 @@
-// Sixteen rays as they are stored, a ray a lane.
+// Rays brought from memory into lanes.
 #if defined(RELIEF_RAY_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_RAY_LANES_INL_H
 #undef RELIEF_RAY_LANES_INL_H
@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "engine/cpu/tracer.h"
-#include "math/affine.h"
 #include "math/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,10 +19,10 @@ template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const 
     return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
 }
 
-/// The last ray again where there are fewer than sixteen.
+/// Sixteen rays in world space, a ray a lane: the last one again where there are fewer.
 struct RayLanes {
     Lanes16 origin[3], direction[3], t_min, t_max;
-    LaneMask of_bias; ///< rays of the bias asked for
+    LaneMask of_bias; ///< rays that are there, not repeated, and have the bias asked for
 
     HWY_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t bias) : of_bias(0) {
         static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
@@ -39,7 +38,7 @@ struct RayLanes {
         ends.transpose(direction[0], direction[1], direction[2], t_max);
     }
 
-    /// cpu::can_hit of each.
+    /// relief::can_hit of each, repeated ones included.
     HWY_INLINE LaneMask can_hit() const {
         const Lanes16 all =
             (origin[0] + direction[0]) + (origin[1] + direction[1]) + (origin[2] + direction[2]);

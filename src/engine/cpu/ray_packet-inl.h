@@ -117,12 +117,19 @@ struct MajorAxis {
     }
 };
 
+// The order in which enter_object writes them, four at a time; hits follow.
+static_assert(offsetof(RayState, direction) == 4 * 3 && offsetof(RayState, reciprocal) == 4 * 6 &&
+              offsetof(RayState, lower_origin) == 4 * 9 && offsetof(RayState, upper_origin) == 4 * 12 &&
+              offsetof(RayState, near_origin) == 4 * 15 && offsetof(RayState, far_origin) == 4 * 18 &&
+              offsetof(RayState, near_plane) == 4 * 21 && offsetof(RayState, far_plane) == 4 * 24 &&
+              offsetof(RayState, axis) == 4 * 27 && offsetof(RayState, shear) == 4 * 30 &&
+              offsetof(RayState, t_min) == 4 * 33 && offsetof(RayState, t_max) == 4 * 34 &&
+              offsetof(RayState, instance) == 4 * 35 && offsetof(RayState, hit) == 4 * 36);
+
 /// Sixteen rays into the space of an object: enter_object of each, operation for operation. `t_max` is how
-/// far they still ask; hits stay as they are.
+/// far they still ask; `instance` is kNoIndex for the world itself; hits stay as they are.
 HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const Affine& object_from_world,
                              uint32_t instance, Packet& packet) {
-    static_assert(offsetof(RayState, near_plane) == 4 * 21 && offsetof(RayState, shear) == 4 * 30 &&
-                  offsetof(RayState, instance) == 4 * 35);
     const float translation[3] = {object_from_world.translation.x, object_from_world.translation.y,
                                   object_from_world.translation.z};
     AxisLanes axis[3];

@@ -181,14 +181,6 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
     return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 
-/// A ray in some space, with nothing hit yet. In its place: one that is put together elsewhere first waits
-/// for its own stores when it is copied.
-HWY_INLINE void start_ray(const cpu::TraceRay& world, const Affine& space_from_world, RayState& ray) {
-    ray.t_min = world.t_min, ray.t_max = world.t_max;
-    ray.instance = kNoIndex, ray.hit = {};
-    enter_object(world, space_from_world, ray);
-}
-
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
