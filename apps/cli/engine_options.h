@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli_app.h"
 #include "relief/render.h"
-
-namespace CLI {
-class App;
-}
 
 namespace relief::cli {
 

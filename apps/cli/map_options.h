@@ -4,11 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "cli_app.h"
 #include "relief/io.h"
-
-namespace CLI {
-class App;
-}
 
 namespace relief::cli {
 

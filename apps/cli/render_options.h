@@ -7,14 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "cli_app.h"
 #include "engine_options.h"
 #include "progress.h"
 #include "relief/io.h"
 #include "relief/render.h"
-
-namespace CLI {
-class App;
-}
 
 namespace relief::cli {
 
