@@ -12,14 +12,14 @@ namespace relief::bench {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// summarize of one number of each run.
-template <class Get> nlohmann::ordered_json summarize_runs(const std::vector<Statistics>& runs, Get get) {
+template <class Get> Json summarize_runs(const std::vector<Statistics>& runs, Get get) {
     std::vector<double> values;
     for (const Statistics& run : runs) values.push_back(get(run));
     return summarize(std::move(values));
 }
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::pair<const char*, double Statistics::*> kStages[] = {
     {"top_traversal", &Statistics::top_traversal_s},
