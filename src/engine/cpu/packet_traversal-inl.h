@@ -103,10 +103,11 @@ template <Query kQuery>
 HWY_INLINE void trace_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                             Packet& packet, LaneMask mask, LaneMask& hits) {
     if (!(mask &= packet.active)) return;
-    // Put together once for all rays.
+    // Put together once for all rays; box leaves do not look at them.
     const BlockPlace place(tree, int(tree.level), block);
     alignas(64) float vertices[3][16];
-    for (int axis = 0; axis < 3; ++axis) place.load(axis).store(vertices[axis]);
+    if (visit.scene->leaf == LeafKind::exact)
+        for (int axis = 0; axis < 3; ++axis) place.load(axis).store(vertices[axis]);
     const auto load = [&](int axis) { return Lanes16::load(vertices[axis]); };
     for (; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
