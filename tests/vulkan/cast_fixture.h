@@ -28,6 +28,7 @@ inline CastAnswers cast_on_device(const Device& device, const PreparedScene& sce
                                   const RenderSettings& settings, const std::vector<cpu::TraceRay>& rays,
                                   TracerConfig config) {
     config.ray_capacity = std::max<uint32_t>(1, uint32_t(rays.size()));
+    config.may_see_coarser = std::ranges::any_of(rays, [](const auto& ray) { return ray.bias > 0; });
     const DeviceScene device_scene(device, scene, settings);
     Tracer tracer(device, scene, device_scene, settings, config);
     std::vector<scalar::RayData> data;

@@ -1,6 +1,7 @@
 #include "engine/vulkan/cast_kernels.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <string>
 #include <utility>
@@ -24,6 +25,19 @@ std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
     return {4, 16, 64};
 }
 
+/// Steps in which stacks grow, so that scenes of similar depth share a kernel.
+constexpr uint32_t kStackStep = 8;
+
+/// The deepest trees of each bin.
+constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
+
+/// Whether trees of a scene are in a bin; `is_coarser`: or coarser ones of the same patches.
+bool has_trees(uint32_t tree_levels, bool is_coarser, uint32_t bin) {
+    if (is_coarser && tree_levels != 0) tree_levels = 2 * std::bit_floor(tree_levels) - 1;
+    const uint32_t first = bin == 0 ? 0 : kDeepest[bin - 1] + 1;
+    return tree_levels >> first & ((2u << (kDeepest[bin] - first)) - 1);
+}
+
 /// A kernel that walks trees: a dispatch, or fragments over the full screen.
 Kernel make_walk(const Device& device, RenderMethod method, const std::string& shader,
                  std::vector<uint32_t> constants) {
@@ -39,6 +53,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     const uint32_t is_box = settings.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.bottom == BottomForm::fused;
+    stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
     scene_traversal = make_walk(device, settings.method, scene.traversal_kernel(), {kGroup, stack_size});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
@@ -46,12 +61,14 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     commit_round = Kernel(device, {"commit_round", {kGroup}});
     finish_hits = Kernel(device, {"finish_hits", {kGroup, is_box}});
 
-    constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
     const std::array<uint32_t, scalar::kBuildBinCount> lanes = choose_lanes(is_cpu);
     const uint32_t build_group = is_cpu ? 8 : 64;
     arguments_push.group_size = kGroup;
+    const bool is_coarser = config.may_see_coarser || settings.lod == LodRule::ray;
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {
-        bottom_build[bin] = Kernel(device, {"bottom_build", {build_group, lanes[bin], kDeepest[bin], bin}});
+        if (!is_fused && has_trees(scene.tree_levels(), is_coarser, bin))
+            bottom_build[bin].emplace(
+                device, KernelConfig{"bottom_build", {build_group, lanes[bin], kDeepest[bin], bin}});
         arguments_push.builds_per_group[bin] = build_group / lanes[bin];
     }
     if (!is_fused) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "engine/vulkan/device_scene.h"
 #include "engine/vulkan/kernel.h"
@@ -23,7 +24,8 @@ struct CastKernels {
 
     Kernel scene_traversal, find_jobs, prepare_arguments, bottom_cache, patch_traversal, bottom_fused,
         leftover, commit_round, finish_hits;
-    std::array<Kernel, scalar::kBuildBinCount> bottom_build;
+    /// Of the bins that trees of the scene can be in; none of the fused form.
+    std::array<std::optional<Kernel>, scalar::kBuildBinCount> bottom_build;
 };
 
 } // namespace relief::vulkan

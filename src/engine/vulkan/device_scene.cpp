@@ -192,6 +192,14 @@ void DeviceScene::add_walk_trees(const PreparedScene& scene, const RenderSetting
     node_count_ = arrays.nodes.size();
 }
 
+void DeviceScene::add_tree_levels(const Surface& surface, const LevelField& levels) {
+    const uint32_t count = levels.is_uniform() ? std::min(1u, surface.patch_count()) : surface.patch_count();
+    for (uint32_t patch = 0; patch < count; ++patch) {
+        const uint32_t level = scalar::packed_patch_level(levels.packed_at(patch));
+        tree_levels_ |= 1u << std::min(level, scalar::kTreeLevels);
+    }
+}
+
 void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
     for (const Instance& instance : scene.instances) {
         const Surface& surface = scene.surfaces[instance.surface];
@@ -210,6 +218,7 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
             for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
                 arrays.levels.push_back(instance.levels->packed_at(patch));
         }
+        if (surface.has_displacement) add_tree_levels(surface, *instance.levels);
         tables_.instances.push_back(data);
     }
 }

@@ -41,6 +41,8 @@ class DeviceScene {
     /// The kernel that walks the upper trees, and the entries that its stack needs for them.
     const std::string& traversal_kernel() const { return traversal_kernel_; }
     uint32_t stack_size() const { return stack_size_; }
+    /// Bit k: patches, or tiles of finer ones, have level k.
+    uint32_t tree_levels() const { return tree_levels_; }
     uint32_t node_count() const { return uint32_t(node_count_); }
     const Buffer& nodes() const { return nodes_; }
     /// Index into the table of textures; scalar::kNone for null.
@@ -58,6 +60,7 @@ class DeviceScene {
     void add_map(const Surface& surface);
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
     void add_instances(const PreparedScene& scene, Arrays& arrays);
+    void add_tree_levels(const Surface& surface, const LevelField& levels);
     void add_trees(const PreparedScene& scene, Arrays& arrays);
     void add_walk_trees(const PreparedScene& scene, const RenderSettings& settings, Arrays& arrays);
     void upload(const Device& device, Arrays& arrays);
@@ -65,7 +68,7 @@ class DeviceScene {
     Tables tables_;
     std::map<const Texture*, uint32_t> texture_indices_;
     std::string traversal_kernel_ = "scene_traversal";
-    uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0;
+    uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
     size_t node_count_ = 0;
     struct Binding {
         uint32_t number;

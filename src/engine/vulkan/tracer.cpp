@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "engine/vulkan/bottom_cache.h"
 #include "engine/vulkan/cast_buffers.h"
 #include "engine/vulkan/cast_kernels.h"
@@ -214,6 +215,8 @@ void Tracer::Implementation::trace_waves() {
         commands.begin_stage(Stage::bottom_traversal);
         commands.dispatch(kernels.commit_round, push.count, push);
         read_counters();
+        for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin)
+            DCHECK(kernels.is_fused || kernels.bottom_build[bin] || counters.build_count[bin] == 0);
         cache.end_wave(counters);
         pairs_done += counters.pairs_done, jobs_done += counters.jobs_done;
         totals.pairs_with_hit += counters.pairs_with_hit;
@@ -235,9 +238,11 @@ void Tracer::Implementation::build_and_trace() {
                                kArgumentBytes * scalar::kArgumentsJobs, push);
     if (kernels.is_fused) return run_fused();
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
+    // Each launch costs a device something, even where it has nothing to do.
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin)
-        commands.dispatch_indirect(kernels.bottom_build[bin], buffers.arguments,
-                                   kArgumentBytes * (scalar::kArgumentsBuilds + bin), push);
+        if (kernels.bottom_build[bin])
+            commands.dispatch_indirect(*kernels.bottom_build[bin], buffers.arguments,
+                                       kArgumentBytes * (scalar::kArgumentsBuilds + bin), push);
     commands.begin_stage(Stage::bottom_traversal);
     commands.dispatch_indirect(kernels.patch_traversal, buffers.arguments,
                                kArgumentBytes * scalar::kArgumentsPairs, push);

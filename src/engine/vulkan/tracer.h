@@ -11,7 +11,7 @@
 
 namespace relief::vulkan {
 
-/// Sizes that change how work is cut, never what comes out.
+/// What changes how work is cut, never what comes out.
 struct TracerConfig {
     uint32_t ray_capacity = 1u << 20; ///< entries of rays and hits; lists hold as many
     uint32_t slots = 4; ///< nearest patches that a ray offers in its first round, [1, 8]; twice as many later
@@ -20,7 +20,8 @@ struct TracerConfig {
     uint32_t pool_restart_units = 1u << 31; ///< of trees built, after which the pool forgets all of them
     uint32_t fused_group_count = 0;         ///< resident groups of the fused form; 0: what fills the device
     uint32_t fused_jobs_per_group =
-        0; ///< trees that such a group takes in one launch; 0: as many as are safe
+        0;                        ///< trees that such a group takes in one launch; 0: as many as are safe
+    bool may_see_coarser = false; ///< rays may have a bias; those of a render have none
 };
 
 /// One thread at a time. All of it is synchronous.
