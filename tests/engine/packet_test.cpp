@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/bodies.h"
 #include "support/casts.h"
 #include "support/isas.h"
 
@@ -71,6 +72,58 @@ TEST(Packets, rays_have_the_hits_that_they_have_alone) {
                 hit_count += alone[0].is_hit();
             }
             EXPECT_GT(hit_count, rays.size() / 3) << int(kind);
+        }
+    }
+}
+
+/// A flat square of side 1 at z = 0, of n x n quads.
+Mesh make_square(uint32_t n) {
+    Mesh mesh;
+    mesh.name = "square";
+    for (uint32_t j = 0; j <= n; ++j)
+        for (uint32_t i = 0; i <= n; ++i) {
+            mesh.positions.push_back({float(i) / float(n), float(j) / float(n), 0});
+            mesh.uvs.push_back({float(i) / float(n), float(j) / float(n)});
+        }
+    for (uint32_t j = 0; j < n; ++j)
+        for (uint32_t i = 0; i < n; ++i) {
+            mesh.face_sizes.push_back(4);
+            const uint32_t v = j * (n + 1) + i;
+            for (const uint32_t corner : {v, v + 1, v + n + 2, v + n + 1})
+                mesh.position_indices.push_back(corner);
+        }
+    mesh.uv_indices = mesh.position_indices;
+    return mesh;
+}
+
+/// Rays that do not move along an axis on which they start exactly where boxes end, far from each other, so
+/// that they leave the packet and go on alone.
+TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
+    constexpr uint32_t kQuads = 8, kCells = 8, kPlaces = kQuads * kCells + 1;
+    RenderSettings settings;
+    settings.level = 3;
+    const auto scene = prepare_scene(
+        test::make_body_scene(make_square(kQuads), test::make_displacement(test::make_random_map(8, 8, 0, 1),
+                                                                           DisplacementSpace::object)),
+        settings);
+    std::mt19937 random(3);
+    std::vector<TraceRay> rays(kWidth * 64);
+    for (TraceRay& ray : rays) {
+        const auto draw = [&] { return float(random() % kPlaces) / float(kPlaces - 1); };
+        ray.origin = {draw(), draw(), 1};
+        ray.direction = {0, 0, -1};
+    }
+    for (const Isa isa : test::machine_isas()) {
+        settings.isa = isa;
+        const Tracer tracer(scene, settings);
+        std::vector<TraceHit> hits(rays.size());
+        std::vector<uint8_t> occluded(rays.size());
+        tracer.closest_hits(rays, hits);
+        tracer.any_hits(rays, occluded);
+        for (size_t k = 0; k < rays.size(); ++k) {
+            ASSERT_EQ(hits[k].t, 1) << int(isa) << ", ray " << k << " at " << rays[k].origin.x << ", "
+                                    << rays[k].origin.y;
+            ASSERT_TRUE(occluded[k]) << int(isa) << ", ray " << k;
         }
     }
 }
