@@ -19,13 +19,16 @@ function(relief_module name)
     add_library(relief_${name} STATIC ${sources})
     set(scope PUBLIC)
   endif()
+  if(sources)
+    target_precompile_headers(relief_${name} REUSE_FROM relief_library_headers)
+  endif()
   list(TRANSFORM ARG_MODULES PREPEND relief_ OUTPUT_VARIABLE modules)
   target_link_libraries(relief_${name} ${scope} relief_options ${modules} ${ARG_LIBRARIES})
 endfunction()
 
 # relief_precompile(NAME HEADERS... LIBRARIES ...): headers of other projects, compiled once for all targets that say
-# target_precompile_headers(TARGET REUSE_FROM NAME). For tests and applications, where they are most of what a compiler
-# reads; the flags must be those of the targets.
+# target_precompile_headers(TARGET REUSE_FROM NAME): they are most of what a compiler reads. The flags must be those of the
+# targets. tests/layout sees to it that files include what they use all the same.
 function(relief_precompile name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
   file(CONFIGURE OUTPUT ${name}.cpp CONTENT "" @ONLY)

@@ -4,6 +4,7 @@
 // attribute elsewhere than who goes by sizes, so that a size is checked against its type as well.
 #pragma once
 
+#include <cstdint>
 #include <istream>
 #include <optional>
 #include <string>

@@ -1,5 +1,6 @@
 #include "io/gltf_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

@@ -1,6 +1,7 @@
 // read_texture and read_image: pixels as stored.
 #include <algorithm>
 #include <fstream>
+#include <new>
 #include <sstream>
 
 #include "io/image_input.h"

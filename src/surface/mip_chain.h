@@ -1,6 +1,7 @@
 // Smaller copies of a map, for cells that are larger than its texels (Williams 1983, Pyramidal Parametrics).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,6 @@
 #include "surface/polygons.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>

@@ -1,5 +1,8 @@
 // The inspect verb: files in, facts and findings out, exit codes.
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,6 @@
 // The Vulkan engine by way of the command: on whatever device there is, a program that stands in for one
 // included. Every run is validated (tests/vulkan/validation).
+#include <cstdint>
 #include <cstdlib>
 #include <set>
 

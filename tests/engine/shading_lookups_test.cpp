@@ -1,4 +1,5 @@
 // Texture look-ups and the environment as a light, below the path tracer.
+#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>

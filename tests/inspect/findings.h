@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "relief/inspect.h"
 
 namespace relief::test {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <csignal>
+#include <iterator>
 #include <limits>
 
 #include <sys/resource.h>

@@ -1,5 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 #include "io/mesh_gltf.h"
 #include "io/test_files.h"
 

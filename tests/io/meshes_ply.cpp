@@ -1,6 +1,10 @@
 #include "io/mesh_ply.h"
+
 #include "io/test_files.h"
 #include "relief/io.h"
+#include <algorithm>
+#include <bit>
+#include <initializer_list>
 
 namespace relief {
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "dense_heap.h"
 #include "ray_cases.h"

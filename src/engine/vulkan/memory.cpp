@@ -1,6 +1,7 @@
 #include "engine/vulkan/memory.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // Programs with every_instance.cpp do not outlive a message of the validation layer.
 #include <csignal>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 
