@@ -1,7 +1,8 @@
-# relief_module(NAME [SOURCE_DIRECTORY DIR] [EXCLUDE REGEX] MODULES ... LIBRARIES ...): static library relief_NAME from
-# src/NAME, without the sources whose path matches REGEX.
+# relief_module(NAME [SOURCE_DIRECTORY DIR] [EXCLUDE REGEX] [PRECOMPILED HEADERS] MODULES ... LIBRARIES ...): static library
+# relief_NAME from src/NAME, without the sources whose path matches REGEX. HEADERS: of relief_precompile, instead of
+# relief_library_headers.
 function(relief_module name)
-  cmake_parse_arguments(ARG "" "SOURCE_DIRECTORY;EXCLUDE" "MODULES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "SOURCE_DIRECTORY;EXCLUDE;PRECOMPILED" "MODULES;LIBRARIES" ${ARGN})
   set(directory ${PROJECT_SOURCE_DIR}/src/${name})
   if(ARG_SOURCE_DIRECTORY)
     set(directory ${PROJECT_SOURCE_DIR}/src/${ARG_SOURCE_DIRECTORY})
@@ -19,8 +20,11 @@ function(relief_module name)
     add_library(relief_${name} STATIC ${sources})
     set(scope PUBLIC)
   endif()
+  if(NOT ARG_PRECOMPILED)
+    set(ARG_PRECOMPILED relief_library_headers)
+  endif()
   if(sources)
-    target_precompile_headers(relief_${name} REUSE_FROM relief_library_headers)
+    target_precompile_headers(relief_${name} REUSE_FROM ${ARG_PRECOMPILED})
   endif()
   list(TRANSFORM ARG_MODULES PREPEND relief_ OUTPUT_VARIABLE modules)
   target_link_libraries(relief_${name} ${scope} relief_options ${modules} ${ARG_LIBRARIES})

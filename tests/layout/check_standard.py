@@ -1,5 +1,5 @@
 """Headers of other projects are precompiled, so that a compiler does not miss one: each file, or a header of ours that it
-includes, includes what declares the names of the standard library, of fmt, GoogleTest and JSON that it uses."""
+includes, includes what declares the names of the standard library and of these others that it uses."""
 import functools
 import pathlib
 import re
@@ -84,6 +84,7 @@ OTHERS = {
     r"\b(?:INFINITY|NAN)\b": {"cmath"},
     r"\bu?int(?:8|16|32|64)_t\b": {"cstdint"},
     r"\bfmt::": {"fmt/format.h"},
+    r"\bvk::": {"vulkan/vulkan.hpp", "vulkan/vulkan_raii.hpp"},
     r"\bnlohmann::": {"nlohmann/json.hpp", "nlohmann/json_fwd.hpp"},
     r"\bTEST(?:_[FP])?\(|\btesting::|\b(?:EXPECT|ASSERT)_[A-Z]+\(": {"gtest/gtest.h"},
 }
