@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 #include <unistd.h>
 
 #include "exit_codes.h"
@@ -10,12 +12,28 @@ namespace relief::cli {
 
 namespace {
 
-// The one global of the command: a signal handler has no other way to tell.
+// The only globals of the command: a signal handler has no other way to tell.
 std::atomic<int> caught_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch lock-free atomics only");
 
+std::atomic<int64_t> caught_at{0}; ///< milliseconds of a steady clock; 0: not yet
+static_assert(std::atomic<int64_t>::is_always_lock_free);
+
+int64_t get_milliseconds() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1000000;
+}
+
+/// Keys that are struck twice at once mean what one stroke means: the picture is written.
 extern "C" void note_signal(int signal) {
-    if (caught_signal.exchange(signal) != 0) _exit(kExitSignalBase + signal);
+    constexpr int64_t kTogether = 500;
+    const int64_t now = get_milliseconds();
+    int64_t first = 0;
+    if (caught_at.compare_exchange_strong(first, now))
+        caught_signal = signal;
+    else if (now - first > kTogether)
+        _exit(kExitSignalBase + signal);
 }
 
 } // namespace

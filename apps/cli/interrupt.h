@@ -1,4 +1,5 @@
-// Ctrl-C and SIGTERM while a picture is made: the first asks for an orderly end, the second ends at once.
+// Ctrl-C and SIGTERM while a picture is made: the first asks for an orderly end, a second ends at once,
+// unless it comes within half a second.
 #pragma once
 
 namespace relief::cli {
