@@ -52,6 +52,21 @@ TEST_F(ImageFiles, exr_layers_windows_and_metadata_round_trip) {
         << "a temporary file is left";
 }
 
+TEST_F(ImageFiles, that_end_too_early_are_named_and_not_filled_in) {
+    std::vector<uint8_t> noise(size_t(64) * 64 * 3);
+    for (size_t k = 0; k < noise.size(); ++k) noise[k] = uint8_t(k * 2654435761u >> 13);
+    for (const char* name : {"a.tif", "a.jpg", "a.png"}) {
+        const std::filesystem::path file = write_pixels(name, 64, 64, 3, OIIO::TypeDesc::UINT8, noise);
+        EXPECT_EQ(read_image(file).width, 64) << name;
+        std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+        for (const std::string& message :
+             {message_of([&] { read_image(file); }), message_of([&] { read_texture(file); })}) {
+            EXPECT_NE(message.find(name), std::string::npos) << message;
+            EXPECT_NE(message.find("damaged or incomplete"), std::string::npos) << message;
+        }
+    }
+}
+
 TEST_F(ImageFiles, png_is_tone_mapped_and_hdr_keeps_radiance) {
     Image image;
     image.width = 2, image.height = 1, image.channels = {"R", "G", "B"};

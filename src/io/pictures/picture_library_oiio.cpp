@@ -1,5 +1,11 @@
 // The module relief_pictures: pixels as stored, without any colour or alpha conversion.
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -79,12 +85,27 @@ class MemoryReader final : public OIIO::Filesystem::IOMemReader {
     bool holds(int64_t offset) const { return offset >= 0 && uint64_t(offset) <= size(); }
 };
 
+std::string get_first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// The last scan of a JPEG ends with a marker; of a file that lacks it the decoder makes up the rest, and
+/// says nothing. Neither marker can occur among the coded samples of a scan (ISO 10918-1, B.1.1.5).
+bool is_cut_jpeg(std::string_view bytes) {
+    const size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+    return scan != bytes.npos && (end == bytes.npos || end < scan);
+}
+
 class OiioSource final : public PixelSource {
   public:
-    explicit OiioSource(std::string name) : name_(std::move(name)) { open(); }
+    explicit OiioSource(std::string name) : name_(std::move(name)) {
+        open();
+        if (!is_jpeg()) return;
+        std::ifstream file(name_, std::ios::binary);
+        check_jpeg(std::string(std::istreambuf_iterator<char>(file), {}));
+    }
     OiioSource(std::string name, std::string_view bytes)
         : name_(std::move(name)), proxy_(std::make_unique<MemoryReader>(bytes.data(), bytes.size())) {
         open();
+        if (is_jpeg()) check_jpeg(bytes);
     }
 
     const PixelHeader& header() const override { return header_; }
@@ -107,9 +128,16 @@ class OiioSource final : public PixelSource {
         header_ = make_header(spec);
     }
 
+    bool is_jpeg() const { return input_->format_name() == std::string_view("jpeg"); }
+    void check_jpeg(std::string_view bytes) const {
+        if (is_cut_jpeg(bytes)) fail_damaged(name_, "ends in the middle of its picture");
+    }
+
     void read(const OIIO::TypeDesc& type, int channel_count, size_t stride_bytes, void* values) {
-        if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)))
-            fail_damaged(name_, "cannot be read: " + input_->geterror());
+        // Of a file that ends too early OpenImageIO fills in the rest, and says so on the side.
+        if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)) ||
+            input_->has_error())
+            fail_damaged(name_, "cannot be read: " + get_first_line(input_->geterror()));
     }
 
     std::string name_;
