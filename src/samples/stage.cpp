@@ -100,6 +100,7 @@ void Stage::add_ground(float y, float half_size, const Vec3f& color) {
 
 Scene Stage::finish(const Camera& camera) {
     scene_.camera = camera;
+    scene_.camera.focus_distance = length(camera.to - camera.from); // for whoever opens the aperture
     scene_.picture.width = 1280, scene_.picture.height = 720;
     scene_.picture.spp = 64, scene_.picture.bounces = 4;
     return std::move(scene_);
