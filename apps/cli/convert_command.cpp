@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "map_options.h"
 #include "relief/convert.h"
 #include "relief/error.h"
@@ -170,10 +171,7 @@ int convert_surface(const ConvertOptions& options) {
 int run_convert(const ConvertOptions& options) {
     if (options.input.empty() || options.output.empty())
         refuse("one file in and one file out are needed", "", "relief convert IN -o OUT");
-    std::error_code ignored;
-    if (options.input == options.output ||
-        std::filesystem::equivalent(options.input, options.output, ignored))
-        refuse("the file would be written over itself", options.input, "name another one by -o");
+    keep_files({options.input, options.mesh, options.displacement_map}, options.output);
     check_text_writable(options.output);
     const FileKind input = get_kind(options.input);
     if (input == FileKind::map) {

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
 #include "relief/error.h"
@@ -70,7 +71,9 @@ RenderSettings make_check_settings() {
 }
 
 void write_check_picture(const Scene& scene, const RenderSettings& settings, const std::string& file) {
-    if (!file.empty()) write_image(make_check_picture(scene, settings), file);
+    if (file.empty()) return;
+    keep_files(list_files(scene), file);
+    write_image(make_check_picture(scene, settings), file);
 }
 
 Inspection inspect_map_file(const InspectOptions& options) {
@@ -204,6 +207,7 @@ void check_options(const InspectOptions& options) {
                     {fmt::format("{} goes with a map", options.map_only.front()), options.file,
                      "relief inspect MAP, or MESH --vdm MAP, or a scene file that says it all"});
     check_mesh_options(options.scene);
+    keep_files({options.file, options.mesh, options.scene.displacement_map.string()}, options.picture);
     if (!options.picture.empty()) check_writable(options.picture);
 }
 

@@ -1,6 +1,7 @@
 #include "mesh_options.h"
 
 #include <functional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -58,6 +59,26 @@ void check_mesh_options(const MeshSceneOptions& options) {
                                                                   : options.map.autobump ? "--autobump"
                                                                                          : "--no-dilate"),
                      "", "--vdm MAP"});
+}
+
+void check_map_options(const MeshSceneOptions& options) {
+    if (!options.displacement_map.empty()) return;
+    const MapOptions& map = options.map;
+    const std::pair<bool, const char*> given[] = {{!map.preset.empty(), "--preset"},
+                                                  {map.type.has_value(), "--type"},
+                                                  {map.space.has_value(), "--space"},
+                                                  {map.axes.has_value(), "--axes"},
+                                                  {map.frame.has_value(), "--frame"},
+                                                  {map.lengths.has_value(), "--lengths"},
+                                                  {map.encoding.has_value(), "--encoding"},
+                                                  {map.wrap.has_value(), "--wrap"},
+                                                  {map.midlevel.has_value(), "--midlevel"},
+                                                  {map.scale.has_value(), "--vdm-scale"},
+                                                  {map.flip_v, "--flip-v"}};
+    for (const auto& [is_given, name] : given)
+        if (is_given)
+            throw Error(ErrorKind::usage,
+                        {fmt::format("{} says nothing without a map", name), "", "--vdm MAP"});
 }
 
 } // namespace relief::cli

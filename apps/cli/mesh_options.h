@@ -17,4 +17,7 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
 /// Throws Error{usage} for options that say nothing without another one.
 void check_mesh_options(const MeshSceneOptions& options);
 
+/// The same for those that say what a map means.
+void check_map_options(const MeshSceneOptions& options);
+
 } // namespace relief::cli

@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "relief/error.h"
 #include "relief/image.h"
 #include "relief/io.h"
@@ -52,6 +53,7 @@ int run_merge(const MergeOptions& options) {
     if (options.parts.empty() || options.output.empty())
         throw Error(ErrorKind::usage,
                     {"parts and an output file are needed", "", "relief merge A.exr B.exr -o OUT.exr"});
+    keep_files(options.parts, options.output);
     check_writable(options.output);
     std::vector<Image> parts;
     for (const std::string& part : options.parts) parts.push_back(read_image(part));

@@ -17,6 +17,7 @@
 #include "commands.h"
 #include "edit_stream.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "interrupt.h"
 #include "output.h"
 #include "pixel.h"
@@ -82,6 +83,10 @@ struct Waiting {
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const Waiting& waiting, RenderResult& result) {
     Statistics& statistics = result.statistics;
+    if (!result.is_complete && statistics.camera_rays == 0) {
+        fmt::print(stderr, "relief: interrupted before the first sample; nothing was written\n");
+        return get_exit_code(options, result, {});
+    }
     const double write_start = get_seconds();
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
     statistics.load_s = waiting.load_s;
@@ -150,6 +155,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     catch_interrupts();
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
+    const std::vector<std::string> files = list_files(scene);
     const std::string only_displacement =
         scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
@@ -158,6 +164,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session);
     const auto show = [&](const std::filesystem::path& output) {
+        keep_files(files, output);
         RenderResult result =
             make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });
         warner.print_rest(result.statistics.warnings);
@@ -182,6 +189,8 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
 int render_input(const RenderOptions& options, double start) {
     Scene scene = load_input(options);
     const double load_s = get_seconds() - start;
+    const std::vector<std::string> files = list_files(scene);
+    keep_files(files, options.output), keep_files(files, options.statistics_file);
     const RenderSettings settings = make_settings(options, scene.picture);
     const Waiting waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);

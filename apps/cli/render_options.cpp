@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
 #include "values.h"
@@ -189,6 +190,7 @@ void complete_render_options(RenderOptions& o) {
                      o.input.string(),
                      "the scene file says this under 'meshes', 'displacements' and 'environment'"});
     check_mesh_options(o.mesh);
+    check_map_options(o.mesh);
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
                     o.settings.crop != Window{} || !o.settings.layers.empty() || !o.edits.empty()))
         throw Error(ErrorKind::usage,
@@ -207,6 +209,10 @@ void complete_render_options(RenderOptions& o) {
                     {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
                                                       : "there is no such file",
                      "--edits " + o.edits, "-: standard input, which may be a pipe"});
+    // Before the scene is read, and again with all of its files.
+    const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
+                                            o.mesh.environment.string(), o.edits};
+    keep_files(files, o.output), keep_files(files, o.statistics_file);
     check_writable(o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }

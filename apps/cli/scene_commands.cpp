@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <thread>
@@ -45,12 +47,25 @@ Scene make_named_scene(const SceneOptions& options) {
     return make_peer_scene(options.name, 1, PeerWorld::sky);
 }
 
+/// All of a file; empty where there is none.
+std::string read_text(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 int run_scene(const SceneOptions& options) {
     if (options.name.empty())
         throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
     const std::filesystem::path folder = options.folder.empty() ? options.name : options.folder;
+    const std::filesystem::path file = folder / "scene.json";
+    const std::string before = read_text(file);
     save_scene(make_named_scene(options), folder);
-    fmt::print("wrote {}\n", (folder / "scene.json").string());
+    if (!before.empty() && before != read_text(file)) {
+        const std::string copy = file.string() + ".bak";
+        write_text_file(copy, before);
+        fmt::print(stderr, "relief: the scene that was there is kept as {}\n", copy);
+    }
+    fmt::print("wrote {}\n", file.string());
     return kExitDone;
 }
 

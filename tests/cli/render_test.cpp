@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <thread>
 
@@ -260,23 +261,27 @@ TEST_F(Render, a_picture_that_fills_the_disk_goes_elsewhere) {
     EXPECT_EQ(read_image(folder_ / "spare" / "a.exr").width, 96);
 }
 
-TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture) {
-    const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576", "--bounces",
-                                 "0", "--progress", "json", "-o", "part.exr"});
-    for (int i = 0; i < 1000 && read("stderr.txt").find("percent") == std::string::npos; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    kill(process, SIGINT);
-    const CommandResult result = finish(process);
-    EXPECT_EQ(result.exit_code, 130) << result.errors;
-    const Image image = read_image(folder_ / "part.exr");
-    EXPECT_EQ(image.width, 64);
-    const std::optional<size_t> samples = image.find_channel("samples.Y");
-    ASSERT_TRUE(samples.has_value());
-    float most = 0;
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) most = std::max(most, image.at(x, y, *samples));
-    EXPECT_GT(most, 0);
-    EXPECT_LT(most, 1048576);
+TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture_and_two_at_once_do_as_well) {
+    for (const int strokes : {1, 2}) {
+        const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576",
+                                     "--bounces", "0", "--progress", "json", "-o", "part.exr"});
+        for (int i = 0; i < 1000 && read("stderr.txt").find("percent") == std::string::npos; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        for (int k = 0; k < strokes; ++k)
+            kill(process, SIGINT), std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        const CommandResult result = finish(process);
+        EXPECT_EQ(result.exit_code, 130) << result.errors;
+        const Image image = read_image(folder_ / "part.exr");
+        EXPECT_EQ(image.width, 64);
+        const std::optional<size_t> samples = image.find_channel("samples.Y");
+        ASSERT_TRUE(samples.has_value());
+        float most = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) most = std::max(most, image.at(x, y, *samples));
+        EXPECT_GT(most, 0);
+        EXPECT_LT(most, 1048576);
+        std::filesystem::remove(folder_ / "part.exr"), std::filesystem::remove(folder_ / "stderr.txt");
+    }
 }
 
 TEST_F(Render, one_pixel_is_explained_without_a_picture) {
@@ -296,6 +301,19 @@ TEST_F(Render, a_written_sample_scene_can_be_rendered) {
         run({"render", "ear/scene.json", "--size", "16x16", "--spp", "1", "--bounces", "0", "-o", "ear.exr"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     EXPECT_NE(run({"scene", "eer", "-o", "x"}).exit_code, 0);
+}
+
+TEST_F(Render, a_sample_scene_that_was_edited_is_kept) {
+    ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
+    ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
+    EXPECT_FALSE(exists("rock/scene.json.bak")) << "nothing was edited";
+    std::ofstream(folder_ / "rock/scene.json", std::ios::app) << "\n";
+    const std::string edited = read("rock/scene.json");
+    const CommandResult again = run({"scene", "rock", "-o", "rock"});
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_NE(again.errors.find("kept as rock/scene.json.bak"), std::string::npos) << again.errors;
+    EXPECT_EQ(read("rock/scene.json.bak"), edited);
+    EXPECT_NE(read("rock/scene.json"), edited);
 }
 
 TEST_F(Render, devices_lists_the_cpu) {

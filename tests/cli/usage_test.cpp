@@ -81,6 +81,33 @@ TEST_F(Usage, options_that_say_how_a_map_is_read_need_one) {
     expect_refused({"render", "plane.obj", "--no-dilate"}, "--no-dilate says nothing without a map");
     expect_refused({"render", "plane.obj", "--filter", "mip"}, "--filter says nothing without a map");
     expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--filter", "mipp"}, "did you mean 'mip'", 3);
+    expect_refused({"render", "plane.obj", "--preset", "nonsense"}, "--preset says nothing without a map");
+    for (const char* option : {"--type", "--space", "--axes", "--frame", "--lengths", "--encoding", "--wrap"})
+        expect_refused({"render", "plane.obj", option, "x"}, std::string(option) + " says nothing");
+    expect_refused({"render", "plane.obj", "--midlevel", "0.5"}, "--midlevel says nothing without a map");
+    expect_refused({"render", "plane.obj", "--vdm-scale", "2"}, "--vdm-scale says nothing without a map");
+    expect_refused({"render", "plane.obj", "--flip-v"}, "--flip-v says nothing without a map");
+}
+
+TEST_F(Usage, files_that_are_read_are_not_written_over) {
+    const std::string message = "would be written over";
+    std::filesystem::copy_file(folder_ / "bump.exr",
+                               folder_ / "plane.exr"); // as a picture without -o is called
+    const std::string mesh = read("plane.obj"), map = read("plane.exr");
+    expect_refused({"render", "plane.obj", "--vdm", "plane.exr"}, message);
+    expect_refused({"render", "plane.obj", "--vdm", "plane.exr", "-o", "./plane.exr"}, message);
+    expect_refused({"render", "plane.obj", "--env", "plane.exr"}, message);
+    expect_refused({"render", "plane.obj", "-o", "x.exr", "--stats", "plane.obj"}, message);
+    expect_refused({"inspect", "plane.exr", "-o", "plane.exr"}, message);
+    expect_refused({"merge", "plane.exr", "-o", "plane.exr"}, message);
+    expect_refused({"convert", "plane.exr", "-o", "plane.exr"}, message);
+    expect_refused({"convert", "plane.obj", "--vdm", "plane.exr", "-o", "plane.obj"}, message);
+    EXPECT_EQ(read("plane.obj"), mesh);
+    EXPECT_EQ(read("plane.exr"), map);
+
+    ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
+    for (const char* file : {"rock/scene.json", "rock/maps/rock.exr", "rock/maps/environment.exr"})
+        expect_refused({"render", "rock/scene.json", "-o", "x.exr", "--stats", file}, message);
 }
 
 TEST_F(Usage, options_of_one_engine_do_not_go_with_the_other) {

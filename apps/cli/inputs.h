@@ -1,0 +1,18 @@
+// Files that a command reads: what it writes never takes their place.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief::cli {
+
+/// Files that a scene was read from, as far as they are known: its own, meshes, maps, textures.
+std::vector<std::string> list_files(const Scene& scene);
+
+/// Throws Error{usage} where `output`, which may be empty, is one of the files, under whatever name.
+void keep_files(const std::vector<std::string>& files, const std::filesystem::path& output);
+
+} // namespace relief::cli
