@@ -25,7 +25,8 @@ std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
     return {4, 16, 64};
 }
 
-/// Steps in which stacks grow, so that scenes of similar depth share a kernel.
+/// Steps in which stacks grow, so that scenes of similar depth share a kernel. One entry stands
+/// for none.
 constexpr uint32_t kStackStep = 8;
 
 /// The deepest trees of each bin.
@@ -53,7 +54,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     const uint32_t is_box = settings.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.bottom == BottomForm::fused;
-    stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
+    if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
     scene_traversal = make_walk(device, settings.method, scene.traversal_kernel(), {kGroup, stack_size});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "base/check.h"
 #include "engine/vulkan/bottom_cache.h"
 #include "engine/vulkan/cast_buffers.h"
 #include "engine/vulkan/cast_kernels.h"
@@ -215,8 +214,11 @@ void Tracer::Implementation::trace_waves() {
         commands.begin_stage(Stage::bottom_traversal);
         commands.dispatch(kernels.commit_round, push.count, push);
         read_counters();
-        for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin)
-            DCHECK(kernels.is_fused || kernels.bottom_build[bin] || counters.build_count[bin] == 0);
+        for (uint32_t bin = 0; bin < scalar::kBuildBinCount && !kernels.is_fused; ++bin)
+            if (!kernels.bottom_build[bin] && counters.build_count[bin] > 0)
+                throw Error(ErrorKind::failed,
+                            {"trees of a level were asked for that the scene has not", "",
+                             "use --bottom fused, or --engine cpu, and tell the developers"});
         cache.end_wave(counters);
         pairs_done += counters.pairs_done, jobs_done += counters.jobs_done;
         totals.pairs_with_hit += counters.pairs_with_hit;
