@@ -67,6 +67,14 @@ TEST_F(ImageFiles, that_end_too_early_are_named_and_not_filled_in) {
     }
 }
 
+TEST_F(ImageFiles, jpeg_with_something_behind_its_picture_is_whole) {
+    const std::vector<uint8_t> grey(size_t(32) * 32 * 3, 128);
+    const std::filesystem::path file = write_pixels("a.jpg", 32, 32, 3, OIIO::TypeDesc::UINT8, grey);
+    // As telephones put a film there, which may hold any markers.
+    std::ofstream(file, std::ios::binary | std::ios::app) << "film\xff\xd8\xff\xda film";
+    EXPECT_EQ(read_image(file).width, 32);
+}
+
 TEST_F(ImageFiles, png_is_tone_mapped_and_hdr_keeps_radiance) {
     Image image;
     image.width = 2, image.height = 1, image.channels = {"R", "G", "B"};

@@ -1,8 +1,10 @@
 // The module relief_pictures: pixels as stored, without any colour or alpha conversion.
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <istream>
 #include <memory>
+#include <sstream>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -87,25 +89,34 @@ class MemoryReader final : public OIIO::Filesystem::IOMemReader {
 
 std::string get_first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// The last scan of a JPEG ends with a marker; of a file that lacks it the decoder makes up the rest, and
-/// says nothing. Neither marker can occur among the coded samples of a scan (ISO 10918-1, B.1.1.5).
-bool is_cut_jpeg(std::string_view bytes) {
-    const size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
-    return scan != bytes.npos && (end == bytes.npos || end < scan);
+/// Whether a JPEG stream gets to the marker that ends its picture: of a file that is cut before it the
+/// decoder makes up the rest, and says nothing. Among coded samples a byte ff is followed by 00 or a restart
+/// marker (ISO 10918-1, B.1.1.5), all other segments have their length (B.1.1.4).
+bool has_jpeg_end(std::istream& stream) {
+    constexpr int kFirstRestart = 0xd0, kStart = 0xd8, kEnd = 0xd9, kTemporary = 0x01;
+    std::streambuf& bytes = *stream.rdbuf();
+    const int none = std::streambuf::traits_type::eof();
+    for (int byte = bytes.sbumpc(); byte != none; byte = bytes.sbumpc()) {
+        if (byte != 0xff) continue;
+        int marker = bytes.sbumpc();
+        while (marker == 0xff) marker = bytes.sbumpc();
+        if (marker == kEnd) return true;
+        if (marker == 0 || marker == kTemporary || (marker >= kFirstRestart && marker <= kStart)) continue;
+        const int high = bytes.sbumpc(), low = bytes.sbumpc();
+        if (marker == none || high == none || low == none) return false;
+        for (int left = (high << 8 | low) - 2; left > 0; --left)
+            if (bytes.sbumpc() == none) return false;
+    }
+    return false;
 }
 
 class OiioSource final : public PixelSource {
   public:
-    explicit OiioSource(std::string name) : name_(std::move(name)) {
-        open();
-        if (!is_jpeg()) return;
-        std::ifstream file(name_, std::ios::binary);
-        check_jpeg(std::string(std::istreambuf_iterator<char>(file), {}));
-    }
+    explicit OiioSource(std::string name) : name_(std::move(name)) { open(); }
     OiioSource(std::string name, std::string_view bytes)
         : name_(std::move(name)), proxy_(std::make_unique<MemoryReader>(bytes.data(), bytes.size())) {
+        bytes_ = bytes;
         open();
-        if (is_jpeg()) check_jpeg(bytes);
     }
 
     const PixelHeader& header() const override { return header_; }
@@ -128,19 +139,27 @@ class OiioSource final : public PixelSource {
         header_ = make_header(spec);
     }
 
-    bool is_jpeg() const { return input_->format_name() == std::string_view("jpeg"); }
-    void check_jpeg(std::string_view bytes) const {
-        if (is_cut_jpeg(bytes)) fail_damaged(name_, "ends in the middle of its picture");
+    bool is_of(std::string_view format) const { return input_->format_name() == format; }
+
+    void check_jpeg() const {
+        std::unique_ptr<std::istream> stream;
+        if (proxy_)
+            stream = std::make_unique<std::istringstream>(std::string(bytes_));
+        else
+            stream = std::make_unique<std::ifstream>(name_, std::ios::binary);
+        if (!has_jpeg_end(*stream)) fail_damaged(name_, "ends in the middle of its picture");
     }
 
     void read(const OIIO::TypeDesc& type, int channel_count, size_t stride_bytes, void* values) {
-        // Of a file that ends too early OpenImageIO fills in the rest, and says so on the side.
+        if (is_of("jpeg")) check_jpeg();
+        // Of a TIFF file that ends too early OpenImageIO fills in the rest, and says so on the side.
         if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)) ||
-            input_->has_error())
+            (is_of("tiff") && input_->has_error()))
             fail_damaged(name_, "cannot be read: " + get_first_line(input_->geterror()));
     }
 
     std::string name_;
+    std::string_view bytes_;              ///< of pictures in memory
     std::unique_ptr<MemoryReader> proxy_; ///< of pictures in memory; outlives the input
     std::unique_ptr<OIIO::ImageInput> input_;
     PixelHeader header_;
