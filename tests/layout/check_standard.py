@@ -107,6 +107,18 @@ def describe(place, name, headers):
     return f"{place}: {name} needs <{'> or <'.join(sorted(headers))}>"
 
 
+def is_part(file):
+    """Of whoever includes it: inside a namespace, or several times, after what it needs."""
+    return "/shared/" in str(file) or file.name.endswith("-inl.h")
+
+
+@functools.lru_cache(maxsize=None)
+def find_used(file):
+    """(names of std, patterns of OTHERS) in a file, outside of comments and texts."""
+    code = NOT_CODE.sub("", file.read_text())
+    return frozenset(USED.findall(code)), frozenset(p for p in OTHERS if re.search(p, code))
+
+
 class Files:
     def __init__(self, root):
         self.root = root
@@ -133,7 +145,7 @@ class Files:
         return standard, own
 
     def find_included(self, file):
-        """Standard headers that a file includes, itself or through others of ours."""
+        """(standard headers, files of ours) that a file includes, itself or through others of ours."""
         seen, left, standard = set(), [file], set()
         while left:
             place = left.pop()
@@ -143,7 +155,7 @@ class Files:
             more, own = self.read_includes(place)
             standard |= more
             left += own
-        return standard
+        return standard, seen
 
 
 def main():
@@ -151,16 +163,15 @@ def main():
     headers, files = find_headers(), Files(root)
     faults, use_count = [], 0
     for file in list_code(root):
-        # These are included inside a namespace, or several times, after what they need.
-        if "/shared/" in str(file) or file.name.endswith("-inl.h"):
+        if is_part(file):
             continue
-        place, code = file.relative_to(root), NOT_CODE.sub("", file.read_text())
-        included = files.find_included(file)
-        for pattern, declaring in OTHERS.items():
-            used = re.search(pattern, code)
-            if used and not declaring & included:
-                faults.append(describe(place, used[0], declaring))
-        for name in sorted(set(USED.findall(code)) - ANYWHERE):
+        included, reached = files.find_included(file)
+        place = file.relative_to(root)
+        used = [find_used(f) for f in [file, *filter(is_part, reached)]]
+        for pattern in sorted(set().union(*(patterns for _, patterns in used))):
+            if not OTHERS[pattern] & included:
+                faults.append(describe(place, f"what {pattern} finds", OTHERS[pattern]))
+        for name in sorted(set().union(*(names for names, _ in used)) - ANYWHERE):
             use_count += 1
             if name not in headers:
                 faults.append(f"{place}: tests/layout/check_standard.py does not know std::{name}")
