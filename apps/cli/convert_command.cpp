@@ -160,6 +160,7 @@ int convert_surface(const ConvertOptions& options) {
     if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
     const Scene scene = load_surface(options);
+    keep_files(list_files(scene), options.output);
     print_warnings(scene.warnings);
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel));
     write_mesh(mesh, options.output);

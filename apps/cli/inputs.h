@@ -12,7 +12,8 @@ namespace relief::cli {
 /// Files that a scene was read from, as far as they are known: its own, meshes, maps, textures.
 std::vector<std::string> list_files(const Scene& scene);
 
-/// Throws Error{usage} where `output`, which may be empty, is one of the files, under whatever name.
+/// Throws Error{usage} where `output`, which may be empty, is one of the files, under whatever name. Files
+/// may be empty, or "-" for standard input.
 void keep_files(const std::vector<std::string>& files, const std::filesystem::path& output);
 
 } // namespace relief::cli

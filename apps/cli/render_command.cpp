@@ -78,13 +78,16 @@ int get_exit_code(const RenderOptions& options, const RenderResult& result, cons
 /// Since when a picture has been waited for, and what of that was reading.
 struct Waiting {
     double start, load_s;
+    uint64_t camera_rays = 0; ///< of pictures before: engines count on
 };
 
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const Waiting& waiting, RenderResult& result) {
     Statistics& statistics = result.statistics;
-    if (!result.is_complete && statistics.camera_rays == 0) {
-        fmt::print(stderr, "relief: interrupted before the first sample; nothing was written\n");
+    const bool has_samples = statistics.camera_rays > 0 && statistics.camera_rays != waiting.camera_rays;
+    if (!result.is_complete && !has_samples) {
+        fmt::print(stderr, "relief: interrupted before the first sample; no picture was written\n");
+        if (!options.statistics_file.empty()) write_statistics(options.statistics_file, statistics, settings);
         return get_exit_code(options, result, {});
     }
     const double write_start = get_seconds();
@@ -143,11 +146,19 @@ void print_edit(const EditReport& report) {
 
 /// All lines of a file, before anybody waits for the first picture. Texels are read once more when their turn
 /// comes: all of them may be more than memory holds.
-void check_edits(const std::string& path, const std::string& only_displacement, const Session& session) {
+void check_edits(const std::string& path, const std::string& only_displacement, const Session& session,
+                 std::vector<std::string> files) {
     std::ifstream file(path);
     EditStream edits(file, path, only_displacement);
+    std::vector<std::filesystem::path> outputs;
     while (const std::optional<EditLine> line = edits.next())
-        edits.with_place([&] { session.check(line->edit); });
+        edits.with_place([&] {
+            session.check(line->edit);
+            const std::string& texels = files.emplace_back(line->edit.texels.file);
+            for (const std::filesystem::path& output : outputs) keep_files({texels}, output);
+            keep_files(files, line->output);
+            outputs.push_back(line->output);
+        });
 }
 
 /// One picture as ever, then one after each edit that asks for it.
@@ -155,28 +166,33 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     catch_interrupts();
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
-    const std::vector<std::string> files = list_files(scene);
+    std::vector<std::string> files = list_files(scene);
+    files.push_back(options.edits);
     const std::string only_displacement =
         scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
                      options.edits == "-" ? "standard input" : options.edits, only_displacement);
     Warner warner(scene, options.is_quiet);
     Session session(std::move(scene), settings);
-    if (options.edits != "-") check_edits(options.edits, only_displacement, session);
+    if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
-        keep_files(files, output);
         RenderResult result =
             make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });
         warner.print_rest(result.statistics.warnings);
-        return finish_picture(options, settings, output, waiting, result);
+        const uint64_t camera_rays = result.statistics.camera_rays;
+        const int exit_code = finish_picture(options, settings, output, waiting, result);
+        waiting.camera_rays = camera_rays;
+        return exit_code;
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits that no picture shows yet
     while (exit_code == kExitDone || exit_code == kExitWarnings) {
         const std::optional<EditLine> line = edits.next();
         if (!line) break;
-        if (!is_pending) waiting = {get_seconds() - line->read_s, 0};
+        if (!is_pending) waiting.start = get_seconds() - line->read_s, waiting.load_s = 0;
         edits.with_place([&] {
+            keep_files({line->edit.texels.file}, line->output);
+            keep_files(files, line->output);
             const EditReport report = session.edit(line->edit);
             if (options.is_verbose) print_edit(report);
         });

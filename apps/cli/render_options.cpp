@@ -213,6 +213,7 @@ void complete_render_options(RenderOptions& o) {
     const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
                                             o.mesh.environment.string(), o.edits};
     keep_files(files, o.output), keep_files(files, o.statistics_file);
+    keep_files({o.output.string()}, o.statistics_file);
     check_writable(o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }

@@ -53,18 +53,26 @@ std::string read_text(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// FILE.bak, or FILE.bak2, FILE.bak3... where that is taken.
+std::string find_free_copy(const std::string& file) {
+    std::string copy = file + ".bak";
+    for (int k = 2; std::filesystem::exists(copy); ++k) copy = fmt::format("{}.bak{}", file, k);
+    return copy;
+}
+
 int run_scene(const SceneOptions& options) {
     if (options.name.empty())
         throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
     const std::filesystem::path folder = options.folder.empty() ? options.name : options.folder;
     const std::filesystem::path file = folder / "scene.json";
     const std::string before = read_text(file);
+    const std::string copy = find_free_copy(file.string());
+    if (!before.empty()) write_text_file(copy, before);
     save_scene(make_named_scene(options), folder);
-    if (!before.empty() && before != read_text(file)) {
-        const std::string copy = file.string() + ".bak";
-        write_text_file(copy, before);
+    if (before == read_text(file))
+        std::filesystem::remove(copy);
+    else if (!before.empty())
         fmt::print(stderr, "relief: the scene that was there is kept as {}\n", copy);
-    }
     fmt::print("wrote {}\n", file.string());
     return kExitDone;
 }

@@ -91,6 +91,9 @@ TEST_F(Edits, mistakes_of_a_file_name_the_line_before_any_picture_is_made) {
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "displacement": "skin"})", "no such displacement");
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "tile": 1002})", "no such tile");
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "nowhere/c.exr"})", "nowhere", 1);
+    const std::string over = "would be written over";
+    expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "part.exr"})", over, 2);
+    expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "bump.exr"})", over, 2);
 }
 
 TEST_F(Edits, mistakes_on_standard_input_keep_what_was_done) {

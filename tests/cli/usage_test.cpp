@@ -102,12 +102,15 @@ TEST_F(Usage, files_that_are_read_are_not_written_over) {
     expect_refused({"merge", "plane.exr", "-o", "plane.exr"}, message);
     expect_refused({"convert", "plane.exr", "-o", "plane.exr"}, message);
     expect_refused({"convert", "plane.obj", "--vdm", "plane.exr", "-o", "plane.obj"}, message);
+    expect_refused({"convert", "m.<UDIM>.exr", "-o", "./m.<UDIM>.exr"}, message);
+    expect_refused({"render", "plane.obj", "-o", "x.exr", "--stats", "./x.exr"}, message);
     EXPECT_EQ(read("plane.obj"), mesh);
     EXPECT_EQ(read("plane.exr"), map);
 
     ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
     for (const char* file : {"rock/scene.json", "rock/maps/rock.exr", "rock/maps/environment.exr"})
         expect_refused({"render", "rock/scene.json", "-o", "x.exr", "--stats", file}, message);
+    expect_refused({"convert", "rock/scene.json", "-o", "rock/meshes/rock.obj"}, message);
 }
 
 TEST_F(Usage, options_of_one_engine_do_not_go_with_the_other) {
