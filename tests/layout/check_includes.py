@@ -3,7 +3,7 @@ import pathlib
 import re
 import sys
 
-from sources import finish, list_code
+from sources import INCLUDE, finish, list_code
 
 # What a folder of src/ may include besides itself and include/relief; what these may include is allowed with them.
 # "" stands for the files directly in src/.
@@ -41,8 +41,6 @@ LIBRARIES = {
 
 # Never in one another, although both are in src/engine.
 APART = [("engine/cpu", "engine/vulkan")]
-
-INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
 def close(table):

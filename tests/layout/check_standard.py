@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-from sources import finish, list_code
+from sources import INCLUDE, finish, list_code
 
 # Names by their headers; a name of several is in each.
 DECLARED = {
@@ -89,7 +89,6 @@ OTHERS = {
     r"\bTEST(?:_[FP])?\(|\btesting::|\b(?:EXPECT|ASSERT)_[A-Z]+\(": {"gtest/gtest.h"},
 }
 
-INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"', re.S)
 USED = re.compile(r"\bstd::([a-z_0-9]+)")
 

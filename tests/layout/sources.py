@@ -1,8 +1,10 @@
 """The files of the repository that the layout tests look at."""
 import pathlib
+import re
 
 FOLDERS = ["include", "src", "apps", "tests", "fuzz", "bench", "python", "cmake", "tools", "docs", ".ci"]
 CODE = {".h", ".cpp"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 SCRIPTS = {".py", ".sh", ".cmake"}
 
 
