@@ -21,26 +21,25 @@ std::vector<std::string> list_files(const Scene& scene) {
     return files;
 }
 
-namespace {
-
-/// A name that says where a file would be, whether or not it is there: names with <UDIM> are no files.
 std::filesystem::path find_place(const std::filesystem::path& file) {
     std::error_code ignored;
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     return std::filesystem::weakly_canonical(folder, ignored) / file.filename();
 }
 
-} // namespace
+void refuse_output(const std::filesystem::path& output) {
+    throw Error(ErrorKind::usage,
+                {"a file that is read would be written over", output.string(), "name another one to write"});
+}
 
 void keep_files(const std::vector<std::string>& files, const std::filesystem::path& output) {
     if (output.empty()) return;
+    const std::filesystem::path place = find_place(output);
     for (const std::string& file : files) {
         std::error_code ignored; // of names that are no files
         if (file.empty() || file == "-") continue;
-        if (find_place(file) != find_place(output) && !std::filesystem::equivalent(file, output, ignored))
-            continue;
-        throw Error(ErrorKind::usage, {"a file that is read would be written over", output.string(),
-                                       "name another one to write"});
+        if (find_place(file) == place || std::filesystem::equivalent(file, output, ignored))
+            refuse_output(output);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -147,17 +148,21 @@ void print_edit(const EditReport& report) {
 /// All lines of a file, before anybody waits for the first picture. Texels are read once more when their turn
 /// comes: all of them may be more than memory holds.
 void check_edits(const std::string& path, const std::string& only_displacement, const Session& session,
-                 std::vector<std::string> files) {
+                 const std::vector<std::string>& files) {
     std::ifstream file(path);
     EditStream edits(file, path, only_displacement);
-    std::vector<std::filesystem::path> outputs;
+    std::set<std::filesystem::path> read, written; // there may be thousands
     while (const std::optional<EditLine> line = edits.next())
         edits.with_place([&] {
             session.check(line->edit);
-            const std::string& texels = files.emplace_back(line->edit.texels.file);
-            for (const std::filesystem::path& output : outputs) keep_files({texels}, output);
+            const std::filesystem::path texels = find_place(line->edit.texels.file);
+            read.insert(texels);
+            if (written.contains(texels)) refuse_output(line->edit.texels.file);
+            if (line->output.empty()) return;
             keep_files(files, line->output);
-            outputs.push_back(line->output);
+            const std::filesystem::path output = find_place(line->output);
+            written.insert(output);
+            if (read.contains(output)) refuse_output(line->output);
         });
 }
 

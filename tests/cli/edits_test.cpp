@@ -94,6 +94,8 @@ TEST_F(Edits, mistakes_of_a_file_name_the_line_before_any_picture_is_made) {
     const std::string over = "would be written over";
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "part.exr"})", over, 2);
     expect_error(R"({"at": [0, 0], "texels": "part.exr", "output": "bump.exr"})", over, 2);
+    write_image(read_image(folder_ / "part.exr"), folder_ / "b.exr"); // the good line writes it
+    expect_error(R"({"at": [0, 0], "texels": "./b.exr"})", over, 2);
 }
 
 TEST_F(Edits, mistakes_on_standard_input_keep_what_was_done) {
