@@ -31,8 +31,10 @@ struct Interval {
 };
 
 Interval operator+(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
+/// Without a branch: the signs of frames cannot be foreseen.
 Interval operator*(const Interval& a, double b) {
-    return b >= 0 ? Interval{a.low * b, a.high * b} : Interval{a.high * b, a.low * b};
+    const double from_low = a.low * b, from_high = a.high * b;
+    return {std::min(from_low, from_high), std::max(from_low, from_high)};
 }
 
 /// A vertex in double precision.
