@@ -137,10 +137,14 @@ struct TracerProbe::Implementation {
 
     void trace_tile(const scalar::CameraFrame& frame, const CameraTile& tile, ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        aim_rays(tracer->shading_kernels(), frame, std::span(centres).subspan(tile.first, tile.count()),
-                 buffer.rays);
-        buffer.hits.resize(buffer.rays.size());
-        tracer->closest_hits(buffer.rays, buffer.hits);
+        const std::span<const Vec2f> positions = std::span(centres).subspan(tile.first, tile.count());
+        buffer.hits.resize(positions.size());
+        if (frame.aperture_radius == 0) {
+            tracer->camera_hits(frame, positions, {}, buffer.hits);
+        } else {
+            aim_rays(tracer->shading_kernels(), frame, positions, buffer.rays);
+            tracer->closest_hits(buffer.rays, buffer.hits);
+        }
         store_hits(tile.first, buffer.hits, result);
     }
 

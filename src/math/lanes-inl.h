@@ -46,6 +46,11 @@ template <size_t kWidth> struct Lanes {
         for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::LoadU(D(), source + p * kLanes);
         return r;
     }
+    /// Sixteen (or eight...) pairs of numbers, firsts and seconds apart.
+    static HWY_INLINE void load_pairs(const float* source, Lanes& first, Lanes& second) {
+        for (size_t p = 0; p < kParts; ++p)
+            hn::LoadInterleaved2(D(), source + 2 * p * kLanes, first.part[p], second.part[p]);
+    }
     /// Codes of a quantised box as floats, exactly.
     static HWY_INLINE Lanes load_codes(const uint8_t* source) {
         const hn::Rebind<uint8_t, D> d8;

@@ -144,7 +144,7 @@ inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& direct
 
 inline void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch,
                         RayBundle& bundle) {
-    BundleVisit visit{enter_patch(scene, context, bundle.instance, patch, bundle.rays->world[0].bias)};
+    BundleVisit visit{enter_patch(scene, context, bundle.instance, patch, bundle.rays->bias)};
     const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
     const double built_before = context.counters.bottom_build_s;
     if (visit.patch.level() <= cpu::kTileLevel)
@@ -259,12 +259,13 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
 inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
                          BundleRays& rays) {
     for (uint32_t k = 0; k < rays.count; ++k) {
+        const cpu::TraceRay world{rays.origin, rays.t_min[k], rays.direction_of(k), rays.t[k], rays.bias};
         RayState ray;
-        ray.t_min = rays.world[k].t_min, ray.t_max = rays.t[k];
+        ray.t_min = world.t_min, ray.t_max = world.t_max;
         ray.hit = rays.hits[k];
         ray.instance = instance;
-        enter_object(rays.world[k], scene.instances[instance].object_from_world, ray);
-        trace_instance<Query::closest>(scene, context, rays.world[k], 0, ray);
+        enter_object(world, scene.instances[instance].object_from_world, ray);
+        trace_instance<Query::closest>(scene, context, world, 0, ray);
         rays.hits[k] = ray.hit, rays.t[k] = ray.t_max;
     }
 }
@@ -299,7 +300,7 @@ inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context
                          cpu::TraceHit* hits) {
     fill_rest(rays);
     cpu::TraceHit none;
-    none.bias = uint8_t(rays.world[0].bias);
+    none.bias = uint8_t(rays.bias);
     std::fill_n(hits, rays.count, none);
     rays.hits = hits;
     if (scene.instance_count == 1) return trace_instance(scene, context, 0, rays);

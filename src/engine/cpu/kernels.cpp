@@ -63,15 +63,28 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
     }
 }
 
+bool may_trace_bundles(const cpu::SceneView& scene) {
+    return scene.lod == LodRule::field && scene.leaf == LeafKind::exact;
+}
+
 /// Hits of the rays at the front that leave one point together; returns how many that were.
 size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                    cpu::TraceHit* hits, size_t count) {
-    if (scene.lod != LodRule::field || scene.leaf != LeafKind::exact) return 0;
+    if (!may_trace_bundles(scene)) return 0;
     BundleRays bundle;
     load_rays(rays, count, bundle);
     if (bundle.count < kLeastBundle) return 0;
     scene.cache->refresh(context);
     return trace_bundle(scene, context, bundle, hits) ? bundle.count : 0;
+}
+
+/// Nearest hits of rays that are no bundle.
+void trace_others(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
+                  cpu::TraceHit* hits, size_t count) {
+    trace_rays<Query::closest>(scene, context, rays, count, [&](size_t k, const cpu::TraceHit& hit, bool) {
+        hits[k] = hit;
+        hits[k].bias = uint8_t(rays[k].bias);
+    });
 }
 
 void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
@@ -80,13 +93,26 @@ void closest_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const
         size_t size = trace_front(scene, context, rays + begin, hits + begin, count - begin);
         if (size == 0) {
             size = HWY_MIN(size_t(kBundleSize), count - begin);
-            trace_rays<Query::closest>(scene, context, rays + begin, size,
-                                       [&](size_t k, const cpu::TraceHit& hit, bool) {
-                                           hits[begin + k] = hit;
-                                           hits[begin + k].bias = uint8_t(rays[begin + k].bias);
-                                       });
+            trace_others(scene, context, rays + begin, hits + begin, size);
         }
         begin += size;
+    }
+}
+
+void camera_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::CameraPixels& pixels,
+                 cpu::TraceRay* rays, cpu::TraceHit* hits) {
+    for (size_t begin = 0; begin < pixels.count; begin += kBundleSize) {
+        const uint32_t size = uint32_t(HWY_MIN(size_t(kBundleSize), pixels.count - begin));
+        BundleRays bundle;
+        load_rays(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
+        scene.cache->refresh(context);
+        if (size >= kLeastBundle && may_trace_bundles(scene) &&
+            trace_bundle(scene, context, bundle, hits + begin))
+            continue;
+        cpu::TraceRay aimed[kBundleSize];
+        for (uint32_t k = 0; k < size; ++k)
+            aimed[k].origin = bundle.origin, aimed[k].direction = bundle.direction_of(k);
+        trace_others(scene, context, aimed, hits + begin, size);
     }
 }
 
@@ -122,13 +148,11 @@ void evaluate_cells(const Surface& surface, const cpu::PatchCells& cells, Vec3f*
 } // namespace
 
 const cpu::Kernels& kernels(const char* name) {
-    static const cpu::Kernels kKernels{name,
-                                       closest_hits,
-                                       any_hits,
-                                       build_tree,
-                                       find_box,
-                                       evaluate_cells,
-                                       {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
+    static const cpu::Kernels kKernels{
+        name,           closest_hits,
+        camera_hits,    any_hits,
+        build_tree,     find_box,
+        evaluate_cells, {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

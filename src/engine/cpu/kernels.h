@@ -8,6 +8,7 @@
 #include "engine/cpu/open_nodes.h"
 #include "engine/cpu/polygon_tree.h"
 #include "engine/cpu/tracer.h"
+#include "math/scalar.h"
 #include "structures/wide_bvh.h"
 
 namespace relief::cpu {
@@ -43,10 +44,20 @@ struct PatchCells {
     uint32_t cell_x, cell_y, cell_count;
 };
 
+/// Positions in the picture of a pinhole camera.
+struct CameraPixels {
+    const scalar::CameraFrame& camera;
+    const Vec2f* positions;
+    size_t count;
+};
+
 struct Kernels {
     const char* name;
     /// Nearest hits of `count` rays; neighbours in runs of 16 may be traced as one packet.
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
+    /// The same of the rays that scalar::make_pinhole_ray aims through each position; neighbours in runs of
+    /// 256. They are written to `rays` unless it is null.
+    void (*camera_hits)(const SceneView&, TraceContext&, const CameraPixels&, TraceRay* rays, TraceHit*);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
     BuildTreeFunction build_tree;
     /// Holds a displaced patch at `level`, at most kTileLevel, and below, whatever the levels of its edges.

@@ -61,6 +61,7 @@ class TileTracer {
     void trace_sample(int index);
 
   private:
+    bool is_pinhole() const { return camera_.aperture_radius == 0; }
     void start_paths();
     void trace_paths();
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
@@ -157,21 +158,19 @@ void TileTracer::start_paths() {
         active_[i] = i;
     }
     rays_.resize(paths_.size());
-    if (camera_.aperture_radius == 0) {
-        tracer_.shading_kernels().aim_rays(camera_, places_.data(), places_.size(), rays_.data());
-    } else {
-        for (size_t i = 0; i < paths_.size(); ++i) {
-            const scalar::CameraRay ray =
-                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
-            rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
-        }
+    for (size_t i = 0; i < paths_.size() && !is_pinhole(); ++i) {
+        const scalar::CameraRay ray = scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
+        rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
     }
     counters_.camera_rays += paths_.size();
 }
 
 void TileTracer::trace_paths() {
     hits_.resize(rays_.size());
-    tracer_.closest_hits(rays_, hits_, depth_);
+    if (depth_ == 0 && is_pinhole())
+        tracer_.camera_hits(camera_, places_, rays_, hits_);
+    else
+        tracer_.closest_hits(rays_, hits_, depth_);
     if (!footprints_) return;
     for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
 }

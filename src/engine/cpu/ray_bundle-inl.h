@@ -15,6 +15,7 @@
 #include <cstddef>
 
 #include "engine/cpu/bottom_build-inl.h"
+#include "engine/cpu/camera_rays-inl.h"
 #include "engine/cpu/ray_lanes-inl.h"
 #include "engine/cpu/ray_state-inl.h"
 
@@ -34,13 +35,14 @@ inline constexpr float kWidestWindow = 1e4f;
 
 /// What the spaces of all objects share: the rays, and what they met so far.
 struct BundleRays {
-    const cpu::TraceRay* world;
     cpu::TraceHit* hits;
-    uint32_t count;
+    uint32_t count, bias;
+    Vec3f origin;
     alignas(64) float t[kBundleSize]; ///< of the nearest hit, or the ray's t_max
     alignas(64) float t_min[kBundleSize];
     alignas(64) float direction[3][kBundleSize];
 
+    Vec3f direction_of(uint32_t k) const { return {direction[0][k], direction[1][k], direction[2][k]}; }
     LaneMask group_mask(uint32_t group) const {
         const uint32_t first = group * kGroupSize;
         return count >= first + kGroupSize ? 0xffffu : count > first ? (1u << (count - first)) - 1 : 0u;
@@ -64,7 +66,7 @@ HWY_INLINE LaneMask load_group(const cpu::TraceRay* world, uint32_t count, const
 
 /// Takes the rays at the front that leave one point together, at most kBundleSize.
 inline void load_rays(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
-    rays.world = world, rays.count = 0;
+    rays.count = 0, rays.bias = world[0].bias, rays.origin = world[0].origin;
     const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
     while (rays.count < most) {
         const uint32_t left = HWY_MIN(most - rays.count, kGroupSize);
@@ -72,6 +74,23 @@ inline void load_rays(const cpu::TraceRay* world, size_t count, BundleRays& rays
         const uint32_t taken = hwy::Num0BitsBelowLS1Bit_Nonzero32(~fits);
         rays.count += taken;
         if (taken < kGroupSize) break;
+    }
+}
+
+/// Aims the rays of a pinhole camera through up to kBundleSize positions in the picture, and writes them to
+/// `written` unless it is null.
+inline void load_rays(const scalar::CameraFrame& camera, const Vec2f* positions, uint32_t count,
+                      cpu::TraceRay* written, BundleRays& rays) {
+    const WideCamera wide_camera(camera);
+    const Lanes16 start(0.0f), end(std::numeric_limits<float>::infinity());
+    rays.count = count, rays.bias = 0, rays.origin = camera.origin;
+    for (uint32_t at = 0; at < count; at += kGroupSize) {
+        const uint32_t size = HWY_MIN(count - at, kGroupSize);
+        const wide::Vec3 direction = wide_camera.aim(positions + at, size);
+        direction.x.store(rays.direction[0] + at), direction.y.store(rays.direction[1] + at);
+        direction.z.store(rays.direction[2] + at);
+        start.store(rays.t_min + at), end.store(rays.t + at);
+        if (written) store_rays(camera.origin, direction, size, written + at);
     }
 }
 
@@ -125,7 +144,7 @@ HWY_INLINE void transform_directions(const BundleRays& rays, const Affine& objec
 HWY_INLINE void choose_plane(const Affine& object_from_world, RayBundle& bundle) {
     const BundleRays& rays = *bundle.rays;
     const auto direction = [&](uint32_t k) {
-        return normalize(transform_vector(object_from_world, rays.world[k].direction));
+        return normalize(transform_vector(object_from_world, rays.direction_of(k)));
     };
     const uint32_t last = rays.count - 1;
     bundle.forward =
@@ -163,7 +182,8 @@ HWY_INLINE bool enter_group(const Lanes16 (&d)[3], uint32_t group, RayBundle& bu
     const Lanes16 squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     if ((less(Lanes16(0.0f), speed) & less_equal(squared * Lanes16(0.25f), speed * speed)) != 0xffff)
         return false;
-    const Lanes16 x = dot_lanes(d, bundle.right) / speed, y = dot_lanes(d, bundle.up) / speed;
+    const Lanes16 closeness = Lanes16(1.0f) / speed;
+    const Lanes16 x = dot_lanes(d, bundle.right) * closeness, y = dot_lanes(d, bundle.up) * closeness;
     const Lanes16 inverse = Lanes16(1.0f) / d[bundle.axis[2]];
     x.store(bundle.x + at), y.store(bundle.y + at), speed.store(bundle.speed + at);
     (d[bundle.axis[0]] * inverse).store(bundle.shear[0] + at);
@@ -190,7 +210,7 @@ HWY_INLINE void make_sides(RayBundle& bundle) {
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
 HWY_INLINE bool enter_space(const Affine& object_from_world, RayBundle& bundle) {
     static constexpr int kMinorAxes[4][2] = {{1, 2}, {2, 0}, {0, 1}, {0, 0}};
-    bundle.origin = transform_point(object_from_world, bundle.rays->world[0].origin);
+    bundle.origin = transform_point(object_from_world, bundle.rays->origin);
     choose_plane(object_from_world, bundle);
     for (uint32_t group = 0; group < kGroupCount; ++group) {
         Lanes16 d[3];

@@ -160,6 +160,22 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
         });
 }
 
+void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
+                         std::span<TraceRay> rays, std::span<TraceHit> hits) const {
+    const Implementation& self = *implementation_;
+    if (self.trees) {
+        self.trace_wide(0, positions.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->camera_hits(view, context, {camera, positions.data(), positions.size()},
+                                      rays.empty() ? nullptr : rays.data(), hits.data());
+        });
+        return;
+    }
+    std::vector<TraceRay> aimed(rays.empty() ? positions.size() : 0);
+    const std::span<TraceRay> all = rays.empty() ? std::span(aimed) : rays;
+    self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
+    closest_hits(all, hits);
+}
+
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
     const Implementation& self = *implementation_;
     const size_t cast = 2 * size_t(depth) + 1;

@@ -9,6 +9,7 @@
 
 #include "engine/engine.h"
 #include "engine/prepared_scene.h"
+#include "math/scalar.h"
 #include "relief/render.h"
 #include "surface/patch_samples.h"
 
@@ -79,6 +80,12 @@ class Tracer {
     /// packets: give neighbours in runs of 16. `depth` says where the statistics count them: bounces behind
     /// the rays.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0) const;
+
+    /// Nearest hits of what a camera without an aperture sees at positions of the picture, in pixels:
+    /// closest_hits of the rays that scalar::make_pinhole_ray aims, bit for bit. Give neighbours in runs of
+    /// 256. The rays are written to `rays`, which has as many places as there are positions, or none.
+    void camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
+                     std::span<TraceRay> rays, std::span<TraceHit> hits) const;
 
     /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0. Counted as shadow rays.
     void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth = 0) const;
