@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <initializer_list>
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "engine/camera_frame.h"
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/tracer.h"
 #include "math/affine.h"
 #include "math/vec.h"
@@ -245,6 +250,67 @@ TEST(Bundle, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) 
                     ASSERT_EQ(count_different(found, whole), 0u)
                         << int(isa) << ", field " << field << " is " << value << ", ray " << index;
                 }
+    }
+}
+
+/// Positions about the middle of a picture of 320 x 180, 16 to a row, some `step` pixels apart.
+std::vector<Vec2f> list_positions(size_t count, float step) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> jitter(0, 1);
+    std::vector<Vec2f> positions;
+    for (size_t k = 0; k < count; ++k)
+        positions.push_back({160 + step * (float(k % 16) - 8 + jitter(random)),
+                             90 + step * (float(k / 16) - float(count / 32) + jitter(random))});
+    return positions;
+}
+
+/// Hits of the camera against those of the rays that it writes, and those against the rays of aim_rays.
+void expect_camera_hits(const cpu::Tracer& tracer, size_t count, const std::string& what, float step = 1) {
+    const scalar::CameraFrame camera = make_camera_frame(tracer.scene());
+    const std::vector<Vec2f> positions = list_positions(count, step);
+    Rays aimed(count), written(count);
+    tracer.shading_kernels().aim_rays(camera, positions.data(), count, aimed.data());
+    Hits seen(count), seen_alone(count);
+    tracer.camera_hits(camera, positions, written, seen);
+    tracer.camera_hits(camera, positions, {}, seen_alone);
+    EXPECT_EQ(std::memcmp(written.data(), aimed.data(), count * sizeof(cpu::TraceRay)), 0) << what;
+    const Hits expected = trace(tracer, aimed, 1);
+    EXPECT_EQ(count_different(seen, expected), 0u) << what;
+    EXPECT_EQ(count_different(seen_alone, expected), 0u) << what << ", rays not written";
+    const auto is_hit = [](const cpu::TraceHit& hit) { return hit.is_hit(); };
+    if (count >= 300) EXPECT_GT(std::count_if(expected.begin(), expected.end(), is_hit), 30) << what;
+}
+
+TEST(CameraHits, are_those_of_the_rays_through_the_pixels) {
+    for (const Isa isa : test::machine_isas()) {
+        const cpu::Tracer one = make_tracer(rock(), 4, isa), many = make_tracer(make_many_spaces(), 3, isa);
+        for (const size_t count : {1, 15, 16, 63, 64, 100, 255, 256, 257, 300, 1000}) {
+            const std::string name = "isa " + std::to_string(int(isa)) + ", " + std::to_string(count);
+            expect_camera_hits(one, count, name);
+            expect_camera_hits(many, count, name + ", many spaces");
+        }
+    }
+}
+
+TEST(CameraHits, need_no_bundle) {
+    Scene wide = rock();
+    wide.camera.from = {0, 0, 0}, wide.camera.to = {0, 0.1f, 1};
+    wide.camera.fov_degrees = 150; // rays of one bundle diverge too much
+    expect_camera_hits(make_tracer(wide, 3, Isa::best), 320, "wide angle", 10);
+    for (const auto& set : std::initializer_list<std::function<void(RenderSettings&)>>{
+             [](RenderSettings& settings) { settings.leaf = LeafKind::box; },
+             [](RenderSettings& settings) { settings.lod = LodRule::ray; },
+             [](RenderSettings& settings) { settings.traversal = TraversalKind::stack; }}) {
+        RenderSettings settings;
+        settings.width = 320, settings.height = 180, settings.level = 3;
+        set(settings);
+        const cpu::Tracer tracer(prepare_scene(rock(), settings), settings);
+        const scalar::CameraFrame camera = make_camera_frame(tracer.scene());
+        const std::vector<Vec2f> positions = list_positions(400, 1);
+        Rays rays(positions.size());
+        Hits seen(positions.size());
+        tracer.camera_hits(camera, positions, rays, seen);
+        EXPECT_EQ(count_different(seen, trace(tracer, rays, rays.size())), 0u) << int(settings.traversal);
     }
 }
 
