@@ -169,6 +169,25 @@ struct LaneIndices {
         for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::Add(part[p], other.part[p]);
         return r;
     }
+    /// The bits of floats.
+    HWY_INLINE explicit LaneIndices(const Lanes16& bits) {
+        for (size_t p = 0; p < Lanes16::kParts; ++p) part[p] = hn::BitCast(D(), bits.part[p]);
+    }
+    HWY_INLINE Lanes16 bits() const {
+        Lanes16 r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::BitCast(Lanes16::D(), part[p]);
+        return r;
+    }
+    HWY_INLINE Lanes16 to_floats() const {
+        Lanes16 r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(Lanes16::D(), part[p]);
+        return r;
+    }
+    template <int kBits> HWY_INLINE LaneIndices shifted_up() const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftLeft<kBits>(part[p]);
+        return r;
+    }
     template <int kBits> HWY_INLINE LaneIndices shifted_down() const {
         LaneIndices r;
         for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftRight<kBits>(part[p]);
@@ -180,6 +199,16 @@ struct LaneIndices {
         return r;
     }
 };
+
+/// Lanes of `a` where a number is negative, else of `b`.
+HWY_INLINE Lanes16 select_negative(const LaneIndices& number, const Lanes16& a, const Lanes16& b) {
+    Lanes16 r;
+    for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        const auto is_negative = hn::Lt(number.part[p], hn::Zero(LaneIndices::D()));
+        r.part[p] = hn::IfThenElse(hn::RebindMask(Lanes16::D(), is_negative), a.part[p], b.part[p]);
+    }
+    return r;
+}
 
 /// base[index] in every lane.
 HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {

@@ -202,6 +202,40 @@ TEST(Bundle, finds_it_between_triangles_that_reach_far_aside) {
         }
 }
 
+/// Twenty squares in one place, and twenty more a little nearer: each ray meets all of them, more than a
+/// bundle takes note of at a time, and the first of those that are as near as each other counts.
+TEST(Bundle, finds_the_first_of_many_as_near_as_each_other) {
+    Mesh pile;
+    pile.name = "pile";
+    for (const float z : {0.0f, 1e-3f}) {
+        const uint32_t first = uint32_t(pile.positions.size());
+        for (const Vec3f& p : {Vec3f{-1, -1, z}, Vec3f{1, -1, z}, Vec3f{1, 1, z}, Vec3f{-1, 1, z}})
+            pile.positions.push_back(p);
+        for (int k = 0; k < 20; ++k) {
+            pile.face_sizes.push_back(4);
+            for (uint32_t corner = 0; corner < 4; ++corner) pile.position_indices.push_back(first + corner);
+        }
+    }
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.meshes.push_back(pile);
+    for (const float turned : {1.0f, -1.0f, 1.0f}) {
+        Object object;
+        object.name = pile.name;
+        object.world_from_object.rows[0].x = turned, object.world_from_object.rows[1].y = turned;
+        scene.objects.push_back(object);
+    }
+    const Rays rays = make_tiles({0.1f, 0.2f, 3}, {}, 0.2f, 1);
+    for (const Isa isa : test::machine_isas()) {
+        const cpu::Tracer tracer = make_tracer(scene, 0, isa);
+        EXPECT_EQ(expect_same(tracer, rays, "isa " + std::to_string(int(isa))), rays.size());
+        for (const cpu::TraceHit& hit : trace(tracer, rays, kBundle)) {
+            EXPECT_NE(hit.instance, 2u); // as the first one; the second may be nearer by a rounding
+            EXPECT_EQ(hit.patch, 20u);
+        }
+    }
+}
+
 TEST(Bundle, finds_the_same_triangles_on_a_tessellated_surface) {
     for (const Isa isa : test::machine_isas()) {
         const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 4);

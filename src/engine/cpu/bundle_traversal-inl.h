@@ -29,6 +29,26 @@ struct BundleVisit {
     }
 };
 
+/// Places of hits on the quads of a block.
+struct QuadPlaces {
+    HitPlaces places;
+    int32_t first; ///< cell of the block
+
+    HWY_INLINE QuadPlaces(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block) {
+        uint32_t column = 0, row = 0;
+        cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+        first = int32_t((tree.cell_x + column) | (tree.cell_y + row) << 16);
+        places.patch = LaneIndices(int32_t(visit.patch)), places.levels = visit.levels;
+        places.cell_size = 1.0f / float(1u << visit.level());
+    }
+    /// `upper` is HitPlaces::kUpper or 0. Quads 4 to 7 are those of the second row.
+    HWY_INLINE const HitPlaces& locate(const LaneIndices& quad, uint32_t upper) {
+        places.cell =
+            LaneIndices(int32_t(uint32_t(first) | upper)) + quad.masked(3) + quad.masked(4).shifted_up<14>();
+        return places;
+    }
+};
+
 /// The triangles of a block, for each ray that may meet one.
 HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                      RayBundle& bundle) {
@@ -39,14 +59,8 @@ HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& 
     Window all;
     const PartWindows windows = find_quad_windows(v, bundle, all);
     const LaneTable<16> table[3] = {LaneTable<16>(v[0]), LaneTable<16>(v[1]), LaneTable<16>(v[2])};
-    LaneMask dirty = 0;
-    // Lower triangles come before upper ones in a block.
-    const auto offer = [&](const PairLanes& pairs, uint32_t first, const TriangleTest<16>& test) {
-        offer_pairs(pairs, test, bundle, visit.hit, dirty,
-                    [&](uint32_t quad, float weight_b, float weight_c, cpu::TraceHit& hit) {
-                        locate_in_block(visit.patch, tree, block, first + quad, weight_b, weight_c, hit);
-                    });
-    };
+    BlockHits hits(bundle, visit.hit);
+    QuadPlaces quads(visit.patch, tree, block);
     visit_pairs(
         windows, all, bundle, visit.tested,
         visit.patch.context->counters.blocks, [&](PairList & list) __attribute__((always_inline)) {
@@ -59,10 +73,12 @@ HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& 
             shear_corners(
                 pairs, bundle, [&](int c, int axis) { return table[axis].pick(at[c]); }, corner);
             TriangleTest<16> test;
-            if (test_pairs<1, 2>(pairs, corner, test)) offer(pairs, 0, test);
-            if (test_pairs<2, 3>(pairs, corner, test)) offer(pairs, 8, test);
+            if (test_pairs<1, 2>(pairs, corner, test))
+                hits.note(test, pairs.ray, quads.locate(pairs.part, 0));
+            if (test_pairs<2, 3>(pairs, corner, test))
+                hits.note(test, pairs.ray, quads.locate(pairs.part, HitPlaces::kUpper));
         });
-    update_groups(bundle, dirty);
+    hits.offer();
 }
 
 struct BundleEntry {
@@ -237,8 +253,10 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
     const Table table[3][3] = {{Table(v[0][0]), Table(v[0][1]), Table(v[0][2])},
                                {Table(v[1][0]), Table(v[1][1]), Table(v[1][2])},
                                {Table(v[2][0]), Table(v[2][1]), Table(v[2][2])}};
-    LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {}, dirty = 0;
+    LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {};
     uint64_t count = 0;
+    BlockHits hits(bundle, hit_rays);
+    const Table triangles(Lanes8::load(reinterpret_cast<const float*>(block.triangle)));
     visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
         const PairLanes pairs(list);
         Lanes16 corner[3][3];
@@ -246,13 +264,11 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
             pairs, bundle, [&](int c, int axis) { return table[c][axis].pick(pairs.part); }, corner);
         TriangleTest<16> test;
         if (!test_pairs<1, 2>(pairs, corner, test)) return;
-        offer_pairs(pairs, test, bundle, hit_rays, dirty,
-                    [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
-                        hit.patch = block.triangle[lane] / 2;
-                        locate_on_polygon(block.triangle[lane] % 2 != 0, weight_b, weight_c, hit);
-                    });
+        const LaneIndices triangle(triangles.pick(pairs.part));
+        hits.note(test, pairs.ray,
+                  {triangle.shifted_down<1>(), triangle.masked(1).shifted_up<31>(), 0, 1.0f});
     });
-    update_groups(bundle, dirty);
+    hits.offer();
 }
 
 /// An instance in whose space the rays are no bundle: one after another.
@@ -262,35 +278,68 @@ inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context
         const cpu::TraceRay world{rays.origin, rays.t_min[k], rays.direction_of(k), rays.t[k], rays.bias};
         RayState ray;
         ray.t_min = world.t_min, ray.t_max = world.t_max;
-        ray.hit = rays.hits[k];
+        if (rays.found[k] == kWritten) ray.hit = rays.hits[k];
+        ray.hit.bias = uint8_t(rays.bias);
         ray.instance = instance;
         enter_object(world, scene.instances[instance].object_from_world, ray);
         trace_instance<Query::closest>(scene, context, world, 0, ray);
-        rays.hits[k] = ray.hit, rays.t[k] = ray.t_max;
+        rays.t[k] = ray.t_max;
+        if (!ray.hit.is_hit()) continue;
+        rays.hits[k] = ray.hit, rays.found[k] = kWritten;
     }
 }
 
-/// Everything of one instance. False, with nothing done, where the rays are no bundle in its space.
-inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                           BundleRays& rays) {
-    RayBundle bundle;
-    bundle.rays = &rays, bundle.instance = instance;
-    const Affine& object_from_world = scene.instances[instance].object_from_world;
-    if (!enter_space(object_from_world, bundle)) return false;
-    const uint32_t surface = scene.instances[instance].surface;
+/// Everything of the instance in whose space the bundle is.
+inline void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, RayBundle& bundle) {
+    const uint32_t surface = scene.instances[bundle.instance].surface;
     if (!scene.surfaces[surface].has_displacement) {
         const cpu::PolygonTree& tree = scene.polygon_trees[surface];
         walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window& window) {
             trace_block(tree.blocks[cpu::PolygonNode::leaf_block(leaf)], window, bundle);
         });
-        return true;
+    } else {
+        const WideBvh& tree = scene.surface_trees[surface];
+        context.counters.upper_nodes += walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window&) {
+            const uint32_t first = WideNode::leaf_first(leaf), count = WideNode::leaf_count(leaf);
+            for (uint32_t k = 0; k < count; ++k)
+                trace_patch(scene, context, tree.primitive_at(first + k), bundle);
+        });
     }
-    const WideBvh& tree = scene.surface_trees[surface];
-    context.counters.upper_nodes += walk_bundle(tree.nodes, bundle, [&](uint32_t leaf, const Window&) {
-        const uint32_t first = WideNode::leaf_first(leaf), count = WideNode::leaf_count(leaf);
-        for (uint32_t k = 0; k < count; ++k)
-            trace_patch(scene, context, tree.primitive_at(first + k), bundle);
-    });
+    write_hits(bundle);
+}
+
+/// The same from another space. False, with nothing done, where the rays are no bundle in that of the
+/// instance.
+inline bool enter_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                           BundleRays& rays) {
+    RayBundle bundle;
+    bundle.rays = &rays, bundle.instance = instance;
+    if (!enter_space(scene.instances[instance].object_from_world, bundle)) return false;
+    trace_instance(scene, context, bundle);
+    return true;
+}
+
+/// Everything of all instances, into found and hits. False where the rays are no bundle.
+inline bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays) {
+    if (scene.instance_count == 1) return enter_instance(scene, context, 0, rays);
+    RayBundle world;
+    world.rays = &rays;
+    if (!enter_space(Affine{}, world)) return false;
+    const auto trace = [&](uint32_t instance) {
+        if (scene.instances[instance].is_in_place) {
+            world.instance = instance;
+            return trace_instance(scene, context, world);
+        }
+        if (!enter_instance(scene, context, instance, rays)) trace_singly(scene, context, instance, rays);
+        for (uint32_t group = 0; group < kGroupCount; ++group)
+            world.group_farthest[group] = find_farthest(world, group);
+        update_farthest(world);
+    };
+    context.counters.upper_nodes +=
+        walk_bundle(scene.instance_tree->nodes, world, [&](uint32_t leaf, const Window&) {
+            const uint32_t first = WideNode::leaf_first(leaf), size = WideNode::leaf_count(leaf);
+            for (uint32_t k = 0; k < size; ++k) trace(scene.instance_tree->primitive_at(first + k));
+        });
     return true;
 }
 
@@ -299,26 +348,14 @@ inline bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
 inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays,
                          cpu::TraceHit* hits) {
     fill_rest(rays);
+    HitLog log;
+    rays.hits = hits, rays.log = &log;
+    std::fill_n(rays.found, kBundleSize, kNothing);
+    if (!trace_instances(scene, context, rays)) return false;
     cpu::TraceHit none;
     none.bias = uint8_t(rays.bias);
-    std::fill_n(hits, rays.count, none);
-    rays.hits = hits;
-    if (scene.instance_count == 1) return trace_instance(scene, context, 0, rays);
-    RayBundle bundle;
-    bundle.rays = &rays;
-    if (!enter_space(Affine{}, bundle)) return false;
-    context.counters.upper_nodes +=
-        walk_bundle(scene.instance_tree->nodes, bundle, [&](uint32_t leaf, const Window&) {
-            const uint32_t first = WideNode::leaf_first(leaf), size = WideNode::leaf_count(leaf);
-            for (uint32_t k = 0; k < size; ++k) {
-                const uint32_t instance = scene.instance_tree->primitive_at(first + k);
-                if (!trace_instance(scene, context, instance, rays))
-                    trace_singly(scene, context, instance, rays);
-            }
-            for (uint32_t group = 0; group < kGroupCount; ++group)
-                bundle.group_farthest[group] = find_farthest(bundle, group);
-            update_farthest(bundle);
-        });
+    for (uint32_t k = 0; k < rays.count; ++k)
+        if (rays.found[k] == kNothing) hits[k] = none;
     return true;
 }
 

@@ -33,12 +33,19 @@ inline constexpr float kDepthSlack = 1 - 2e-5f;
 /// Beyond this, on the plane, a point is so far aside that its depth may have lost its sign to rounding.
 inline constexpr float kWidestWindow = 1e4f;
 
+struct HitLog;
+
+/// What a ray may have found instead of a hit of the log: nothing, or what lies in its place already.
+inline constexpr uint32_t kWritten = 0xfffffffe, kNothing = 0xffffffff;
+
 /// What the spaces of all objects share: the rays, and what they met so far.
 struct BundleRays {
-    cpu::TraceHit* hits;
+    cpu::TraceHit* hits; ///< those of rays with kWritten are there
+    HitLog* log;
     uint32_t count, bias;
     Vec3f origin;
-    alignas(64) float t[kBundleSize]; ///< of the nearest hit, or the ray's t_max
+    alignas(64) uint32_t found[kBundleSize]; ///< number in the log, kWritten or kNothing
+    alignas(64) float t[kBundleSize];        ///< of the nearest hit, or the ray's t_max
     alignas(64) float t_min[kBundleSize];
     alignas(64) float direction[3][kBundleSize];
 
@@ -130,6 +137,16 @@ HWY_INLINE float find_farthest(const RayBundle& bundle, uint32_t group) {
 
 HWY_INLINE void update_farthest(RayBundle& bundle) {
     bundle.farthest = reduce_max(Lanes16::load(bundle.group_farthest));
+}
+
+/// Depths of groups after hits.
+HWY_INLINE void update_groups(RayBundle& bundle, LaneMask dirty) {
+    if (!dirty) return;
+    for (; dirty; dirty &= dirty - 1) {
+        const uint32_t group = uint32_t(__builtin_ctz(dirty));
+        bundle.group_farthest[group] = find_farthest(bundle, group);
+    }
+    update_farthest(bundle);
 }
 
 /// Directions of sixteen rays in an object's space, by the operations of transform_vector.

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "engine/cpu/hit_log-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -211,16 +212,6 @@ HWY_INLINE void visit_pairs(const PartWindows& part, const Window& all, const Ra
     if (pairs.count > 0) trace_pairs(pairs);
 }
 
-/// Depths of groups after hits.
-HWY_INLINE void update_groups(RayBundle& bundle, LaneMask dirty) {
-    if (!dirty) return;
-    for (; dirty; dirty &= dirty - 1) {
-        const uint32_t group = uint32_t(__builtin_ctz(dirty));
-        bundle.group_farthest[group] = find_farthest(bundle, group);
-    }
-    update_farthest(bundle);
-}
-
 /// Sixteen rays and the parts that they may meet.
 struct PairLanes {
     LaneIndices ray, part;
@@ -267,27 +258,6 @@ HWY_INLINE bool test_pairs(const PairLanes& pairs, const Lanes16 (&corner)[3][kC
     const Lanes16 sum = test.u + test.v + test.w;
     test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
     return (test.mask &= not_equal(sum, Lanes16(0.0f))) != 0;
-}
-
-/// Takes over what is nearest among the hits of pairs, by the operations of test_distances; locate(part,
-/// weight_b, weight_c, hit) as in offer_hit. Sets the bits of rays with hits, and of their groups in `dirty`.
-template <class Locate>
-HWY_INLINE void offer_pairs(const PairLanes& pairs, const TriangleTest<16>& test, RayBundle& bundle,
-                            LaneMask (&hit_rays)[kGroupCount], LaneMask& dirty, Locate locate) {
-    TriangleHits<16> hits(test);
-    alignas(64) int32_t ray[16], part[16];
-    pairs.ray.store(ray), pairs.part.store(part);
-    for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
-        const uint32_t lane = uint32_t(__builtin_ctz(mask)), k = uint32_t(ray[lane]);
-        hits.t[lane] *= bundle.shear[2][k];
-        if (!(bundle.rays->t_min[k] < hits.t[lane] && hits.t[lane] <= bundle.rays->t[k])) continue;
-        hit_rays[k / kGroupSize] |= 1u << k % kGroupSize;
-        dirty |= 1u << k / kGroupSize;
-        offer_hit(bundle.rays->hits[k], bundle.rays->t[k], bundle.instance, hits, lane,
-                  [&](uint32_t, float weight_b, float weight_c, cpu::TraceHit& hit) {
-                      locate(uint32_t(part[lane]), weight_b, weight_c, hit);
-                  });
-    }
 }
 
 } // namespace relief::HWY_NAMESPACE

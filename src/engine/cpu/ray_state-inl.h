@@ -287,20 +287,20 @@ HWY_INLINE void shear_vertices(Load load, const RayState& ray, Lanes<W>& x, Lane
     y = (load(ray.axis[1]) - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
 }
 
-/// Takes over a hit if it is nearer, or as near and lower in (instance, patch, j, i, upper): the result then
-/// does not depend on the order in which triangles were met. `reach` becomes its distance.
-HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, const cpu::TraceHit& hit) {
+/// The order of hits that are as near as each other: (instance, patch, j, i, upper). The result then does not
+/// depend on the order in which triangles were met.
+HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
     const auto rank = [](const cpu::TraceHit& h) {
         return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper;
     };
-    if (hit.t == best.t) {
-        if (hit.instance != best.instance ? hit.instance > best.instance
-            : hit.patch != best.patch     ? hit.patch > best.patch
-                                          : rank(hit) >= rank(best))
-            return;
-    } else if (!(hit.t < best.t)) {
-        return;
-    }
+    return a.instance != b.instance ? a.instance < b.instance
+           : a.patch != b.patch     ? a.patch < b.patch
+                                    : rank(a) < rank(b);
+}
+
+/// Takes over a hit if it is nearer, or as near and first in that order. `reach` becomes its distance.
+HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, const cpu::TraceHit& hit) {
+    if (hit.t == best.t ? !comes_before(hit, best) : !(hit.t < best.t)) return;
     best = hit;
     reach = hit.t;
 }
