@@ -151,6 +151,8 @@ std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t sur
 std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
     validate_scene(scene);
     auto prepared = std::make_shared<PreparedScene>();
+    prepared->warnings = std::move(scene.warnings);
+    for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
     prepared->materials = std::move(scene.materials);
     prepared->materials.emplace_back();
     prepared->lights = std::move(scene.lights);
@@ -158,8 +160,6 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     prepared->camera = scene.camera;
     prepared->mesh_count = uint32_t(scene.meshes.size());
     prepared->width = settings.width, prepared->height = settings.height;
-    prepared->warnings = std::move(scene.warnings);
-    for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
 
     std::map<SurfaceKey, uint32_t> surface_of_key;
     std::vector<uint32_t> first_object;

@@ -58,10 +58,31 @@ void warn_of_creases(const Mesh& mesh, std::vector<std::string>& warnings) {
                     mesh.name, sharpest, subdivision.level, level));
 }
 
+bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
+
+void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
+    if (scene.objects.empty()) {
+        warnings.emplace_back("the scene has no objects; an empty picture is rendered");
+        return;
+    }
+    const bool has_light =
+        (scene.environment && scene.environment->strength > 0 && !is_black(scene.environment->color)) ||
+        std::any_of(scene.lights.begin(), scene.lights.end(),
+                    [](const Light& light) { return light.strength > 0 && !is_black(light.color); }) ||
+        std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+            return object.material != kNoIndex && !is_black(scene.materials[object.material].emission);
+        });
+    if (!has_light)
+        warnings.emplace_back(
+            "nothing in the scene gives light, and the picture is black; add an environment, a "
+            "light or an emission");
+}
+
 } // namespace
 
 std::vector<std::string> find_scene_warnings(const Scene& scene) {
     std::vector<std::string> warnings;
+    warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
     std::set<uint32_t> meshes;
     for (const Object& object : scene.objects) {

@@ -8,8 +8,8 @@
 
 namespace relief {
 
-/// Tiles that displaced meshes use and no file has; creases of smooth bases that their level cannot show.
-/// The scene must be valid.
+/// Nothing to be seen or nothing that gives light; tiles that displaced meshes use and no file has; creases
+/// of smooth bases that their level cannot show. The scene must be valid.
 std::vector<std::string> find_scene_warnings(const Scene& scene);
 
 } // namespace relief

@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/prepared_scene.h"
 #include "relief/error.h"
@@ -15,6 +19,7 @@ std::vector<std::string> prepare_with_crease(float sharpness, int level, CreaseR
     Scene scene = test::make_body_scene(
         test::make_torus(4, 6),
         test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
     scene.meshes[0].creases = {{0, 1, sharpness}, {1, 2, kInfiniteSharpness}};
     scene.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
     scene.meshes[0].subdivision.level = level;
@@ -32,12 +37,39 @@ TEST(Warnings, name_the_level_that_shows_a_semi_sharp_crease_as_it_is) {
     EXPECT_TRUE(prepare_with_crease(2.5f, 1, CreaseRule::ignore).empty());
     EXPECT_TRUE(prepare_with_crease(0, 0, CreaseRule::obey).empty());
     Scene plain = test::make_body_scene(test::make_torus(4, 6), {});
+    plain.environment.emplace();
     plain.objects[0].displacement = kNoIndex, plain.displacements.clear();
     plain.meshes[0].creases = {{0, 1, 2.5f}};
     plain.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
     plain.meshes[0].subdivision.level = 1;
     EXPECT_TRUE(prepare_scene(std::move(plain), {})->warnings.empty()) << "no patch is fitted";
     EXPECT_NE(prepare_with_crease(0.5f, 0, CreaseRule::obey)[0].find("level 1 shows"), std::string::npos);
+}
+
+TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
+    const auto prepare = [](const std::function<void(Scene&)>& change) {
+        Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+        scene.objects[0].displacement = kNoIndex, scene.displacements.clear();
+        scene.lights.clear(), scene.environment.reset();
+        scene.materials.assign(1, Material{}), scene.objects[0].material = 0;
+        change(scene);
+        return prepare_scene(std::move(scene), {})->warnings;
+    };
+    const auto expect_dark = [&](const std::function<void(Scene&)>& change, size_t count) {
+        const std::vector<std::string> warnings = prepare(change);
+        ASSERT_EQ(warnings.size(), count);
+        if (count > 0) EXPECT_NE(warnings[0].find("nothing in the scene gives light"), std::string::npos);
+    };
+    expect_dark([](Scene&) {}, 1);
+    expect_dark([](Scene& scene) { scene.objects[0].material = kNoIndex; }, 1);
+    expect_dark([](Scene& scene) { scene.materials[0].emission = {0, 0.1f, 0}; }, 0);
+    expect_dark([](Scene& scene) { scene.lights.emplace_back(); }, 0);
+    expect_dark([](Scene& scene) { scene.lights.emplace_back().strength = 0; }, 1);
+    expect_dark([](Scene& scene) { scene.environment.emplace(); }, 0);
+    expect_dark([](Scene& scene) { scene.environment.emplace().color = {0, 0, 0}; }, 1);
+    const std::vector<std::string> empty = prepare([](Scene& scene) { scene.objects.clear(); });
+    ASSERT_EQ(empty.size(), 1u);
+    EXPECT_NE(empty[0].find("no objects"), std::string::npos);
 }
 
 TEST(Prepare, tells_the_pixel_of_a_nan_whatever_the_filter) {
@@ -75,6 +107,7 @@ TEST(Warnings, name_the_tiles_that_have_no_file) {
     Scene scene = test::make_body_scene(
         test::make_torus(4, 6),
         test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
     EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
     scene.displacements[0].is_udim = true;
     EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());

@@ -166,7 +166,9 @@ std::vector<std::string> render_for_warnings(const Mesh& mesh, Displacement map,
     map.space = space;
     RenderSettings settings;
     settings.width = settings.height = 4, settings.spp = 1, settings.bounces = 0;
-    return render(make_body_scene(mesh, std::move(map)), settings).statistics.warnings;
+    Scene scene = make_body_scene(mesh, std::move(map));
+    scene.environment.emplace();
+    return render(std::move(scene), settings).statistics.warnings;
 }
 
 TEST(MapConvention, a_render_warns_of_object_space_that_is_read_as_tangent) {
