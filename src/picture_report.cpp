@@ -31,13 +31,14 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
     }
 }
 
-void add_metadata(const RenderSettings& settings, uint64_t scene_hash, Image& image) {
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {
     image.metadata["Software"] = "Relief " RELIEF_VERSION;
     image.metadata["relief:version"] = RELIEF_VERSION;
     image.metadata["relief:seed"] = std::to_string(settings.seed);
     image.metadata["relief:samples"] =
         fmt::format("{}:{}", settings.first_sample, settings.first_sample + settings.spp);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+    if (!is_complete) image.metadata["relief:interrupted"] = "yes";
 }
 
 } // namespace relief

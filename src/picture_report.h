@@ -9,7 +9,8 @@ namespace relief {
 /// Adds what the scene holds: meshes, patches, texels and their bytes.
 void count_scene(const PreparedScene& scene, Statistics& statistics);
 
-/// Writes version, seed, samples and the scene's hash into the header.
-void add_metadata(const RenderSettings& settings, uint64_t scene_hash, Image& image);
+/// Writes version, seed, samples, the scene's hash and whether pixels lack some of the samples into the
+/// header.
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image);
 
 } // namespace relief

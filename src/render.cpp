@@ -42,7 +42,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         engine.reset(), prepared.reset();
         result.image = film.resolve();
     });
-    add_metadata(settings, scene_hash, result.image);
+    add_metadata(settings, scene_hash, result.is_complete, result.image);
     statistics.total_s = total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;

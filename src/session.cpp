@@ -325,7 +325,7 @@ RenderResult Session::render(RenderObserver* observer) {
         count_scene(*self.prepared, statistics);
         result.image = self.film->resolve();
     });
-    add_metadata(self.settings, self.scene_hash, result.image);
+    add_metadata(self.settings, self.scene_hash, result.is_complete, result.image);
     statistics.total_s = statistics.prepare_s + total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;

@@ -14,6 +14,7 @@ namespace relief {
 namespace {
 
 const char* const kSamplesKey = "relief:samples";
+const char* const kInterruptedKey = "relief:interrupted"; ///< pixels lack some of these samples
 
 /// One part with its sample range and where its counts stand.
 struct Part {
@@ -56,6 +57,12 @@ Part make_part(const Image& image, size_t index) {
     if (!is_good)
         throw_bad(index, fmt::format("no sample range \"A:B\" in the header entry {}", kSamplesKey),
                   "merge joins EXR files written by relief render");
+    if (!part.samples_channel && image.metadata.contains(kInterruptedKey))
+        throw_bad(
+            index,
+            fmt::format("its render was interrupted: how many of the samples {} a pixel has, it does not say",
+                        range),
+            "render it again, or all parts with --layers samples");
     return part;
 }
 
@@ -243,6 +250,8 @@ Image merge_images(std::span<const Image> images) {
     }
     Image result = make_empty_union(images);
     result.metadata[kSamplesKey] = fmt::format("{}:{}", first, last);
+    for (const Image& image : images)
+        if (image.metadata.contains(kInterruptedKey)) result.metadata[kInterruptedKey] = "yes";
     const ChannelRules rules(result);
     std::vector<PartPixel> pixels;
     float* target = result.pixels.data();

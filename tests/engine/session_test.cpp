@@ -305,7 +305,9 @@ TEST(Session, goes_on_where_it_was_interrupted) {
     for (const int limit : {1, 5, 20, 1000000}) {
         Interrupter observer;
         observer.limit = limit;
-        EXPECT_EQ(session.render(&observer).is_complete, limit == 1000000);
+        const RenderResult result = session.render(&observer);
+        EXPECT_EQ(result.is_complete, limit == 1000000);
+        EXPECT_EQ(result.image.metadata.contains("relief:interrupted"), !result.is_complete);
     }
     const MapEdit edit = make_edit(30, 20, 20, 12, 0.12f);
     session.edit(edit);

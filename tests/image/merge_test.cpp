@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -106,6 +107,23 @@ TEST(MergeImages, weighs_each_pixel_by_its_own_samples) {
     const Image merged = merge_images(std::array{a, b});
     EXPECT_FLOAT_EQ(merged.at(2, 3, red), 18);
     EXPECT_FLOAT_EQ(merged.at(2, 3, samples), 5);
+}
+
+TEST(MergeImages, refuses_interrupted_parts_that_do_not_say_how_many_samples_they_have) {
+    Image a = make_part({0, 0, 4, kHeight}, 0, 4), b = make_part({0, 0, 4, kHeight}, 4, 8);
+    EXPECT_FALSE(merge_images(std::array{a, b}).metadata.contains("relief:interrupted"));
+    b.metadata["relief:interrupted"] = "yes";
+    EXPECT_TRUE(merge_images(std::array{a, b}).metadata.contains("relief:interrupted"));
+    a.channels[10] = b.channels[10] = "other.Y";
+    try {
+        merge_images(std::array{a, b});
+        ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.where(), "part 2");
+        EXPECT_NE(std::string(error.what()).find("interrupted"), std::string::npos) << error.what();
+    }
+    b.metadata.erase("relief:interrupted");
+    EXPECT_NO_THROW(merge_images(std::array{a, b}));
 }
 
 TEST(MergeImages, keeps_the_bits_of_pixels_that_one_part_covers) {
