@@ -63,7 +63,8 @@ struct RenderSettings {
 };
 
 /// Rays of one kind at one depth of their paths, and what casting them took, in seconds of the whole machine
-/// (Vulkan) or summed over threads (CPU).
+/// (Vulkan) or summed over threads (CPU). The top of camera rays includes aiming them, that of all the making
+/// of hits from what was met.
 struct CastStatistics {
     int depth = 0;          ///< 0: camera rays and their shadow rays
     bool is_shadow = false; ///< towards lights

@@ -152,6 +152,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     validate_scene(scene);
     auto prepared = std::make_shared<PreparedScene>();
     prepared->warnings = std::move(scene.warnings);
+    // Before anything else is moved out of the scene.
     for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
     prepared->materials = std::move(scene.materials);
     prepared->materials.emplace_back();

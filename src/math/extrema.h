@@ -1,4 +1,4 @@
-// Least and greatest values of many texels, by the widest registers of the machine.
+// Least and greatest values of many texels, four to sixteen numbers at a time, as the machine has registers.
 #pragma once
 
 #include <array>

@@ -145,7 +145,7 @@ template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes
 
 using Lanes16 = Lanes<16>;
 
-/// Sixteen whole numbers, not negative, that say where lanes come from.
+/// Sixteen whole numbers: places that lanes come from, which are not negative, or words to be stored.
 struct LaneIndices {
     using D = hn::Rebind<int32_t, Lanes16::D>;
     hn::Vec<D> part[Lanes16::kParts];

@@ -114,6 +114,7 @@ TEST(Lanes, are_the_same_on_every_instruction_set) {
         HWY_DYNAMIC_DISPATCH(check_all)();
     }
     hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 } // namespace

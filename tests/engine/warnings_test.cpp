@@ -69,7 +69,7 @@ TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
     expect_dark([](Scene& scene) { scene.environment.emplace().color = {0, 0, 0}; }, 1);
     const std::vector<std::string> empty = prepare([](Scene& scene) { scene.objects.clear(); });
     ASSERT_EQ(empty.size(), 1u);
-    EXPECT_NE(empty[0].find("no objects"), std::string::npos);
+    EXPECT_NE(empty[0].find("no objects; only its environment"), std::string::npos);
 }
 
 TEST(Prepare, tells_the_pixel_of_a_nan_whatever_the_filter) {

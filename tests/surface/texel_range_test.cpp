@@ -1,6 +1,7 @@
 #include "surface/texel_range.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,18 @@ ChannelRange find_one_by_one(const Texture& texture, const TexelRectangle& recta
     return range;
 }
 
-TEST(TexelRange, is_that_of_the_texels_one_by_one) {
+/// Calls check() once for each instruction set of this machine.
+template <class Check> void check_on_every_target(const Check& check) {
+    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        check();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+void expect_ranges_of_texels() {
     std::mt19937 random(4);
     for (const Coding coding : {Coding::floats, Coding::halves}) {
         const Texture texture = make_noise(coding);
@@ -63,7 +75,7 @@ TEST(TexelRange, is_that_of_the_texels_one_by_one) {
     }
 }
 
-TEST(TexelRange, is_nothing_where_a_channel_is_not_finite) {
+void expect_nothing_where_a_channel_is_not_finite() {
     const TexelRectangle all{0, 0, kWidth - 1, kHeight - 1};
     for (const uint16_t bits : {0x7c00, 0xfc00, 0x7e00, 0xfe00, 0x7c01, 0xffff})
         for (const uint32_t texel : {0u, 36u, 37u, 500u, kWidth * kHeight - 1})
@@ -74,6 +86,12 @@ TEST(TexelRange, is_nothing_where_a_channel_is_not_finite) {
                 EXPECT_EQ(find_texel_range(halves, all).has_value(), channel == 3) << bits << " at " << texel;
                 EXPECT_EQ(find_texel_range(floats, all).has_value(), channel == 3) << bits << " at " << texel;
             }
+}
+
+TEST(TexelRange, is_that_of_the_texels_one_by_one) { check_on_every_target(expect_ranges_of_texels); }
+
+TEST(TexelRange, is_nothing_where_a_channel_is_not_finite) {
+    check_on_every_target(expect_nothing_where_a_channel_is_not_finite);
 }
 
 } // namespace

@@ -7,6 +7,10 @@
 #define RELIEF_BUNDLE_TRAVERSAL_INL_H
 #endif
 
+#include <cstddef>
+
+#include "base/check.h"
+#include "engine/cpu/hit_log-inl.h"
 #include "engine/cpu/packet_traversal-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
 #include "engine/cpu/ray_pairs-inl.h"
@@ -256,6 +260,7 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
     LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {};
     uint64_t count = 0;
     BlockHits hits(bundle, hit_rays);
+    static_assert(offsetof(cpu::TriangleBlock, triangle) % 32 == 0);
     const Table triangles(Lanes8::load(reinterpret_cast<const float*>(block.triangle)));
     visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
         const PairLanes pairs(list);
@@ -291,6 +296,7 @@ inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context
 
 /// Everything of the instance in whose space the bundle is.
 inline void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, RayBundle& bundle) {
+    DCHECK(bundle.rays->log->count == 0);
     const uint32_t surface = scene.instances[bundle.instance].surface;
     if (!scene.surfaces[surface].has_displacement) {
         const cpu::PolygonTree& tree = scene.polygon_trees[surface];

@@ -1,6 +1,6 @@
 // Hits of a bundle as they are found: a ray keeps the number of its nearest one in a log, and what a TraceHit
-// says besides is worked out sixteen at a time when the bundle is done. Most rays meet more than one hit on
-// the way to the nearest.
+// says besides is worked out sixteen at a time when the bundle is done with an instance, or the log is full.
+// Most rays meet more than one hit on the way to the nearest. All of the log is of one instance.
 #if defined(RELIEF_HIT_LOG_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_HIT_LOG_INL_H
 #undef RELIEF_HIT_LOG_INL_H
@@ -68,7 +68,7 @@ static_assert(sizeof(cpu::TraceHit) == 32 && offsetof(cpu::TraceHit, t) == 0 &&
               offsetof(cpu::TraceHit, is_upper) == 24 && offsetof(cpu::TraceHit, bias) == 25 &&
               offsetof(cpu::TraceHit, levels) == 28);
 
-/// Hits first..first + 15 of the log, by the operations of locate_in_block.
+/// Hits first..first + 15 of the log, by the operations of locate_in_block and locate_on_polygon.
 HWY_INLINE void make_hits(const RayBundle& bundle, HitLog& log, uint32_t first) {
     const Lanes16 v = Lanes16::load(log.v + first), w = Lanes16::load(log.w + first);
     const Lanes16 sum = Lanes16::load(log.u + first) + v + w;

@@ -106,9 +106,10 @@ void camera_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const 
         BundleRays bundle;
         load_rays(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
         scene.cache->refresh(context);
-        if (size >= kLeastBundle && may_trace_bundles(scene) &&
-            trace_bundle(scene, context, bundle, hits + begin))
-            continue;
+        // make_pinhole_ray leaves nothing infinite in a direction; the origin is the same for all.
+        const bool may_be_bundle = size >= kLeastBundle && may_trace_bundles(scene) &&
+                                   relief::can_hit(cpu::TraceRay{bundle.origin, 0, bundle.direction_of(0)});
+        if (may_be_bundle && trace_bundle(scene, context, bundle, hits + begin)) continue;
         cpu::TraceRay aimed[kBundleSize];
         for (uint32_t k = 0; k < size; ++k)
             aimed[k].origin = bundle.origin, aimed[k].direction = bundle.direction_of(k);

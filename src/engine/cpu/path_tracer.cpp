@@ -158,10 +158,12 @@ void TileTracer::start_paths() {
         active_[i] = i;
     }
     rays_.resize(paths_.size());
-    for (size_t i = 0; i < paths_.size() && !is_pinhole(); ++i) {
-        const scalar::CameraRay ray = scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
-        rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
-    }
+    if (!is_pinhole())
+        for (size_t i = 0; i < paths_.size(); ++i) {
+            const scalar::CameraRay ray =
+                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
+            rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
+        }
     counters_.camera_rays += paths_.size();
 }
 

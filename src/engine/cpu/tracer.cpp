@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/check.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/cpu/kernels.h"
@@ -162,6 +163,8 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
 
 void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
                          std::span<TraceRay> rays, std::span<TraceHit> hits) const {
+    DCHECK(camera.aperture_radius == 0 && hits.size() == positions.size());
+    DCHECK(rays.empty() || rays.size() == positions.size());
     const Implementation& self = *implementation_;
     if (self.trees) {
         self.trace_wide(0, positions.size(), [&](const SceneView& view, TraceContext& context) {
@@ -172,8 +175,10 @@ void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2
     }
     std::vector<TraceRay> aimed(rays.empty() ? positions.size() : 0);
     const std::span<TraceRay> all = rays.empty() ? std::span(aimed) : rays;
-    self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
-    closest_hits(all, hits);
+    self.trace_batch(0, all.size(), [&](TraceContext& context) {
+        self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
+        self.walk.closest_hits(self.make_walk_view(), context, all.data(), hits.data(), all.size());
+    });
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
