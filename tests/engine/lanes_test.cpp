@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/cpu/ray_state-inl.h"
+#include "support/targets.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -108,13 +109,7 @@ namespace {
 HWY_EXPORT(check_all);
 
 TEST(Lanes, are_the_same_on_every_instruction_set) {
-    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        HWY_DYNAMIC_DISPATCH(check_all)();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    test::check_on_every_target([] { HWY_DYNAMIC_DISPATCH(check_all)(); });
 }
 
 } // namespace

@@ -1,13 +1,13 @@
 #include "surface/texel_range.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "support/targets.h"
 #include "surface/texels.h"
 
 namespace relief {
@@ -45,17 +45,6 @@ ChannelRange find_one_by_one(const Texture& texture, const TexelRectangle& recta
     return range;
 }
 
-/// Calls check() once for each instruction set of this machine.
-template <class Check> void check_on_every_target(const Check& check) {
-    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        check();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
 void expect_ranges_of_texels() {
     std::mt19937 random(4);
     for (const Coding coding : {Coding::floats, Coding::halves}) {
@@ -88,10 +77,10 @@ void expect_nothing_where_a_channel_is_not_finite() {
             }
 }
 
-TEST(TexelRange, is_that_of_the_texels_one_by_one) { check_on_every_target(expect_ranges_of_texels); }
+TEST(TexelRange, is_that_of_the_texels_one_by_one) { test::check_on_every_target(expect_ranges_of_texels); }
 
 TEST(TexelRange, is_nothing_where_a_channel_is_not_finite) {
-    check_on_every_target(expect_nothing_where_a_channel_is_not_finite);
+    test::check_on_every_target(expect_nothing_where_a_channel_is_not_finite);
 }
 
 } // namespace
