@@ -43,7 +43,7 @@ struct QuadPlaces {
         cpu::BottomTree::block_cell(int(tree.level), block, column, row);
         first = int32_t((tree.cell_x + column) | (tree.cell_y + row) << 16);
         places.patch = LaneIndices(int32_t(visit.patch)), places.levels = visit.levels;
-        places.cell_size = 1.0f / float(1u << visit.level());
+        places.cell_size = visit.cell_size();
     }
     /// `upper` is HitPlaces::kUpper or 0. Quads 4 to 7 are those of the second row.
     HWY_INLINE const HitPlaces& locate(const LaneIndices& quad, uint32_t upper) {

@@ -20,6 +20,8 @@ struct PatchVisit {
     uint32_t levels; ///< pack_levels
 
     HWY_INLINE uint32_t level() const { return scalar::packed_patch_level(levels); }
+    /// In (u, v).
+    HWY_INLINE float cell_size() const { return 1.0f / float(1u << level()); }
 };
 
 /// Levels of the surface that a ray sees: the field's lowered by its bias.
@@ -68,7 +70,7 @@ HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& 
                                 uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
-    const float cell_size = 1.0f / float(1u << visit.level());
+    const float cell_size = visit.cell_size();
     hit.patch = visit.patch;
     hit.levels = visit.levels;
     hit.i = uint16_t(tree.cell_x + column + (lane & 3));
@@ -134,7 +136,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
-    const float cell_size = 1.0f / float(1u << visit.level());
+    const float cell_size = visit.cell_size();
     alignas(32) float distance[8];
     entry.store(distance);
     bool has_hit = false;

@@ -11,7 +11,6 @@
 #include <cstring>
 
 #include "base/check.h"
-#include "engine/cpu/hit_log-inl.h"
 #include "engine/cpu/ray_bundle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
