@@ -21,12 +21,13 @@ inline float select(bool condition, float a, float b) { return condition ? a : b
 inline Vec3 select(bool condition, const Vec3& a, const Vec3& b) { return condition ? a : b; }
 inline Vec2 select(bool condition, const Vec2& a, const Vec2& b) { return condition ? a : b; }
 inline uint select(bool condition, uint a, uint b) { return condition ? a : b; }
+/// Whether any lane is true: around what the others do not need.
+inline bool is_any(bool condition) { return condition; }
 inline float abs(float a) { return std::fabs(a); }
 inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
 inline float clamp(float a, float low, float high) { return min(max(a, low), high); }
 inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
-inline float atan(float y, float x) { return std::atan2(y, x); }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
 /// Index of a bit as in GLSL: -1 where there is none.
@@ -42,17 +43,13 @@ using relief::length;
 using relief::max;
 using relief::min;
 using relief::normalize;
-using std::acos;
-using std::atan;
 using std::ceil;
-using std::cos;
 using std::exp;
 using std::exp2;
 using std::floor;
 using std::fma;
 using std::log2;
 using std::pow;
-using std::sin;
 using std::sqrt;
 using std::tan;
 

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "math/lanes-inl.h"
+#include "math/scalar.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE::wide {
@@ -51,10 +52,22 @@ RELIEF_WIDE_LOGIC(operator&&, And)
 RELIEF_WIDE_LOGIC(operator||, Or)
 #undef RELIEF_WIDE_LOGIC
 
+HWY_INLINE Bool operator!(const Bool& a) {
+    Bool r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Not(a.part[p]);
+    return r;
+}
+
 HWY_INLINE LaneMask to_mask(const Bool& b) {
     LaneMask bits = 0;
     for (size_t p = 0; p < Float::kParts; ++p) bits |= to_bits(Float::D(), b.part[p]) << (p * Float::kLanes);
     return bits;
+}
+
+HWY_INLINE bool is_any(const Bool& b) {
+    bool any = false;
+    for (size_t p = 0; p < Float::kParts; ++p) any = any || !hn::AllFalse(Float::D(), b.part[p]);
+    return any;
 }
 
 HWY_INLINE Float select(const Bool& condition, const Float& a, const Float& b) {
@@ -94,6 +107,19 @@ struct Uint {
         for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * Float::kLanes);
         return r;
     }
+    HWY_INLINE void store(uint32_t* aligned) const {
+        for (size_t p = 0; p < Float::kParts; ++p) hn::Store(part[p], D(), aligned + p * Float::kLanes);
+    }
+    /// The whole part of numbers in [0, 2^31).
+    HWY_INLINE explicit Uint(const Float& value) {
+        for (size_t p = 0; p < Float::kParts; ++p)
+            part[p] = hn::BitCast(D(), hn::ConvertTo(hn::RebindToSigned<D>(), value.part[p]));
+    }
+    HWY_INLINE bool is_zero() const {
+        bool all = true;
+        for (const auto& p : part) all = all && hn::AllTrue(D(), hn::Eq(p, hn::Zero(D())));
+        return all;
+    }
     /// Of numbers below 2^31.
     HWY_INLINE explicit operator Float() const {
         Float r;
@@ -112,6 +138,7 @@ using uint = Uint;
     }                                                                                                        \
     HWY_INLINE Uint& assignment(Uint& a, const Uint& b) { return a = name(a, b); }
 RELIEF_WIDE_UINT(operator+, operator+=, Add)
+RELIEF_WIDE_UINT(operator-, operator-=, Sub)
 RELIEF_WIDE_UINT(operator*, operator*=, Mul)
 RELIEF_WIDE_UINT(operator^, operator^=, Xor)
 RELIEF_WIDE_UINT(operator&, operator&=, And)
@@ -126,6 +153,34 @@ HWY_INLINE Uint operator<<(const Uint& a, uint32_t count) {
 HWY_INLINE Uint operator>>(const Uint& a, uint32_t count) {
     Uint r;
     for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftRightSame(a.part[p], int(count));
+    return r;
+}
+
+HWY_INLINE Uint min(const Uint& a, const Uint& b) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Min(a.part[p], b.part[p]);
+    return r;
+}
+HWY_INLINE Uint select(const Bool& condition, const Uint& a, const Uint& b) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] = hn::IfThenElse(hn::RebindMask(Uint::D(), condition.part[p]), a.part[p], b.part[p]);
+    return r;
+}
+
+/// base[index] in every lane; indices below 2^31.
+HWY_INLINE Float gather(const float* base, const Uint& index) {
+    Float r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] =
+            hn::GatherIndex(Float::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
+    return r;
+}
+HWY_INLINE Uint gather(const uint32_t* base, const Uint& index) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] =
+            hn::GatherIndex(Uint::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
     return r;
 }
 
@@ -180,6 +235,9 @@ HWY_INLINE Vec3 make_unit(const Vec3& a) {
     return unit;
 }
 
+HWY_INLINE Vec3 normalize(const Vec3& a) { return make_unit(a); }
+
+using scalar::kPi;
 #define FN HWY_INLINE
 #define EXACT
 #include "shared/basis.h"
@@ -187,6 +245,8 @@ HWY_INLINE Vec3 make_unit(const Vec3& a) {
 #include "shared/shading_normal.h"
 #include "shared/sobol.h"
 #include "shared/surface_point.h"
+#include "shared/trig.h"
+#include "shared/warp.h"
 #undef FN
 #undef EXACT
 

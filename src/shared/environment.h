@@ -4,23 +4,36 @@
 #ifndef RELIEF_ENVIRONMENT_H
 #ifndef __cplusplus
 #define RELIEF_ENVIRONMENT_H
+#include "shared/environment_data.h"
+#include "shared/trig.h"
 #endif
 
-/// Members of 4 bytes: part of the kernels' push constants.
-struct EnvironmentData {
-    Vec3 scale;               ///< on the image; without one the radiance
-    float sin_turn, cos_turn; ///< about +y
-    uint cells_x, cells_y;    ///< of the density
-    uint texture_index;       ///< kNone: constant
-};
+/// Point of a latitude-longitude image, (0, 0) its top left corner, that is seen along a unit vector: the
+/// middle looks along -z, up is +y, right is +x. Not turned.
+FN Vec2 direction_to_latlong(Vec3 d) {
+    Vec2 result = {Float(0.5f) + find_angle(d.x, Float(0.0f) - d.z) * Float(0.5f / kPi),
+                   find_arc_cosine(clamp(d.y, Float(-1.0f), Float(1.0f))) * Float(1.0f / kPi)};
+    return result;
+}
+
+FN Vec3 latlong_to_direction(Vec2 p) {
+    SinCos phi = find_sin_cos((p.x - Float(0.5f)) * Float(2.0f * kPi));
+    SinCos theta = find_sin_cos(p.y * Float(kPi));
+    Vec3 result = {theta.sine * phi.sine, theta.cosine, Float(0.0f) - theta.sine * phi.cosine};
+    return result;
+}
 
 FN Vec3 turn_into_environment(EnvironmentData e, Vec3 d) {
-    Vec3 result = {d.x * e.cos_turn - d.z * e.sin_turn, d.y, d.x * e.sin_turn + d.z * e.cos_turn};
+    Float s = Float(e.sin_turn);
+    Float c = Float(e.cos_turn);
+    Vec3 result = {d.x * c - d.z * s, d.y, d.x * s + d.z * c};
     return result;
 }
 
 FN Vec3 turn_out_of_environment(EnvironmentData e, Vec3 d) {
-    Vec3 result = {d.x * e.cos_turn + d.z * e.sin_turn, d.y, d.z * e.cos_turn - d.x * e.sin_turn};
+    Float s = Float(e.sin_turn);
+    Float c = Float(e.cos_turn);
+    Vec3 result = {d.x * c + d.z * s, d.y, d.z * c - d.x * s};
     return result;
 }
 
@@ -29,24 +42,31 @@ FN Vec2 locate_in_environment(EnvironmentData e, Vec3 direction) {
     return direction_to_latlong(turn_into_environment(e, direction));
 }
 
-/// Cell of `count` along one axis.
-FN uint locate_environment_cell(float position, uint count) {
-    uint cell = uint(position * float(count));
-    return select(cell < count, cell, count - 1u);
+/// Position in [0, 1]^2 from the top left corner of the image, in texels from the centre of texel (0, 0).
+FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
+    Vec2 result = {position.x * size.x - Float(0.5f), position.y * size.y - Float(0.5f)};
+    return result;
+}
+
+/// Cell of `count` along one axis that holds a position in [0, 1], as a whole number.
+FN Float locate_environment_cell(Float position, Float count) {
+    return min(floor(position * count), count - Float(1.0f));
 }
 
 /// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, which have no
 /// measure.
-FN float environment_cell_density(EnvironmentData e, float probability, Vec3 direction) {
-    float sine = sqrt(direction.x * direction.x + direction.z * direction.z);
-    return sine > 0.0f ? probability * float(e.cells_x * e.cells_y) / (2.0f * kPi * kPi * sine) : 0.0f;
+FN Float environment_cell_density(EnvironmentData e, Float probability, Vec3 direction) {
+    Float sine = sqrt(direction.x * direction.x + direction.z * direction.z);
+    Bool is_pole = sine == Float(0.0f);
+    float cells = float(e.cells_x * e.cells_y) * (0.5f / (kPi * kPi));
+    return select(is_pole, Float(0.0f), probability * Float(cells) / select(is_pole, Float(1.0f), sine));
 }
 
 /// Position of u within the interval [low, high) of a cumulative distribution, in [0, 1).
-FN float locate_in_interval(float u, float low, float high) {
-    float width = high - low;
-    float position = width > 0.0f ? (u - low) / width : 0.5f;
-    return min(position, 0.999999940395355224609375f);
+FN Float locate_in_interval(Float u, Float low, Float high) {
+    Float width = high - low;
+    Float position = (u - low) / max(width, Float(1e-37f));
+    return select(width > Float(0.0f), min(position, Float(0.999999940395355224609375f)), Float(0.5f));
 }
 
 #endif

@@ -44,12 +44,6 @@ FN Vec3 limit_color(Vec3 color) {
     return max(zero, min(color, one));
 }
 
-/// Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
-FN Vec3 lift_viewer(Vec3 wo_local) {
-    Vec3 lifted = {wo_local.x, wo_local.y, max(wo_local.z, 1e-4f)};
-    return normalize(lifted);
-}
-
 /// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990), from the second vertex
 /// on (Pharr, Jakob, Humphreys 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {

@@ -68,4 +68,19 @@ FN Vec3 make_displaced_normal(Vec3 along_u, Vec3 along_v, Vec3 normal) {
     return select(result == zero, normal, result);
 }
 
+/// Shading normal turned just so far that the mirror image of `wo` stays above the geometric surface: no
+/// black pixels at grazing triangles. Both normals on the side of `wo`; unit vectors.
+FN Vec3 bend_normal(Vec3 shading, Vec3 geometric, Vec3 wo) {
+    Vec3 mirrored = shading * (Float(2.0f) * dot(wo, shading)) - wo;
+    Float lowest = min(Float(0.9f) * dot(wo, geometric), Float(0.01f));
+    Float height = dot(mirrored, geometric);
+    Bool is_low = height < lowest;
+    Vec3 bent = shading;
+    if (is_any(is_low)) {
+        Vec3 lifted = normalize(mirrored + geometric * (lowest - height));
+        bent = select(is_low, normalize(lifted + wo), bent);
+    }
+    return bent;
+}
+
 #endif

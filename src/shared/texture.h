@@ -12,12 +12,6 @@ FN Vec2 locate_texture_uv(Vec2 uv, Vec2 size) {
     return result;
 }
 
-/// Position in [0, 1]^2 from the top left corner of a latitude-longitude image, in texels as above.
-FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
-    Vec2 result = {position.x * size.x - 0.5f, position.y * size.y - 0.5f};
-    return result;
-}
-
 /// Colour of a texel or a bilinear value: a texture of one or two channels is grey.
 FN Vec3 make_texture_color(uint channel_count, Vec3 channels) {
     Vec3 grey = {channels.x, channels.x, channels.x};

@@ -3,6 +3,7 @@
 #ifndef __cplusplus
 #define RELIEF_WARP_H
 #include "shared/basis.h"
+#include "shared/trig.h"
 #endif
 
 /// Concentric map onto the unit disk (Shirley and Chiu 1997), branch free. Density 1 / pi.
@@ -14,7 +15,8 @@ FN Vec2 square_to_disk(Vec2 u) {
     Float ratio = select(is_x_major, y, x) / select(r == Float(0.0f), Float(1.0f), r);
     Float angle = Float(0.25f * kPi) * ratio;
     Float phi = select(is_x_major, angle, Float(0.5f * kPi) - angle);
-    Vec2 result = {r * cos(phi), r * sin(phi)};
+    SinCos at = find_sin_cos(phi);
+    Vec2 result = {r * at.cosine, r * at.sine};
     return result;
 }
 
@@ -32,8 +34,8 @@ FN Float cosine_hemisphere_pdf(Float cos_theta) { return max(cos_theta, Float(0.
 FN Vec3 square_to_cone(Vec2 u, Float height) {
     Float drop = u.x * height;
     Float sin_theta = sqrt(max(Float(0.0f), drop * (Float(2.0f) - drop)));
-    Float phi = Float(2.0f * kPi) * u.y;
-    Vec3 result = {sin_theta * cos(phi), sin_theta * sin(phi), Float(1.0f) - drop};
+    SinCos at = find_sin_cos(Float(2.0f * kPi) * u.y);
+    Vec3 result = {sin_theta * at.cosine, sin_theta * at.sine, Float(1.0f) - drop};
     return result;
 }
 

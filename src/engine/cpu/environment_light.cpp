@@ -121,8 +121,8 @@ void EnvironmentLight::prefetch_radiance(const Vec2f& position) const {
 
 EnvironmentLight::Lookup EnvironmentLight::look_up(const Vec3f& direction, const Vec2f& position) const {
     if (!environment_.texture) return {data_.scale, scalar::sphere_pdf()};
-    const uint32_t column = scalar::locate_environment_cell(position.x, data_.cells_x);
-    const uint32_t row = scalar::locate_environment_cell(position.y, data_.cells_y);
+    const uint32_t column = uint32_t(scalar::locate_environment_cell(position.x, float(data_.cells_x)));
+    const uint32_t row = uint32_t(scalar::locate_environment_cell(position.y, float(data_.cells_y)));
     return {fetch_latlong(*environment_.texture, position) * data_.scale,
             cell_density(column, row, direction)};
 }

@@ -65,10 +65,10 @@ const Buffer& find_unbound(const BindingTable::Implementation& table, TexelForma
                          [&](const Buffer& buffer) { return buffer.internals().config.format == format; });
 }
 
-/// What ggx_albedo.h reads in C++.
+/// What ggx_table.h reads in C++.
 Buffer make_albedos(const Device& device) {
-    std::vector<scalar::GgxAlbedo> entries(scalar::kGgxEntryCount);
-    for (uint32_t i = 0; i < entries.size(); ++i) entries[i] = scalar::read_ggx_albedo(i);
+    std::vector<Vec2f> entries(scalar::kGgxEntryCount);
+    for (uint32_t i = 0; i < entries.size(); ++i) entries[i] = scalar::read_ggx_table(i);
     Buffer buffer(device, {.name = "albedos",
                            .bytes = entries.size() * sizeof(entries[0]),
                            .purpose = Purpose::structures,

@@ -207,8 +207,8 @@ FN SourceResults run_source(FormulaInput from) {
     r.lamp = draw_point_light(lamp, position, u);
     float pdf = emitter_density(0.1f + from.u[3], 0.5f + from.u[4], r.sun.direction, to);
     r.emitter = draw_emitter(to, to, max(pdf, 0.1f));
-    r.irradiance = estimate_irradiance(lamp, position) +
-                   estimate_irradiance(make_test_source(from, kSourceEmitters), position);
+    LightSourceData emitters = make_test_source(from, kSourceEmitters);
+    r.irradiance = estimate_irradiance(lamp, position) + estimate_irradiance(emitters, position);
     r.seen = meet_light(lamp, position, normalize(lamp.center - position), 100.0f);
     r.into = turn_into_environment(e, to);
     r.out_of = turn_out_of_environment(e, to);

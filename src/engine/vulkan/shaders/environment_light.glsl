@@ -73,8 +73,8 @@ vec3 environment_radiance(EnvironmentData e, vec3 direction) {
 float environment_pdf(EnvironmentData e, vec3 direction) {
     if (e.texture_index == kNone) return sphere_pdf();
     vec2 position = locate_in_environment(e, direction);
-    return cell_density(e, locate_environment_cell(position.x, e.cells_x),
-                        locate_environment_cell(position.y, e.cells_y), direction);
+    return cell_density(e, uint(locate_environment_cell(position.x, float(e.cells_x))),
+                        uint(locate_environment_cell(position.y, float(e.cells_y))), direction);
 }
 
 #endif

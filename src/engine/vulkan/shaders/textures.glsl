@@ -3,6 +3,7 @@
 #define RELIEF_TEXTURES_GLSL
 
 #include "engine/vulkan/shaders/scene.glsl"
+#include "shared/environment.h"
 #include "shared/texture.h"
 
 /// Bilinear value at a place in texels from the centre of texel (0, 0); repeated in x.
