@@ -116,7 +116,7 @@ TEST(ShadingEnvironment, gives_a_drawn_direction_the_radiance_and_density_of_a_l
     for (uint32_t k = 0; k < 1000; ++k) {
         const auto drawn = light.draw_direction(scalar::sobol_pair(3, k, 0));
         const Vec3f radiance = light.radiance(drawn.direction);
-        ASSERT_NEAR(light.radiance(drawn).x, radiance.x, 1e-3f * radiance.x + 1e-3f) << k;
+        ASSERT_NEAR(light.radiance(drawn.position).x, radiance.x, 1e-3f * radiance.x + 1e-3f) << k;
         // On the border of two cells rounding may name the neighbour.
         const float x = drawn.position.x * 64, y = drawn.position.y * 32;
         if (std::fabs(x - std::round(x)) < 1e-3f || std::fabs(y - std::round(y)) < 1e-3f) continue;

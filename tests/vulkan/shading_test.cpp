@@ -123,13 +123,15 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
         for (uint32_t k = 0; k < kCount; ++k) {
             const ShadingCase& c = cases[k];
             const cpu::LightSet& lights = bench().cpu_lights;
-            const Vec2f place = lights.locate_environment(c.ray.direction);
+            cpu::EnvironmentLookup behind;
+            lights.look_up_environment({&c.ray.direction, 1}, {&behind, 1});
             Vec3f expected{};
             if (depth > 0)
-                expected = c.path.throughput *
-                           lights.gather({c.path.previous, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, place);
+                expected =
+                    c.path.throughput *
+                    lights.gather({c.path.previous, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
             else if (!c.hit.is_hit())
-                expected = lights.environment_radiance(place);
+                expected = behind.radiance;
             if (!(compare(paths[k].radiance, expected) < 2e-3f)) ++flips;
         }
         EXPECT_LE(flips, kAllowedFlips) << "depth " << depth;
@@ -144,18 +146,21 @@ struct ExpectedLight {
 
 std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const ShadingCase& c, const CpuVertex& v,
                                           const cpu::LightSet::RandomNumbers& random) {
-    const auto light =
-        bench.cpu_lights.draw({v.point.position, v.point.geometric_normal, c.hit.bias}, random);
-    if (!light) return std::nullopt;
+    const cpu::LightSet::Receiver at{v.point.position, c.hit.bias};
+    cpu::LightSample light;
+    const uint32_t first = 0;
+    bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
+    if (!(light.pdf > 0) || dot(light.direction, v.point.geometric_normal) <= 0) return std::nullopt;
+    bench.cpu_lights.weigh({&light, 1}, {&first, 1});
     const scalar::BsdfValue bsdf =
-        scalar::evaluate_bsdf(v.bsdf, v.wo_local, scalar::to_local(v.basis, light->direction));
+        scalar::evaluate_bsdf(v.bsdf, v.wo_local, scalar::to_local(v.basis, light.direction));
     const Vec3f contribution =
-        c.path.throughput * bsdf.value * light->weight * scalar::power_heuristic(light->pdf, bsdf.pdf);
+        c.path.throughput * bsdf.value * light.weight * scalar::power_heuristic(light.pdf, bsdf.pdf);
     if (contribution == Vec3f{} || !is_finite(contribution)) return std::nullopt;
-    scalar::RayData ray{bench.tracer.offset_origin(v.point, light->direction), 0, light->direction,
-                        light->distance, c.hit.bias};
-    if (light->emitter) {
-        const Vec3f to = bench.tracer.offset_origin(*light->emitter, -light->direction) - ray.origin;
+    scalar::RayData ray{bench.tracer.offset_origin(v.point, light.direction), 0, light.direction,
+                        light.distance, c.hit.bias};
+    if (light.emitter) {
+        const Vec3f to = bench.tracer.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to);
         ray.direction = normalize(to);
     }

@@ -1,17 +1,16 @@
 #include "engine/cpu/environment_light.h"
 
 #include <algorithm>
-#include <array>
 #include <span>
 
+#include "engine/cpu/shading_kernels.h"
 #include "engine/cpu/textures.h"
 
 namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kBlock = 32;    ///< directions that are drawn step by step together
-constexpr uint32_t kGuides = 64; ///< a row of cells; a power of two
+constexpr uint32_t kGuides = EnvironmentTables::kGuides;
 
 struct Interval {
     uint32_t index;
@@ -29,20 +28,24 @@ uint32_t search_interval(std::span<const float> cumulative, float u, uint32_t fi
     return first;
 }
 
-/// Writes where the search for u in [k, k + 1) / kGuides starts and ends: entries k and k + 1.
-void fill_guide(std::span<const float> cumulative, std::span<uint16_t> guide) {
+/// Writes where the search for u in [k, k + 1) / kGuides starts and ends.
+void fill_guide(std::span<const float> cumulative, std::span<uint32_t> guide) {
     const uint32_t last = uint32_t(cumulative.size()) - 2;
-    for (uint32_t k = 0; k < kGuides; ++k)
-        guide[k] = uint16_t(search_interval(cumulative, float(k) / float(kGuides), 0, last));
-    guide[kGuides] = uint16_t(last);
+    uint32_t first = search_interval(cumulative, 0, 0, last);
+    for (uint32_t k = 0; k < kGuides; ++k) {
+        const uint32_t end =
+            k + 1 < kGuides ? search_interval(cumulative, float(k + 1) / float(kGuides), 0, last) : last;
+        guide[k] = first | end << 16;
+        first = end;
+    }
 }
 
 uint32_t find_guide(float u) { return std::min(uint32_t(u * float(kGuides)), kGuides - 1); }
 
 /// Interval that u falls into; never one of zero width.
-Interval find_interval(std::span<const float> cumulative, const uint16_t* guide, float u) {
-    const uint32_t k = find_guide(u);
-    const uint32_t index = search_interval(cumulative, u, guide[k], guide[k + 1]);
+Interval find_interval(std::span<const float> cumulative, const uint32_t* guides, float u) {
+    const uint32_t guide = guides[find_guide(u)];
+    const uint32_t index = search_interval(cumulative, u, guide & 0xffff, guide >> 16);
     return {index, scalar::locate_in_interval(u, cumulative[index], cumulative[index + 1])};
 }
 
@@ -54,10 +57,15 @@ EnvironmentLight::EnvironmentLight(const Environment& environment)
       data_(make_environment_data(environment, distribution_)) {
     if (!environment_.texture) return;
     const uint32_t rows = distribution_.cells_y;
-    guides_.assign(size_t(rows + 1) * (kGuides + 1), uint16_t(0));
-    for (uint32_t row = 0; row < rows; ++row)
-        fill_guide(distribution_.row(row), std::span(guides_).subspan(row * (kGuides + 1), kGuides + 1));
-    fill_guide(distribution_.rows, std::span(guides_).last(kGuides + 1));
+    guides_.resize(size_t(rows + 1) * kGuides);
+    for (uint32_t row = 0; row <= rows; ++row)
+        fill_guide(row < rows ? distribution_.row(row) : std::span<const float>(distribution_.rows),
+                   std::span(guides_).subspan(size_t(row) * kGuides, kGuides));
+}
+
+EnvironmentTables EnvironmentLight::tables() const {
+    return {environment_.texture.get(), data_, distribution_.rows.data(), distribution_.columns.data(),
+            guides_.data()};
 }
 
 Vec3f EnvironmentLight::radiance(const Vec2f& position) const {
@@ -72,64 +80,51 @@ float EnvironmentLight::cell_density(uint32_t column, uint32_t row, const Vec3f&
     return scalar::environment_cell_density(data_, probability, direction);
 }
 
-EnvironmentLight::DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
-    DirectionSample drawn;
-    draw_directions({&u, 1}, {&drawn, 1});
-    return drawn;
-}
-
-void EnvironmentLight::draw_directions(std::span<const Vec2f> u, std::span<DirectionSample> drawn) const {
-    if (!environment_.texture) {
-        for (size_t k = 0; k < u.size(); ++k)
-            drawn[k] = {scalar::square_to_sphere(u[k]), scalar::sphere_pdf()};
-        return;
-    }
-    for (size_t first = 0; first < u.size(); first += kBlock) {
-        const size_t count = std::min(kBlock, u.size() - first);
-        draw_block(u.subspan(first, count), drawn.subspan(first, count));
-    }
-}
-
-/// Each step has loaded for all directions what the next one reads.
-void EnvironmentLight::draw_block(std::span<const Vec2f> u, std::span<DirectionSample> drawn) const {
-    const auto guide = [this](uint32_t row) { return guides_.data() + size_t(row) * (kGuides + 1); };
-    std::array<Interval, kBlock> rows;
-    for (size_t k = 0; k < u.size(); ++k) {
-        rows[k] = find_interval(distribution_.rows, guide(data_.cells_y), u[k].y);
-        __builtin_prefetch(guide(rows[k].index) + find_guide(u[k].x));
-    }
-    for (size_t k = 0; k < u.size(); ++k)
-        __builtin_prefetch(&distribution_.row(rows[k].index)[guide(rows[k].index)[find_guide(u[k].x)]]);
-    for (size_t k = 0; k < u.size(); ++k) {
-        const Interval& row = rows[k];
-        const Interval column = find_interval(distribution_.row(row.index), guide(row.index), u[k].x);
-        const Vec2f position{(float(column.index) + column.position) / float(data_.cells_x),
-                             (float(row.index) + row.position) / float(data_.cells_y)};
-        const Vec3f direction =
-            scalar::turn_out_of_environment(data_, scalar::latlong_to_direction(position));
-        drawn[k] = {direction, cell_density(column.index, row.index, direction), position};
-    }
-}
-
-Vec2f EnvironmentLight::locate(const Vec3f& direction) const {
-    return environment_.texture ? scalar::locate_in_environment(data_, direction) : Vec2f{};
-}
-
-void EnvironmentLight::prefetch_radiance(const Vec2f& position) const {
-    if (environment_.texture) prefetch_latlong(*environment_.texture, position);
-}
-
-EnvironmentLight::Lookup EnvironmentLight::look_up(const Vec3f& direction, const Vec2f& position) const {
+EnvironmentLookup EnvironmentLight::look_up(const Vec3f& direction) const {
     if (!environment_.texture) return {data_.scale, scalar::sphere_pdf()};
+    const Vec2f position = scalar::locate_in_environment(data_, direction);
     const uint32_t column = uint32_t(scalar::locate_environment_cell(position.x, float(data_.cells_x)));
     const uint32_t row = uint32_t(scalar::locate_environment_cell(position.y, float(data_.cells_y)));
-    return {fetch_latlong(*environment_.texture, position) * data_.scale,
-            cell_density(column, row, direction)};
+    return {radiance(position), cell_density(column, row, direction)};
+}
+
+DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
+    if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf()};
+    const Interval row =
+        find_interval(distribution_.rows, guides_.data() + size_t(data_.cells_y) * kGuides, u.y);
+    const Interval column =
+        find_interval(distribution_.row(row.index), guides_.data() + size_t(row.index) * kGuides, u.x);
+    const Vec2f position{(float(column.index) + column.position) / float(data_.cells_x),
+                         (float(row.index) + row.position) / float(data_.cells_y)};
+    const Vec3f direction = scalar::turn_out_of_environment(data_, scalar::latlong_to_direction(position));
+    return {direction, cell_density(column.index, row.index, direction), position};
+}
+
+void EnvironmentLight::look_up(const ShadingKernels& kernels, std::span<const Vec3f> directions,
+                               std::span<EnvironmentLookup> found) const {
+    if (environment_.texture)
+        kernels.look_up_environment(tables(), directions.data(), directions.size(), found.data());
+    else
+        std::fill_n(found.begin(), directions.size(), EnvironmentLookup{data_.scale, scalar::sphere_pdf()});
+}
+
+void EnvironmentLight::fetch_radiance(const ShadingKernels& kernels, std::span<const Vec2f> positions,
+                                      std::span<Vec3f> radiances) const {
+    if (environment_.texture)
+        kernels.fetch_environment(tables(), positions.data(), positions.size(), radiances.data());
+    else
+        std::fill_n(radiances.begin(), positions.size(), data_.scale);
+}
+
+void EnvironmentLight::draw_directions(const ShadingKernels& kernels, std::span<const Vec2f> u,
+                                       std::span<DirectionSample> drawn) const {
+    if (environment_.texture) return kernels.draw_directions(tables(), u.data(), u.size(), drawn.data());
+    for (size_t k = 0; k < u.size(); ++k) drawn[k] = draw_direction(u[k]);
 }
 
 size_t EnvironmentLight::byte_count() const {
     return (distribution_.rows.size() + distribution_.columns.size()) * sizeof(float) +
-           guides_.size() * sizeof(uint16_t);
+           guides_.size() * sizeof(uint32_t);
 }
 
 } // namespace relief::cpu

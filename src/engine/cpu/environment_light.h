@@ -9,56 +9,68 @@
 
 namespace relief::cpu {
 
+struct ShadingKernels;
+
+/// A direction towards the environment.
+struct DirectionSample {
+    Vec3f direction;
+    float pdf;        ///< per solid angle; 0: nothing could be drawn
+    Vec2f position{}; ///< in the image
+};
+
+/// Radiance from a direction and the density with which it is drawn.
+struct EnvironmentLookup {
+    Vec3f radiance;
+    float pdf;
+};
+
+/// Where the SIMD kernels find an environment with an image.
+struct EnvironmentTables {
+    const Texture* texture;
+    scalar::EnvironmentData data;
+    const float* rows;      ///< of the EnvironmentDistribution
+    const float* columns;   ///< likewise
+    const uint32_t* guides; ///< kGuides a row of cells, then kGuides for the rows
+
+    static constexpr uint32_t kGuides = 64; ///< a power of two
+};
+
 /// Immutable once made.
 class EnvironmentLight {
   public:
     explicit EnvironmentLight(const Environment& environment);
 
-    Vec3f radiance(const Vec3f& direction) const { return radiance(locate(direction)); }
+    Vec3f radiance(const Vec3f& direction) const { return look_up(direction).radiance; }
     /// At a place of the image.
     Vec3f radiance(const Vec2f& position) const;
-
-    struct DirectionSample {
-        Vec3f direction;
-        float pdf;        ///< per solid angle; 0: nothing could be drawn
-        Vec2f position{}; ///< in the image
-    };
+    float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
+    /// Both at once.
+    EnvironmentLookup look_up(const Vec3f& direction) const;
     /// Draws by brightness (shared/environment.h); uniformly over the sphere without an image.
     DirectionSample draw_direction(const Vec2f& u) const;
-    /// The same of many, whose reads of the tables overlap; drawn[k] belongs to u[k].
-    void draw_directions(std::span<const Vec2f> u, std::span<DirectionSample> drawn) const;
-    Vec3f radiance(const DirectionSample& drawn) const { return radiance(drawn.position); }
 
-    /// Place of the image that is seen along a direction; anywhere without an image.
-    Vec2f locate(const Vec3f& direction) const;
-    /// Has the texels loaded that radiance() and look_up() will read at a place of the image: a wait for
-    /// memory each, unless many are asked for beforehand.
-    void prefetch_radiance(const Vec2f& position) const;
-
-    float pdf(const Vec3f& direction) const { return look_up(direction).pdf; }
-
-    /// Radiance from a direction and the density with which it is drawn, both at once.
-    struct Lookup {
-        Vec3f radiance;
-        float pdf;
-    };
-    Lookup look_up(const Vec3f& direction) const { return look_up(direction, locate(direction)); }
-    /// `position`: locate(direction).
-    Lookup look_up(const Vec3f& direction, const Vec2f& position) const;
+    // The same of many, by SIMD kernels; the k-th result belongs to the k-th direction, place or pair.
+    void look_up(const ShadingKernels& kernels, std::span<const Vec3f> directions,
+                 std::span<EnvironmentLookup> found) const;
+    void fetch_radiance(const ShadingKernels& kernels, std::span<const Vec2f> positions,
+                        std::span<Vec3f> radiances) const;
+    void draw_directions(const ShadingKernels& kernels, std::span<const Vec2f> u,
+                         std::span<DirectionSample> drawn) const;
 
     /// Mean over all directions.
     float mean_luminance() const { return distribution_.mean_luminance; }
     size_t byte_count() const;
 
   private:
-    void draw_block(std::span<const Vec2f> u, std::span<DirectionSample> drawn) const;
+    EnvironmentTables tables() const;
     float cell_density(uint32_t column, uint32_t row, const Vec3f& direction) const;
 
     Environment environment_;
     EnvironmentDistribution distribution_;
     scalar::EnvironmentData data_;
-    /// Where to search for a random number: the cells of each row, then the rows.
-    std::vector<uint16_t> guides_;
+    /// Where to search for a random number: the cells of each row, then the rows. Of each the first interval
+    /// that may be meant and, in the upper half, the last.
+    std::vector<uint32_t> guides_;
 };
 
 } // namespace relief::cpu

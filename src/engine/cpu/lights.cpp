@@ -7,7 +7,7 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kBlock = 32; ///< points that lights are drawn for together
+constexpr size_t kBlock = 64; ///< points that lights are drawn for together
 
 } // namespace
 
@@ -25,6 +25,9 @@ void LightSet::find_sources() {
     emitters_ = make_emitter_table(tracer_.scene());
     sources_ =
         make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
+    has_lamps_ = std::any_of(sources_.begin(), sources_.end(), [](const scalar::LightSourceData& source) {
+        return source.kind == scalar::kSourcePoint && source.radius > 0;
+    });
 }
 
 float LightSet::total_irradiance(const Vec3f& position) const {
@@ -46,22 +49,21 @@ LightSet::Pick LightSet::pick_source(const Vec3f& position, float u_light) const
 }
 
 /// Not from the environment.
-LightSample LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random) const {
+void LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+                         LightSample& drawn) const {
     if (pick.source->kind == scalar::kSourceSun)
-        return {scalar::draw_sun(*pick.source, random.u), std::nullopt};
-    if (pick.source->kind == scalar::kSourcePoint)
-        return {scalar::draw_point_light(*pick.source, at.position, random.u), std::nullopt};
-    return draw_emitter(at, random.u_emitter, random.u);
-}
-
-std::optional<LightSample> LightSet::draw(const Receiver& at, const RandomNumbers& random) const {
-    std::optional<LightSample> drawn;
-    draw_block({&at, 1}, {&random, 1}, {&drawn, 1});
-    return drawn;
+        static_cast<scalar::LightDraw&>(drawn) = scalar::draw_sun(*pick.source, random.u);
+    else if (pick.source->kind == scalar::kSourcePoint)
+        static_cast<scalar::LightDraw&>(drawn) =
+            scalar::draw_point_light(*pick.source, at.position, random.u);
+    else
+        draw_emitter(at, random.u_emitter, random.u, drawn);
+    drawn.pdf *= pick.probability;
+    drawn.weight *= 1 / pick.probability;
 }
 
 void LightSet::draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
-                    std::span<std::optional<LightSample>> drawn) const {
+                    std::span<LightSample> drawn) const {
     for (size_t first = 0; first < at.size(); first += kBlock) {
         const size_t count = std::min(kBlock, at.size() - first);
         draw_block(at.subspan(first, count), random.subspan(first, count), drawn.subspan(first, count));
@@ -69,45 +71,50 @@ void LightSet::draw(std::span<const Receiver> at, std::span<const RandomNumbers>
 }
 
 void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
-                          std::span<std::optional<LightSample>> drawn) const {
-    std::array<Pick, kBlock> picks;
+                          std::span<LightSample> drawn) const {
     std::array<uint32_t, kBlock> receivers; // of light from the environment
+    std::array<float, kBlock> probabilities;
     std::array<Vec2f, kBlock> u;
-    std::array<EnvironmentLight::DirectionSample, kBlock> directions;
+    std::array<DirectionSample, kBlock> directions;
     size_t count = 0;
-    const auto finish = [&](size_t k, const LightSample& sample) {
-        drawn[k].reset();
-        if (!(sample.pdf > 0) || dot(sample.direction, at[k].normal) <= 0) return;
-        drawn[k] = sample;
-        drawn[k]->pdf *= picks[k].probability;
-        drawn[k]->weight *= 1 / picks[k].probability;
-    };
     for (size_t k = 0; k < at.size(); ++k) {
-        picks[k] = pick_source(at[k].position, random[k].u_light);
-        if (!picks[k].source)
-            drawn[k].reset();
-        else if (picks[k].source->kind == scalar::kSourceEnvironment)
-            receivers[count] = uint32_t(k), u[count++] = random[k].u;
+        const Pick pick = pick_source(at[k].position, random[k].u_light);
+        drawn[k].is_environment = false;
+        drawn[k].emitter.reset();
+        if (!pick.source)
+            drawn[k].pdf = 0, drawn[k].direction = {};
+        else if (pick.source->kind == scalar::kSourceEnvironment)
+            receivers[count] = uint32_t(k), probabilities[count] = pick.probability, u[count++] = random[k].u;
         else
-            finish(k, draw_from(picks[k], at[k], random[k]));
+            draw_from(pick, at[k], random[k], drawn[k]);
     }
     if (count == 0) return;
-    environment_->draw_directions({u.data(), count}, {directions.data(), count});
-    // Half of the directions lead into the surface: the image, far too large for a cache, is not read for
-    // them.
-    const auto is_lit = [&](size_t n) {
-        return directions[n].pdf > 0 && dot(directions[n].direction, at[receivers[n]].normal) > 0;
-    };
-    for (size_t n = 0; n < count; ++n)
-        if (is_lit(n)) environment_->prefetch_radiance(directions[n].position);
+    environment_->draw_directions(tracer_.shading_kernels(), {u.data(), count}, directions);
     for (size_t n = 0; n < count; ++n) {
-        const EnvironmentLight::DirectionSample& found = directions[n];
-        const Vec3f weight = is_lit(n) ? environment_->radiance(found) * (1 / found.pdf) : Vec3f{};
-        finish(receivers[n], {{found.direction, scalar::make_infinity(), weight, found.pdf}, std::nullopt});
+        const DirectionSample& found = directions[n];
+        const float density = found.pdf * probabilities[n], weight = density > 0 ? 1 / density : 0.0f;
+        LightSample& sample = drawn[receivers[n]];
+        sample.direction = found.direction, sample.distance = scalar::make_infinity();
+        sample.weight = {weight, weight, weight}, sample.pdf = density;
+        sample.place = found.position, sample.is_environment = true;
     }
 }
 
-LightSample LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u) const {
+void LightSet::weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const {
+    std::array<uint32_t, kBlock> samples;
+    std::array<Vec2f, kBlock> places;
+    std::array<Vec3f, kBlock> radiances;
+    for (size_t first = 0; first < which.size(); first += kBlock) {
+        size_t count = 0;
+        for (const uint32_t k : which.subspan(first, std::min(kBlock, which.size() - first)))
+            if (drawn[k].is_environment) samples[count] = k, places[count++] = drawn[k].place;
+        if (count == 0) continue;
+        environment_->fetch_radiance(tracer_.shading_kernels(), {places.data(), count}, radiances);
+        for (size_t n = 0; n < count; ++n) drawn[samples[n]].weight = drawn[samples[n]].weight * radiances[n];
+    }
+}
+
+void LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const {
     const auto above =
         std::upper_bound(emitters_.cumulative.begin() + 1, emitters_.cumulative.end() - 1, double(u_emitter));
     const uint32_t emitter = uint32_t(above - emitters_.cumulative.begin()) - 1;
@@ -122,9 +129,9 @@ LightSample LightSet::draw_emitter(const Receiver& at, float u_emitter, const Ve
     const Vec2f uv = is_triangle ? scalar::square_to_triangle(u) : u;
     const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.bias);
     const float pdf = emitter_density(emitter, at.position, point);
-    return {
-        scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf),
-        point};
+    static_cast<scalar::LightDraw&>(drawn) =
+        scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf);
+    drawn.emitter = point;
 }
 
 float LightSet::emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const {
@@ -139,19 +146,21 @@ float LightSet::emitter_pdf(const Vec3f& origin, const SurfacePoint& point) cons
     return probability * emitter_density(first + point.patch, origin, point);
 }
 
-Vec3f LightSet::environment_radiance(const Vec2f& position) const {
-    return environment_ ? environment_->radiance(position) : Vec3f{};
+void LightSet::look_up_environment(std::span<const Vec3f> directions,
+                                   std::span<EnvironmentLookup> found) const {
+    if (environment_)
+        environment_->look_up(tracer_.shading_kernels(), directions, found);
+    else
+        std::fill_n(found.begin(), directions.size(), EnvironmentLookup{});
 }
 
-Vec3f LightSet::gather(const BounceRay& ray, const Vec2f& position) const {
+Vec3f LightSet::gather(const BounceRay& ray, const EnvironmentLookup& behind) const {
     Vec3f sum{};
     const float total = total_irradiance(ray.origin);
     for (const scalar::LightSourceData& source : sources_) {
         scalar::LightSeen seen = scalar::meet_light(source, ray.origin, ray.direction, ray.distance);
-        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity()) {
-            const EnvironmentLight::Lookup found = environment_->look_up(ray.direction, position);
-            seen = {found.radiance, found.pdf};
-        }
+        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
+            seen = {behind.radiance, behind.pdf};
         if (seen.radiance == Vec3f{}) continue;
         const float share = total > 0 ? scalar::estimate_irradiance(source, ray.origin) / total : 0.0f;
         sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);

@@ -15,6 +15,8 @@ namespace relief::cpu {
 
 /// A direction towards a light; `pdf` and `weight` hold the probability of having picked the light.
 struct LightSample : scalar::LightDraw {
+    Vec2f place;         ///< in the environment's image, where the light is from there
+    bool is_environment; ///< `weight` is to be multiplied by the radiance of `place`
     /// Set when the light is a surface that the shadow ray must stop short of.
     std::optional<SurfacePoint> emitter;
 };
@@ -28,36 +30,33 @@ class LightSet {
     /// Surfaces that glow may have changed their shape. Not while lights are drawn.
     void follow_surfaces();
 
-    /// What is lit: a point, and the normal of the side that matters.
+    /// What is lit.
     struct Receiver {
-        Vec3f position, normal;
+        Vec3f position;
         uint32_t bias; ///< emitters are sampled on surface M_bias
     };
 
     /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
-    /// `u_emitter` the emissive patch, `u` the point. Nothing when all is dark or the light is behind.
+    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 when all is dark.
     struct RandomNumbers {
         float u_light, u_emitter;
         Vec2f u;
     };
-    std::optional<LightSample> draw(const Receiver& at, const RandomNumbers& random) const;
-    /// The same of many points, whose reads of the image overlap; drawn[k] belongs to at[k].
+    /// For many points; drawn[k] belongs to at[k].
     void draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
-              std::span<std::optional<LightSample>> drawn) const;
+              std::span<LightSample> drawn) const;
+    /// Multiplies the weights of those drawn[which[...]] that are from the environment by its radiance: most
+    /// directions lead into the surface, and its image, too large for a cache, need not be read for them.
+    void weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
 
     /// False: `u_emitter` is never looked at.
     bool has_emitters() const { return emitters_.size() > 0; }
 
-    /// Where the environment's image is seen along a direction.
-    Vec2f locate_environment(const Vec3f& direction) const {
-        return environment_ ? environment_->locate(direction) : Vec2f{};
-    }
-    /// Has what is to be read there loaded: for places that lie apart, all of them before any is read.
-    void prefetch_environment(const Vec2f& position) const {
-        if (environment_) environment_->prefetch_radiance(position);
-    }
-    /// Radiance of the environment there; black without one.
-    Vec3f environment_radiance(const Vec2f& position) const;
+    /// The environment along many directions; black without one.
+    void look_up_environment(std::span<const Vec3f> directions, std::span<EnvironmentLookup> found) const;
+
+    /// Whether rays that hit a surface may have met a light on their way.
+    bool has_lamps() const { return has_lamps_; }
 
     /// A bounce ray, and how far it came.
     struct BounceRay {
@@ -66,9 +65,9 @@ class LightSet {
         float bsdf_pdf; ///< the ray's own density
     };
     /// Light of the environment, suns and point lights that a bounce ray meets, each weighted against its
-    /// chance of being drawn from the origin. `position`: locate_environment(direction), where the distance
-    /// is infinite.
-    Vec3f gather(const BounceRay& ray, const Vec2f& position) const;
+    /// chance of being drawn from the origin. `behind`: the environment along the ray, where the distance is
+    /// infinite.
+    Vec3f gather(const BounceRay& ray, const EnvironmentLookup& behind) const;
 
     /// Density with which draw() from `origin` would have found a point of an emissive surface.
     float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
@@ -84,16 +83,18 @@ class LightSet {
         float probability;
     };
     Pick pick_source(const Vec3f& position, float u_light) const;
-    LightSample draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random) const;
+    void draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+                   LightSample& drawn) const;
     void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
-                    std::span<std::optional<LightSample>> drawn) const;
-    LightSample draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u) const;
+                    std::span<LightSample> drawn) const;
+    void draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const;
     float emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const;
 
     const Tracer& tracer_;
     std::optional<EnvironmentLight> environment_;
     EmitterTable emitters_;
     std::vector<scalar::LightSourceData> sources_;
+    bool has_lamps_ = false;
 };
 
 } // namespace relief::cpu

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/cpu/bottom_tree.h"
+#include "engine/cpu/texel_lanes-inl.h"
 #include "math/lanes-inl.h"
 #include "surface/bicubic.h"
 #include "surface/texels.h"
@@ -43,17 +44,6 @@ HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
             for (int c = 0; c < 3; ++c) values.value[kFrame + 3 * a + c] = get_component(axes[a], c);
     }
     return values;
-}
-
-HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
-    if (!texture.floats.empty()) return Lanes4::load_unaligned(texture.floats.data() + 4 * index);
-    const hn::FixedTag<float, 4> d;
-    const hn::Rebind<hwy::float16_t, decltype(d)> d16;
-    const auto halves =
-        hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + 4 * index));
-    Lanes4 result;
-    result.part[0] = hn::PromoteTo(d, halves);
-    return result;
 }
 
 /// All sixteen in [0, end).

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,16 +35,9 @@ struct PointMaterial {
     float roughness, metallic, ior;
 };
 
-/// A hit made ready for shading; normals on the viewer's side.
-struct Vertex {
-    SurfacePoint point;
-    uint32_t bias;  ///< of the surface that was hit
-    float distance; ///< that the ray came
-    PointMaterial material;
-    scalar::Basis basis; ///< about the bent shading normal
-    Vec3f wo_local;
-    scalar::Bsdf bsdf;
-};
+Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
+    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
+}
 
 struct ShadowRay {
     uint32_t path;
@@ -71,19 +63,19 @@ class TileTracer {
     void drop_misses();
     void draw_random();
     void draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
-    void start_vertices(size_t first, size_t count);
-    Vertex make_vertex(size_t k) const;
+    size_t shade_block(size_t first, size_t count, size_t next);
+    void draw_lights(size_t first, size_t count);
+    void reflect(size_t first, size_t count);
     PointMaterial make_material(uint32_t instance, const Vec2f& uv) const;
-    bool shade_path(size_t k, const Vertex& vertex, const std::optional<LightSample>& light, size_t next);
-    void record_first_hit(Path& path, const Vertex& vertex) const;
-    void add_emission(Path& path, const Vertex& vertex) const;
-    void sample_light(uint32_t index, const Vertex& vertex, const LightSample& light);
-    bool continue_path(size_t k, const Vertex& vertex, size_t next);
+    void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
+    void add_emission(size_t k, const Vec3f& emission);
+    void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
+    bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
     bool survives_roulette(Path& path, float u_roulette) const;
     void trace_shadow_rays();
     void finish_paths();
 
-    static constexpr size_t kBlock = 32; ///< vertices that are at work at once: as many as a cache holds
+    static constexpr size_t kBlock = 64; ///< vertices that are at work at once: as many as a cache holds
 
     const Tracer& tracer_;
     const LightSet& lights_;
@@ -100,15 +92,19 @@ class TileTracer {
     std::vector<uint32_t> active_; ///< paths still on their way, in order
     std::vector<TraceRay> rays_;
     std::vector<TraceHit> hits_;
-    std::vector<Vec2f> places_; ///< in the environment's image, of rays that hit nothing
+    std::vector<Vec2f> places_; ///< of camera rays in the picture, in pixels
+    std::vector<uint32_t> missed_;
+    std::vector<Vec3f> directions_; ///< of rays that missed
+    std::vector<EnvironmentLookup> backgrounds_;
     std::vector<SurfacePoint> points_;
     std::vector<uint32_t> wave_seeds_;
     std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
 
-    std::array<Vertex, kBlock> vertices_;
+    std::array<VertexLanes, kBlock / 16> lanes_{};
+    std::array<Vec3f, kBlock> emissions_;
     std::array<LightSet::Receiver, kBlock> receivers_;
     std::array<LightSet::RandomNumbers, kBlock> light_random_;
-    std::array<std::optional<LightSample>, kBlock> lights_drawn_;
+    std::array<LightSample, kBlock> lights_drawn_;
 
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
@@ -190,12 +186,8 @@ void TileTracer::shade_paths() {
     tracer_.make_surface_points(hits_, points_, scratch_);
     draw_random();
     size_t next = 0;
-    for (size_t first = 0; first < active_.size(); first += kBlock) {
-        const size_t count = std::min(kBlock, active_.size() - first);
-        start_vertices(first, count);
-        for (size_t k = 0; k < count; ++k)
-            if (shade_path(first + k, vertices_[k], lights_drawn_[k], next)) ++next;
-    }
+    for (size_t first = 0; first < active_.size(); first += kBlock)
+        next = shade_block(first, std::min(kBlock, active_.size() - first), next);
     active_.resize(next), rays_.resize(next);
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
@@ -203,28 +195,30 @@ void TileTracer::shade_paths() {
 
 /// Light of rays that leave the scene, and of lamps that are met on the way.
 void TileTracer::add_backgrounds() {
+    missed_.resize(active_.size()), directions_.resize(active_.size());
+    size_t count = 0;
+    for (uint32_t k = 0; k < active_.size(); ++k) {
+        missed_[count] = k, directions_[count] = rays_[k].direction;
+        count += hits_[k].is_hit() ? 0 : 1; // no branch: it could not be foreseen
+    }
+    missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
+    lights_.look_up_environment(directions_, backgrounds_);
     if (depth_ > 0) return gather_lights();
-    for (size_t k = 0; k < active_.size(); ++k)
-        if (!hits_[k].is_hit())
-            paths_[active_[k]].result.radiance +=
-                lights_.environment_radiance(lights_.locate_environment(rays_[k].direction));
+    for (size_t n = 0; n < count; ++n)
+        paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
 }
 
-/// Of bounce rays, which look at places of the image far apart. It is read in a loop of its own: waits for
-/// memory overlap.
 void TileTracer::gather_lights() {
-    places_.resize(active_.size());
-    for (size_t k = 0; k < active_.size(); ++k) {
-        if (hits_[k].is_hit()) continue;
-        places_[k] = lights_.locate_environment(rays_[k].direction);
-        lights_.prefetch_environment(places_[k]);
-    }
-    for (size_t k = 0; k < active_.size(); ++k) {
+    const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];
         path.result.radiance +=
             path.throughput *
-            lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, places_[k]);
-    }
+            lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, behind);
+    };
+    for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
+    if (!lights_.has_lamps()) return;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit()) gather(k, {});
 }
 
 void TileTracer::drop_misses() {
@@ -254,34 +248,65 @@ void TileTracer::draw_random() {
     }
 }
 
-/// Vertices of the wave from `first` on, each with a light drawn.
-void TileTracer::start_vertices(size_t first, size_t count) {
-    for (size_t k = 0; k < count; ++k) {
-        vertices_[k] = make_vertex(first + k);
-        const SurfacePoint& point = vertices_[k].point;
-        receivers_[k] = {point.position, point.geometric_normal, vertices_[k].bias};
-        light_random_[k] = {random_[scalar::kPickPair][first + k].x,
-                            random_[scalar::kRoulettePair][first + k].y,
-                            random_[scalar::kLightPair][first + k]};
+/// Vertices of the wave from `first` on. Paths that go on get the places from `next`; what lies before a
+/// block has been shaded, so that its place can be taken. Returns the next place.
+size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
+    draw_lights(first, count);
+    reflect(first, count);
+    std::array<uint32_t, kBlock> lit;
+    size_t lit_count = 0;
+    for (size_t n = 0; n < count; ++n) {
+        lit[lit_count] = uint32_t(n);
+        lit_count += lanes_[n / 16].is_lit >> n % 16 & 1;
+    }
+    lights_.weigh(lights_drawn_, {lit.data(), lit_count});
+    for (size_t n = 0; n < count; ++n) {
+        if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
+        if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
+    }
+    for (size_t n = 0; n < lit_count; ++n)
+        add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
+    for (size_t n = 0; n < count; ++n)
+        if (lanes_[n / 16].goes_on >> n % 16 & 1)
+            next += continue_path(first + n, lanes_[n / 16], n % 16, next) ? 1 : 0;
+    return next;
+}
+
+void TileTracer::draw_lights(size_t first, size_t count) {
+    for (size_t n = 0; n < count; ++n) {
+        const size_t k = first + n;
+        receivers_[n] = {points_[k].position, hits_[k].bias};
+        light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
+                            random_[scalar::kLightPair][k]};
     }
     lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
 }
 
-Vertex TileTracer::make_vertex(size_t k) const {
-    Vertex v;
-    v.point = points_[k];
-    v.bias = hits_[k].bias, v.distance = hits_[k].t;
-    v.material = make_material(hits_[k].instance, v.point.uv);
-    const Vec3f wo = -rays_[k].direction;
-    if (dot(v.point.geometric_normal, wo) < 0) {
-        v.point.geometric_normal = -v.point.geometric_normal;
-        v.point.shading_normal = -v.point.shading_normal;
+void TileTracer::reflect(size_t first, size_t count) {
+    for (size_t n = 0; n < count; ++n) {
+        const PointMaterial m = make_material(hits_[first + n].instance, points_[first + n].uv);
+        VertexLanes& lanes = lanes_[n / 16];
+        const size_t lane = n % 16;
+        lanes.base_color[0][lane] = m.base_color.x, lanes.base_color[1][lane] = m.base_color.y;
+        lanes.base_color[2][lane] = m.base_color.z;
+        lanes.roughness[lane] = m.roughness, lanes.metallic[lane] = m.metallic, lanes.ior[lane] = m.ior;
+        emissions_[n] = m.emission;
+        const LightSample& light = lights_drawn_[n];
+        lanes.light_direction[0][lane] = light.direction.x;
+        lanes.light_direction[1][lane] = light.direction.y;
+        lanes.light_direction[2][lane] = light.direction.z;
+        lanes.light_pdf[lane] = light.pdf;
     }
-    v.basis = scalar::make_basis(scalar::bend_normal(v.point.shading_normal, v.point.geometric_normal, wo));
-    v.wo_local = scalar::lift_viewer(scalar::to_local(v.basis, wo));
-    v.bsdf = scalar::make_bsdf(
-        {v.material.base_color, v.material.roughness, v.material.metallic, v.material.ior}, v.wo_local.z);
-    return v;
+    const bool goes_on = depth_ < settings_.bounces;
+    for (size_t n = 0; n < count; n += 16) {
+        const size_t k = first + n;
+        tracer_.shading_kernels().reflect({.count = std::min(size_t(16), count - n),
+                                           .points = &points_[k],
+                                           .rays = &rays_[k],
+                                           .pick_pairs = goes_on ? &random_[scalar::kPickPair][k] : nullptr,
+                                           .bsdf_pairs = goes_on ? &random_[scalar::kBsdfPair][k] : nullptr},
+                                          lanes_[n / 16]);
+    }
 }
 
 PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) const {
@@ -297,73 +322,57 @@ PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) cons
     return m;
 }
 
-/// Adds the light that reaches one vertex; true when the path goes on, in place `next` of the wave.
-bool TileTracer::shade_path(size_t k, const Vertex& vertex, const std::optional<LightSample>& light,
-                            size_t next) {
+void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
+    FilmSample& result = paths_[active_[k]].result;
+    result.alpha = 1;
+    result.depth = hits_[k].t;
+    result.shading_normal = get_lane(lanes.shading_normal, lane);
+    result.geometric_normal = get_lane(lanes.geometric_normal, lane);
+    result.position = points_[k].position;
+    result.albedo = get_lane(lanes.base_color, lane);
+    result.uv = points_[k].uv;
+    result.id = points_[k].instance + 1;
+}
+
+void TileTracer::add_emission(size_t k, const Vec3f& emission) {
     Path& path = paths_[active_[k]];
-    if (depth_ == 0) record_first_hit(path, vertex);
-    add_emission(path, vertex);
-    if (light) sample_light(active_[k], vertex, *light);
-    return depth_ < settings_.bounces && continue_path(k, vertex, next);
-}
-
-void TileTracer::record_first_hit(Path& path, const Vertex& vertex) const {
-    path.result.alpha = 1;
-    path.result.depth = vertex.distance;
-    path.result.shading_normal = vertex.point.shading_normal;
-    path.result.geometric_normal = vertex.point.geometric_normal;
-    path.result.position = vertex.point.position;
-    path.result.albedo = vertex.material.base_color;
-    path.result.uv = vertex.point.uv;
-    path.result.id = vertex.point.instance + 1;
-}
-
-void TileTracer::add_emission(Path& path, const Vertex& vertex) const {
-    const Vec3f& emission = vertex.material.emission;
-    if (emission == Vec3f{}) return;
-    const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, vertex.point) : 0.0f;
+    const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, points_[k]) : 0.0f;
     const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
     path.result.radiance += path.throughput * emission * weight;
 }
 
 /// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
 /// there.
-void TileTracer::sample_light(uint32_t index, const Vertex& vertex, const LightSample& light) {
-    Path& path = paths_[index];
-    const SurfacePoint& point = vertex.point;
-    const Vec3f wi = scalar::to_local(vertex.basis, light.direction);
-    const scalar::BsdfValue bsdf = scalar::evaluate_bsdf(vertex.bsdf, vertex.wo_local, wi);
+void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
+    Path& path = paths_[active_[k]];
     const bool is_last = depth_ == settings_.bounces;
-    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, bsdf.pdf);
-    const Vec3f contribution = path.throughput * bsdf.value * light.weight * weight;
+    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
+    const Vec3f contribution =
+        path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
-    TraceRay ray{tracer_.offset_origin(point, light.direction), 0, light.direction, light.distance,
-                 vertex.bias};
+    TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].bias};
     if (light.emitter) {
         const Vec3f to = tracer_.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to) * (1 - 1e-6f);
         ray.direction = normalize(to);
     }
     shadow_rays_.push_back(ray);
-    shadows_.push_back({index, contribution});
+    shadows_.push_back({active_[k], contribution});
     path.result.cost += 1;
 }
 
-/// What lies before k in the wave has been shaded, so that its place can be taken.
-bool TileTracer::continue_path(size_t k, const Vertex& vertex, size_t next) {
+bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
     Path& path = paths_[active_[k]];
-    const scalar::BsdfSample drawn = scalar::sample_bsdf(
-        vertex.bsdf, vertex.wo_local, random_[scalar::kPickPair][k].y, random_[scalar::kBsdfPair][k]);
-    const Vec3f direction = normalize(scalar::from_local(vertex.basis, drawn.direction));
-    if (drawn.weight == Vec3f{} || dot(vertex.point.geometric_normal, direction) <= 0) return false;
-    path.throughput = path.throughput * drawn.weight;
+    path.throughput = path.throughput * get_lane(lanes.bounce_weight, lane);
     if (!is_finite(path.throughput) || !survives_roulette(path, random_[scalar::kRoulettePair][k].x))
         return false;
-    path.previous = vertex.point.position;
-    path.bsdf_pdf = drawn.pdf;
+    path.previous = points_[k].position;
+    path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
+    const uint32_t bias = hits_[k].bias;
     active_[next] = active_[k];
-    rays_[next] = {tracer_.offset_origin(vertex.point, direction), 0, direction, kInfinity, vertex.bias};
+    rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
+                   bias};
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/cpu/environment_light.h"
 #include "engine/cpu/tracer.h"
 #include "math/scalar.h"
 
@@ -20,12 +21,45 @@ struct PointBatch {
     SurfacePoint* points;
 };
 
+/// Hits that paths of a wave have come to.
+struct VertexBatch {
+    size_t count; ///< 1 to 16
+    const SurfacePoint* points;
+    const TraceRay* rays;    ///< that came there
+    const Vec2f* pick_pairs; ///< random numbers, y picks the lobe; null: no path goes on
+    const Vec2f* bsdf_pairs;
+};
+
+/// Sixteen vertices, a lane each. Masks have a bit a lane.
+struct VertexLanes {
+    // Given. All lanes must hold numbers.
+    alignas(64) float base_color[3][16], roughness[16], metallic[16], ior[16];
+    alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn
+    // Found. Normals are on the viewer's side; origins are moved off the surface.
+    alignas(64) float geometric_normal[3][16], shading_normal[3][16];
+    alignas(64) float light_reflected[3][16]; ///< BSDF times cosine
+    alignas(64) float light_bsdf_pdf[16];     ///< with which the BSDF would have drawn that direction
+    alignas(64) float shadow_origin[3][16];
+    alignas(64) float bounce_direction[3][16], bounce_origin[3][16];
+    alignas(64) float bounce_weight[3][16], bounce_pdf[16];
+    uint32_t is_lit;  ///< some of the light could arrive
+    uint32_t goes_on; ///< a ray leaves the surface
+};
+
 struct ShadingKernels {
     const char* name;                       ///< as that of the Kernels for the same instruction set
     void (*make_points)(const PointBatch&); ///< as Tracer::make_surface_point
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                        Vec2f* drawn);
+    /// What the vertices of a batch reflect (shared/bsdf.h).
+    void (*reflect)(const VertexBatch&, VertexLanes&);
+    /// As the functions of EnvironmentLight for one direction, place or pair.
+    void (*look_up_environment)(const EnvironmentTables&, const Vec3f* directions, size_t count,
+                                EnvironmentLookup* found);
+    void (*fetch_environment)(const EnvironmentTables&, const Vec2f* positions, size_t count,
+                              Vec3f* radiances);
+    void (*draw_directions)(const EnvironmentTables&, const Vec2f* u, size_t count, DirectionSample* drawn);
     /// rays[k] as scalar::make_pinhole_ray aims it through positions[k], in pixels.
     void (*aim_rays)(const scalar::CameraFrame& camera, const Vec2f* positions, size_t count, TraceRay* rays);
 };

@@ -40,14 +40,6 @@ Footprint find_latlong(const Texture& texture, const Vec2f& position) {
     return find_footprint(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
 }
 
-void prefetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
-    const size_t offset = 4 * (size_t(y) * texture.width + x);
-    if (texture.halves.empty())
-        __builtin_prefetch(texture.floats.data() + offset);
-    else
-        __builtin_prefetch(texture.halves.data() + offset);
-}
-
 } // namespace
 
 Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
@@ -62,13 +54,6 @@ Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
 
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
     return fetch_bilinear(texture, find_latlong(texture, position));
-}
-
-void prefetch_latlong(const Texture& texture, const Vec2f& position) {
-    const Footprint at = find_latlong(texture, position);
-    // Both texels of a row mostly share a line of the cache.
-    prefetch_texel(texture, at.x1, at.y0);
-    prefetch_texel(texture, at.x1, at.y1);
 }
 
 } // namespace relief::cpu

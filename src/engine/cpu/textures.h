@@ -17,7 +17,4 @@ Vec3f fetch_texture(const Texture& texture, const Vec2f& uv);
 /// in x, clamped in y.
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position);
 
-/// Has the texels loaded that fetch_latlong will read.
-void prefetch_latlong(const Texture& texture, const Vec2f& position);
-
 } // namespace relief::cpu
