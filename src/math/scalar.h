@@ -26,6 +26,7 @@ inline bool is_any(bool condition) { return condition; }
 inline float abs(float a) { return std::fabs(a); }
 inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
+inline float copy_sign(float size, float sign) { return std::copysign(size, sign); }
 inline float clamp(float a, float low, float high) { return min(max(a, low), high); }
 inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }

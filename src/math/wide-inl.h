@@ -88,6 +88,12 @@ RELIEF_WIDE_UNARY(abs, Abs)
 RELIEF_WIDE_UNARY(sqrt, Sqrt)
 #undef RELIEF_WIDE_UNARY
 
+HWY_INLINE Float copy_sign(const Float& size, const Float& sign) {
+    Float r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::CopySign(size.part[p], sign.part[p]);
+    return r;
+}
+
 // As in the one-lane door: the first operand where neither is less, nan included.
 HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a); }
 HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
@@ -241,6 +247,7 @@ using scalar::kPi;
 #define FN HWY_INLINE
 #define EXACT
 #include "shared/basis.h"
+#include "shared/octahedron.h"
 #include "shared/picture_plane.h"
 #include "shared/shading_normal.h"
 #include "shared/sobol.h"

@@ -9,6 +9,7 @@
 #include "shared/exact.h"
 #include "shared/levels.h"
 #include "shared/mips.h"
+#include "shared/octahedron.h"
 #include "shared/frame.h"
 #include "shared/texel.h"
 #include "shared/object_ray.h"

@@ -1,17 +1,13 @@
-// Octahedral unit vectors (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit
-// Vectors) and the frames packed with them.
+// Unit vectors and frames packed as octahedral coordinates.
 #ifndef RELIEF_FRAME_H
 #ifndef __cplusplus
 #define RELIEF_FRAME_H
+#include "shared/octahedron.h"
 #endif
 
 // 0 and +-1 are exact in both precisions, so that frames along the axes come back exactly.
 const float kFineUnit = 32767.0f;
 const float kCoarseUnit = 16383.0f;
-
-FN float copy_sign(float size, float sign) {
-    return uintBitsToFloat((floatBitsToUint(size) & 0x7fffffffu) | (floatBitsToUint(sign) & 0x80000000u));
-}
 
 /// Signed number in the lowest `width` bits, divided by `scale`.
 FN float dequantize_unit(uint bits, uint width, float scale) {
@@ -19,18 +15,15 @@ FN float dequantize_unit(uint bits, uint width, float scale) {
     return clamp(value, -1.0f, 1.0f);
 }
 
-FN Vec3 unfold_octahedron(float x, float y) {
-    EXACT float z = 1.0f - abs(x) - abs(y);
-    float overlap = max(-z, 0.0f);
-    EXACT float unfolded_x = x - copy_sign(overlap, x);
-    EXACT float unfolded_y = y - copy_sign(overlap, y);
-    Vec3 v = {unfolded_x, unfolded_y, z};
-    return make_unit(v);
+FN Vec2 unpack_octahedron(uint packed_normal) {
+    Vec2 folded = {dequantize_unit(packed_normal & 0xffffu, 16u, kFineUnit),
+                   dequantize_unit(packed_normal >> 16u, 16u, kFineUnit)};
+    return folded;
 }
 
 FN Vec3 unpack_unit_normal(uint packed_normal) {
-    return unfold_octahedron(dequantize_unit(packed_normal & 0xffffu, 16u, kFineUnit),
-                             dequantize_unit(packed_normal >> 16u, 16u, kFineUnit));
+    Vec2 folded = unpack_octahedron(packed_normal);
+    return unfold_octahedron(folded.x, folded.y);
 }
 
 /// Orthonormal; the bitangent is -cross(n, t) where the lowest bit of `packed_tangent` is set.

@@ -1,6 +1,6 @@
 // The common dialect of GLSL 4.60 and C++20 (see docs/decisions/one-source-formulas.md). For GLSL this file
 // defines the names; C++ instances define them before the include: FN EXACT Float Bool Uint Vec2 Vec3 select
-// is_any is_finite make_unit.
+// is_any copy_sign is_finite make_unit.
 #ifndef __cplusplus
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H
@@ -13,6 +13,10 @@
 #define Vec3 vec3
 #define select(condition, a, b) ((condition) ? (a) : (b))
 #define is_any(condition) (condition)
+
+float copy_sign(float size, float sign) {
+    return uintBitsToFloat((floatBitsToUint(size) & 0x7fffffffu) | (floatBitsToUint(sign) & 0x80000000u));
+}
 
 bool is_finite(vec3 v) { return all(lessThanEqual(abs(v), vec3(3.402823466e38f))); }
 

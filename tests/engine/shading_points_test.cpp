@@ -11,8 +11,25 @@
 namespace relief {
 namespace {
 
+/// Triangles and quads side by side; with normals that are not those of their planes and texture coordinates,
+/// or with nothing but positions.
+Mesh make_polygons(bool is_bare) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0.2f}, {1, 1, -0.3f}, {0, 1, 0}, {2, 0, 0}, {2, 1.5f, 0.5f}};
+    mesh.face_sizes = {4, 3, 3};
+    mesh.position_indices = {0, 1, 2, 3, 1, 4, 2, 4, 5, 2};
+    if (is_bare) return mesh;
+    for (uint32_t k = 0; k < 6; ++k) {
+        const Vec3f tilt = scalar::square_to_sphere(scalar::sobol_pair(5, k, 0));
+        mesh.normals.push_back(normalize(Vec3f{0, 0, 1} + tilt * 0.7f));
+        mesh.uvs.push_back({0.3f * float(k), 1 - 0.1f * float(k * k)});
+    }
+    mesh.uv_indices = mesh.normal_indices = mesh.position_indices;
+    return mesh;
+}
+
 /// A displaced torus with a seam along either circle, the same one mirrored, a sphere whose patches nearly
-/// all touch one, plain quads, and a smooth base.
+/// all touch one, plain quads, a smooth base, and polygons.
 Scene make_scene(const Displacement& displacement) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
     scene.meshes.push_back(test::make_cube_sphere(2));
@@ -25,6 +42,11 @@ Scene make_scene(const Displacement& displacement) {
     scene.meshes.back().subdivision.scheme = SubdivisionScheme::catmark;
     scene.meshes.back().subdivision.level = 1;
     scene.objects.push_back({"smooth", 2, 0, kNoIndex, {}});
+    for (const bool is_bare : {false, true}) {
+        scene.objects.push_back({"polygons", uint32_t(scene.meshes.size()), kNoIndex, kNoIndex,
+                                 scene.objects[1].world_from_object});
+        scene.meshes.push_back(make_polygons(is_bare));
+    }
     return scene;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/cpu/camera_rays-inl.h"
 #include "engine/cpu/environment_lanes-inl.h"
+#include "engine/cpu/polygon_points-inl.h"
 #include "engine/cpu/random_pairs-inl.h"
 #include "engine/cpu/reflection-inl.h"
 #include "engine/cpu/shading_kernels.h"
@@ -18,14 +19,10 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
-    static const cpu::ShadingKernels kKernels{name,
-                                              make_point_batch,
-                                              draw_pairs,
-                                              wide::reflect,
-                                              wide::look_up_environment,
-                                              wide::fetch_environment,
-                                              wide::draw_directions,
-                                              aim_rays};
+    static const cpu::ShadingKernels kKernels{
+        name,          make_point_batch,          make_polygon_batch,      draw_pairs,
+        wide::reflect, wide::look_up_environment, wide::fetch_environment, wide::draw_directions,
+        aim_rays};
     return kKernels;
 }
 

@@ -11,7 +11,8 @@
 
 namespace relief::cpu {
 
-/// Hits on patches of one displaced surface whose first corners share a tile that has a map.
+/// Hits on patches of one displaced surface whose first corners share a tile that has a map, or on polygons
+/// of one that is not displaced.
 struct PointBatch {
     const PreparedScene& scene;
     PatchSamplesCache& patches;
@@ -47,8 +48,9 @@ struct VertexLanes {
 };
 
 struct ShadingKernels {
-    const char* name;                       ///< as that of the Kernels for the same instruction set
-    void (*make_points)(const PointBatch&); ///< as Tracer::make_surface_point
+    const char* name;                               ///< as that of the Kernels for the same instruction set
+    void (*make_points)(const PointBatch&);         ///< as Tracer::make_surface_point, on a displaced surface
+    void (*make_polygon_points)(const PointBatch&); ///< the same on one that is not
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                        Vec2f* drawn);

@@ -33,6 +33,12 @@ struct HitLanes {
     alignas(64) float vertex_u[3][16], vertex_v[3][16];
     alignas(64) float foreign[3][3][16]; ///< vertex, axis: where the vertex is not the patch's own
     LaneMask is_foreign[3];
+
+    /// What no hit is loaded into stays without divisions by 0.
+    HWY_INLINE void clear() {
+        std::memset(this, 0, sizeof *this);
+        for (size_t lane = 0; lane < 16; ++lane) side[lane] = normal_side[lane] = 1;
+    }
 };
 
 HWY_INLINE void load_quads(const void* source, size_t lane, LaneQuads* quads, size_t count) {
@@ -73,6 +79,18 @@ inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& lev
     lanes.foreign[number][2][lane] = p.z;
 }
 
+/// Where on its patch, and in the world, a hit is.
+HWY_INLINE void load_place(const Instance& instance, const cpu::TraceHit& hit, const PatchLevels& levels,
+                           size_t lane, HitLanes& lanes) {
+    load_quads(&instance.world_from_object, lane, lanes.world_from_object, 3);
+    load_quads(&instance.object_from_world, lane, lanes.object_from_world, 3);
+    lanes.u[lane] = hit.u, lanes.v[lane] = hit.v;
+    lanes.i[lane] = hit.i, lanes.j[lane] = hit.j;
+    lanes.side[lane] = float(1u << levels.patch);
+    lanes.turn[lane] = instance.is_mirrored ? -1.0f : 1.0f;
+    lanes.is_upper[lane] = hit.is_upper ? 1.0f : 0.0f;
+}
+
 inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, size_t lane, HitLanes& lanes) {
     const Instance& instance = batch.scene.instances[hit.instance];
     const Surface& surface = batch.scene.surfaces[instance.surface];
@@ -82,16 +100,10 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
             load_quads(reinterpret_cast<const char*>(&samples.corners()[k]) + 16 * q, lane,
                        &lanes.corner[k][q], 1);
     if (!surface.controls.empty()) load_quads(&surface.controls[hit.patch], lane, lanes.controls, 9);
-    load_quads(&instance.world_from_object, lane, lanes.world_from_object, 3);
-    load_quads(&instance.object_from_world, lane, lanes.object_from_world, 3);
     const PatchLevels levels = unpack_levels(hit.levels);
-    lanes.u[lane] = hit.u, lanes.v[lane] = hit.v;
-    lanes.i[lane] = hit.i, lanes.j[lane] = hit.j;
-    lanes.side[lane] = float(1u << levels.patch);
+    load_place(instance, hit, levels, lane, lanes);
     lanes.normal_side[lane] =
         float(1u << scalar::choose_normal_level(surface.packed_mips(hit.patch), levels.patch));
-    lanes.turn[lane] = instance.is_mirrored ? -1.0f : 1.0f;
-    lanes.is_upper[lane] = hit.is_upper ? 1.0f : 0.0f;
     for (int edge = 0; edge < 4; ++edge)
         lanes.is_seam[edge][lane] = surface.is_seam(hit.patch, edge) ? 1.0f : 0.0f;
     const uint32_t i = hit.i, j = hit.j;
@@ -253,11 +265,9 @@ struct CellPointLanes {
     Lanes16 position_error;
 };
 
-HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const MapLanes& from,
-                                          const CornerLanes& corners) {
-    const WideVec3 a = evaluate_cell_vertex(lanes, from, corners, 0),
-                   b = evaluate_cell_vertex(lanes, from, corners, 1),
-                   c = evaluate_cell_vertex(lanes, from, corners, 2);
+/// Of the triangles a, b, c of sixteen cells; `uv_area`: their share of the patch's (u, v).
+HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVec3& a, const WideVec3& b,
+                                          const WideVec3& c, const Lanes16& uv_area) {
     const Lanes16 side = Lanes16::load(lanes.side);
     const wide::Bool is_upper = wide::is_set(lanes.is_upper);
     const wide::CornerWeights weights =
@@ -267,7 +277,7 @@ HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const MapLanes&
     CellPointLanes point;
     point.triangle = wide::make_triangle_point(
         m.transform_vector(wide::blend_corners(a, b, c, weights)) + m.translation, m.transform_vector(b - a),
-        m.transform_vector(c - a), Lanes16::load(lanes.turn), Lanes16(0.5f) / (side * side));
+        m.transform_vector(c - a), Lanes16::load(lanes.turn), uv_area);
     const Lanes16 corner = wide::max(wide::max(wide::largest_coordinate(a), wide::largest_coordinate(b)),
                                      wide::largest_coordinate(c));
     const Lanes16 row = wide::max(wide::max(wide::sum_magnitudes(m.rows[0]), wide::sum_magnitudes(m.rows[1])),
@@ -317,10 +327,21 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
                                        wide::displace_derivative_through(along_v, frame, d, normal), normal);
 }
 
-/// Writes the members of SurfacePoint before position_error, four floats at a time, and it.
-inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count,
-                         const LaneQuads (&quads)[3], const float* position_errors) {
+/// Points of a batch from `first` on, with the surface's own shading normals, object space. Members of
+/// SurfacePoint before position_error are written four floats at a time.
+inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count, const HitLanes& lanes,
+                         const CellPointLanes& cell, const WideVec3& smooth, const WideVec2& uv) {
     static_assert(offsetof(cpu::SurfacePoint, position_error) == 48);
+    const AffineLanes inverse(lanes.object_from_world);
+    const WideVec3 shading_normal = wide::orient_shading_normal(
+        inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y + inverse.rows[2] * smooth.z,
+        cell.triangle.normal);
+    const WideVec3 &p = cell.triangle.position, &g = cell.triangle.normal, &s = shading_normal;
+    LaneQuads quads[3];
+    quads[0].set(p.x, p.y, p.z, g.x), quads[1].set(g.y, g.z, s.x, s.y);
+    quads[2].set(s.z, uv.x, uv.y, cell.triangle.area_per_uv);
+    alignas(64) float position_errors[16];
+    cell.position_error.store(position_errors);
     for (size_t lane = 0; lane < count; ++lane) {
         const uint32_t k = batch.order[first + lane];
         cpu::SurfacePoint& point = batch.points[k];
@@ -333,10 +354,7 @@ inline void store_points(const cpu::PointBatch& batch, size_t first, size_t coun
 
 HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first, size_t count) {
     HitLanes lanes;
-    if (count < 16) {
-        std::memset(&lanes, 0, sizeof lanes);
-        for (size_t lane = 0; lane < 16; ++lane) lanes.side[lane] = lanes.normal_side[lane] = 1;
-    }
+    if (count < 16) lanes.clear();
     for (LaneMask& mask : lanes.is_foreign) mask = 0;
     for (size_t lane = 0; lane < count; ++lane)
         load_hit(batch, batch.hits[batch.order[first + lane]], lane, lanes);
@@ -349,21 +367,13 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
                         {tile, scalar::packed_mip(mips, scalar::kMipInside)},
                         {tile, scalar::choose_normal_mip(mips)}};
     const CornerLanes corners(lanes, surface);
-    const CellPointLanes cell = make_cell_point(lanes, from, corners);
-    const AffineLanes inverse(lanes.object_from_world);
-    const WideVec3 smooth = compute_shading_normals(lanes, from, corners);
-    const WideVec3 shading_normal = wide::orient_shading_normal(
-        inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y + inverse.rows[2] * smooth.z,
-        cell.triangle.normal);
+    const Lanes16 side = Lanes16::load(lanes.side);
+    const CellPointLanes cell = make_cell_point(
+        lanes, evaluate_cell_vertex(lanes, from, corners, 0), evaluate_cell_vertex(lanes, from, corners, 1),
+        evaluate_cell_vertex(lanes, from, corners, 2), Lanes16(0.5f) / (side * side));
     const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
-    const WideVec2 uv{corners.blend(kUv, at), corners.blend(kUv + 1, at)};
-    const WideVec3 &p = cell.triangle.position, &g = cell.triangle.normal, &s = shading_normal;
-    LaneQuads quads[3];
-    quads[0].set(p.x, p.y, p.z, g.x), quads[1].set(g.y, g.z, s.x, s.y);
-    quads[2].set(s.z, uv.x, uv.y, cell.triangle.area_per_uv);
-    alignas(64) float position_errors[16];
-    cell.position_error.store(position_errors);
-    store_points(batch, first, count, quads, position_errors);
+    store_points(batch, first, count, lanes, cell, compute_shading_normals(lanes, from, corners),
+                 {corners.blend(kUv, at), corners.blend(kUv + 1, at)});
 }
 
 inline void make_point_batch(const cpu::PointBatch& batch) {

@@ -52,6 +52,7 @@ uint32_t make_key(const PreparedScene& scene, const TraceHit& hit) {
     const Surface& surface = scene.surfaces[index];
     if (!can_batch_points(surface, hit.patch)) return kAlone;
     if (index >= 1u << 21) return kAlone;
+    if (!surface.has_displacement) return index << 11;
     const uint32_t mip = scalar::packed_mip(surface.packed_mips(hit.patch), scalar::kMipInside);
     return index << 11 | mip << 8 | surface.tile(surface.quads[hit.patch].vertex[0]);
 }
@@ -137,8 +138,11 @@ void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std:
         const uint32_t key = uint32_t(keys[first] >> 32);
         for (last = first + 1; last < keys.size() && uint32_t(keys[last] >> 32) == key;) ++last;
         if (key != kAlone) {
-            kernels.make_points({scene, scratch.patches, hits.data(), scratch.order.data() + first,
-                                 last - first, points.data()});
+            const TraceHit& any = hits[scratch.order[first]];
+            const Surface& surface = scene.surfaces[scene.instances[any.instance].surface];
+            const auto make = surface.has_displacement ? kernels.make_points : kernels.make_polygon_points;
+            make({scene, scratch.patches, hits.data(), scratch.order.data() + first, last - first,
+                  points.data()});
             continue;
         }
         for (size_t n = first; n < last; ++n) {

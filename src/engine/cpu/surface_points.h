@@ -11,9 +11,10 @@
 
 namespace relief::cpu {
 
-/// False where samples need an exception: nothing to fetch, or a fetch beside the map.
+/// False where a SIMD kernel would need an exception: nothing to fetch, or a fetch beside the map.
 inline bool can_batch_points(const Surface& surface, uint32_t patch) {
-    return surface.has_displacement && surface.map.wrap != WrapMode::black && !surface.frames.empty() &&
+    if (!surface.has_displacement) return true;
+    return surface.map.wrap != WrapMode::black && !surface.frames.empty() &&
            surface.tile(surface.quads[patch].vertex[0]) < surface.map.tiles.size();
 }
 
