@@ -124,6 +124,15 @@ RELIEF_LANES_COMPARE(equal, Eq)
 RELIEF_LANES_COMPARE(not_equal, Ne) // of a NaN: true or false, by instruction set
 #undef RELIEF_LANES_COMPARE
 
+/// a where x < y, else b.
+template <size_t W>
+HWY_INLINE Lanes<W> select_less(const Lanes<W>& x, const Lanes<W>& y, const Lanes<W>& a, const Lanes<W>& b) {
+    Lanes<W> r;
+    for (size_t p = 0; p < Lanes<W>::kParts; ++p)
+        r.part[p] = hn::IfThenElse(hn::Lt(x.part[p], y.part[p]), a.part[p], b.part[p]);
+    return r;
+}
+
 template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
     auto least = a.part[0];
     for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
@@ -172,6 +181,12 @@ struct LaneIndices {
     /// The bits of floats.
     HWY_INLINE explicit LaneIndices(const Lanes16& bits) {
         for (size_t p = 0; p < Lanes16::kParts; ++p) part[p] = hn::BitCast(D(), bits.part[p]);
+    }
+    /// Of floats that are whole numbers.
+    static HWY_INLINE LaneIndices convert(const Lanes16& whole) {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(D(), whole.part[p]);
+        return r;
     }
     HWY_INLINE Lanes16 bits() const {
         Lanes16 r;

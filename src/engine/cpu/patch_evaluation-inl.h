@@ -13,6 +13,7 @@
 #include "engine/cpu/texel_lanes-inl.h"
 #include "math/lanes-inl.h"
 #include "surface/bicubic.h"
+#include "surface/patch_samples.h"
 #include "surface/texels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -97,12 +98,56 @@ HWY_INLINE void fetch_raw(const DisplacementMap& map, const MapImage& image, con
     }
 }
 
+/// The same where all sixteen lie near each other, as along a row of samples finer than the texels: runs of
+/// texels are read once and picked from in registers. False where they do not, or where the map wraps.
+HWY_INLINE bool fetch_run(const DisplacementMap& map, const MapImage& image, const Lanes16& u,
+                          const Lanes16& v, Lanes16 (&raw)[3]) {
+    if constexpr (!LaneTable<16>::kIsInRegisters) return false;
+    constexpr float kMostRows = 5; // more of them than that cost as much as texels one by one
+    const Texture& texture = map.image(image.tile, image.mip).texture;
+    const Lanes16 half(0.5f);
+    const Lanes16 x = u * Lanes16(float(texture.width)) - half;
+    const Lanes16 y = (map.flip_v ? v : Lanes16(1.0f) - v) * Lanes16(float(texture.height)) - half;
+    const Lanes16 x0 = floor(x), y0 = floor(y);
+    const float left = reduce_min(x0), top = reduce_min(y0), bottom = reduce_max(y0);
+    const bool is_near = reduce_max(x0) - left <= 14 && bottom - top < kMostRows;
+    const bool is_inside =
+        left >= 0 && top >= 0 && bottom + 1 < float(texture.height) && left + 16 <= float(texture.width);
+    if (!(is_near && is_inside)) return false;
+    const LaneIndices column = LaneIndices::convert(x0 - Lanes16(left)), next = column + LaneIndices(1);
+    const Lanes16 fx = x - x0;
+    size_t first = size_t(top) * texture.width + size_t(left);
+    const auto blend_row = [&](Lanes16(&row)[3]) HWY_ATTR {
+        Lanes16 texels[3];
+        load_texels(texture, first, texels);
+        first += texture.width;
+        for (int c = 0; c < 3; ++c) {
+            const LaneTable<16> table(texels[c]);
+            row[c] = wide::blend(table.pick(column), table.pick(next), fx);
+        }
+    };
+    Lanes16 above[3], upper[3], lower[3];
+    blend_row(above);
+    for (float row = top; row <= bottom; ++row) {
+        Lanes16 below[3];
+        blend_row(below);
+        for (int c = 0; c < 3; ++c) {
+            upper[c] = row == top ? above[c] : select_less(y0, Lanes16(row), upper[c], above[c]);
+            lower[c] = row == top ? below[c] : select_less(y0, Lanes16(row), lower[c], below[c]);
+            above[c] = below[c];
+        }
+    }
+    for (int c = 0; c < 3; ++c) raw[c] = wide::blend(upper[c], lower[c], y - y0);
+    return true;
+}
+
 /// Displaced positions of sixteen samples whose interpolated values are given.
 HWY_INLINE void displace(const Surface& surface, const MapImage& image, const Lanes16 (&value)[kValueCount],
                          Lanes16 (&position)[3]) {
     const DisplacementMap& map = surface.map;
     Lanes16 raw[3], d[3];
-    fetch_raw(map, image, value[kUv], value[kUv + 1], raw);
+    if (!fetch_run(map, image, value[kUv], value[kUv + 1], raw))
+        fetch_raw(map, image, value[kUv], value[kUv + 1], raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
     raw[2] = raw[2] - Lanes16(map.midlevel.z);
@@ -229,8 +274,10 @@ HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& l
     displace(surface, {surface.tile(line.first), mip}, value, position);
 }
 
-/// Samples of one border of the tile that lies on patch edge `edge`.
-HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge, VertexGrid& grid) {
+/// Samples of one border of the tile that lies on patch edge `edge`. `samples`: the patch unpacked, once for
+/// all borders that need it.
+HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge,
+                                std::optional<PatchSamples>& samples, VertexGrid& grid) {
     const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];
     const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
     const std::array<Vec3f, 2> controls = surface.line_controls(range.patch, edge, line);
@@ -261,8 +308,8 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
             const uint32_t j = is_row ? (is_far ? range.cell_count : 0) : along;
             const uint32_t slot = j * VertexGrid::kPitch + i;
             if (is_corner[lane]) {
-                const Vec3f p =
-                    evaluate_vertex(surface, range.patch, range.levels, range.cell_x + i, range.cell_y + j);
+                if (!samples) samples.emplace(surface, range.patch);
+                const Vec3f p = evaluate_vertex(*samples, range.levels, range.cell_x + i, range.cell_y + j);
                 grid.axis[0][slot] = p.x, grid.axis[1][slot] = p.y, grid.axis[2][slot] = p.z;
             } else {
                 for (int axis = 0; axis < 3; ++axis) grid.axis[axis][slot] = point[axis][lane];
@@ -292,11 +339,12 @@ HWY_INLINE void evaluate_tile(const Surface& surface, const TileRange& range, Ve
         return;
     }
     evaluate_interior(surface, range, grid);
+    std::optional<PatchSamples> samples;
     const uint32_t n = range.side();
-    if (range.cell_y == 0) evaluate_border(surface, range, 0, grid);
-    if (range.cell_x + range.cell_count == n) evaluate_border(surface, range, 1, grid);
-    if (range.cell_y + range.cell_count == n) evaluate_border(surface, range, 2, grid);
-    if (range.cell_x == 0) evaluate_border(surface, range, 3, grid);
+    if (range.cell_y == 0) evaluate_border(surface, range, 0, samples, grid);
+    if (range.cell_x + range.cell_count == n) evaluate_border(surface, range, 1, samples, grid);
+    if (range.cell_y + range.cell_count == n) evaluate_border(surface, range, 2, samples, grid);
+    if (range.cell_x == 0) evaluate_border(surface, range, 3, samples, grid);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -23,6 +23,22 @@ HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
     return result;
 }
 
+/// Red, green and blue of sixteen texels, one after another in memory, the first at `index`.
+HWY_INLINE void load_texels(const Texture& texture, size_t index, Lanes16 (&color)[3]) {
+    using D = Lanes16::D;
+    alignas(64) float promoted[64];
+    const float* source = texture.floats.data() + 4 * index;
+    if (texture.floats.empty()) {
+        for (size_t k = 0; k < 16; ++k) load_texel(texture, index + k).store(promoted + 4 * k);
+        source = promoted;
+    }
+    for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        hn::Vec<D> alpha;
+        hn::LoadInterleaved4(D(), source + 4 * p * Lanes16::kLanes, color[0].part[p], color[1].part[p],
+                             color[2].part[p], alpha);
+    }
+}
+
 HWY_INLINE void prefetch_texel(const Texture& texture, size_t index) {
     if (texture.halves.empty())
         __builtin_prefetch(texture.floats.data() + 4 * index);
