@@ -116,7 +116,7 @@ struct Uint {
     HWY_INLINE void store(uint32_t* aligned) const {
         for (size_t p = 0; p < Float::kParts; ++p) hn::Store(part[p], D(), aligned + p * Float::kLanes);
     }
-    /// The whole part of numbers in [0, 2^31).
+    /// The whole part of numbers in [0, 2^31); of others any number.
     HWY_INLINE explicit Uint(const Float& value) {
         for (size_t p = 0; p < Float::kParts; ++p)
             part[p] = hn::BitCast(D(), hn::ConvertTo(hn::RebindToSigned<D>(), value.part[p]));

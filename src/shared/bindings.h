@@ -61,7 +61,7 @@ const uint kBindFloatTexels = 43u;  ///< rgba32f: maps and textures
 const uint kBindHalfTexels = 44u;   ///< rgba16f: maps and textures
 const uint kBindEnvironment = 45u;  ///< r32f: cumulative distributions
 const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emissive patches
-const uint kBindAlbedos = 47u;      ///< rg32f: table of ggx_albedo.h; every table of bindings holds it
+const uint kBindAlbedos = 47u;      ///< rg32f: ggx_table.h; every table of bindings holds it
 const uint kTexelBindingCount = 16u;
 
 // Indirect launches, in the order of kBindArguments.

@@ -48,9 +48,11 @@ FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
     return result;
 }
 
-/// Cell of `count` along one axis that holds a position in [0, 1], as a whole number.
+/// Cell of `count` along one axis that holds a position in [0, 1], as a whole number; the first one for what
+/// is no number.
 FN Float locate_environment_cell(Float position, Float count) {
-    return min(floor(position * count), count - Float(1.0f));
+    Float cell = floor(position * count);
+    return select(cell > Float(0.0f), min(cell, count - Float(1.0f)), Float(0.0f));
 }
 
 /// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, which have no

@@ -1,4 +1,4 @@
-// Where bilinear look-ups of colour textures and environments read.
+// Where bilinear look-ups of colour textures read, and what they give.
 #ifndef RELIEF_TEXTURE_H
 #ifndef __cplusplus
 #define RELIEF_TEXTURE_H

@@ -1,6 +1,7 @@
-// Sine, cosine and their inverses as polynomials, so that every lane and every device computes the same: the
-// libraries behind the usual names round differently, and few have them for many lanes. Coefficients: Moshier
-// 1992, Cephes Mathematical Library (single precision).
+// Sine, cosine and their inverses as polynomials, so that one lane and many, and every instruction set, give
+// the same bits, and devices the same up to their own rounding: the libraries behind the usual names differ
+// more, and few have them for many lanes. Coefficients: Moshier 1992, Cephes Mathematical Library (single
+// precision).
 #ifndef RELIEF_TRIG_H
 #ifndef __cplusplus
 #define RELIEF_TRIG_H

@@ -82,6 +82,14 @@ TEST(AnalyticLights, sphere_light_above_the_horizon_equals_its_centre) {
     }
 }
 
+TEST(AnalyticLights, a_lamp_shines_in_front_of_a_wall_as_in_front_of_nothing) {
+    Scene scene = make_floor_scene();
+    scene.lights = {make_point({0, 1.5f, 0}, 1.2f)};
+    add_object(scene, make_floor(10), make_matte(0));
+    scene.objects.back().world_from_object.translation = {0, 8, 0};
+    expect_irradiance(std::move(scene), 5 / (1.5 * 1.5), 64);
+}
+
 TEST(AnalyticLights, two_lights_add_up_whatever_their_shares) {
     Scene scene = make_floor_scene();
     scene.lights = {make_point({0, 1, 0}, 0.2f), make_point({0, 3, 0}, 0), make_sun({0, -1, 0}, 1)};

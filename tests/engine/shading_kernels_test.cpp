@@ -1,16 +1,19 @@
-// The SIMD kernels of shading beside what they do many at once, bit for bit on every instruction set.
+// The SIMD kernels of shading beside what they do many at once: the same numbers on every instruction set.
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "engine/cpu/lights.h"
 #include "engine/cpu/shading_kernels.h"
 #include "math/scalar.h"
 #include "relief/render.h"
+#include "support/shading_scenes.h"
 
 namespace relief {
 namespace {
@@ -61,7 +64,11 @@ void expect_kernels_of(const cpu::EnvironmentLight& light) {
     std::vector<cpu::EnvironmentLookup> found(kMany);
     std::vector<cpu::DirectionSample> drawn(kMany);
     std::vector<Vec3f> radiances(kMany);
-    for (const std::string& isa : available_isas())
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const Vec3f nowhere{nan, nan, nan};
+    for (const std::string& isa : available_isas()) {
+        // Anything, from within the image.
+        light.look_up(cpu::find_shading_kernels(isa.c_str()), {&nowhere, 1}, found);
         for (const size_t count : {size_t(1), size_t(16), size_t(37), kMany}) {
             const cpu::ShadingKernels& kernels = cpu::find_shading_kernels(isa.c_str());
             light.look_up(kernels, {directions.data(), count}, found);
@@ -74,6 +81,7 @@ void expect_kernels_of(const cpu::EnvironmentLight& light) {
                 if (testing::Test::HasFailure()) return;
             }
         }
+    }
 }
 
 TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
@@ -82,6 +90,15 @@ TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
             expect_kernels_of(cpu::EnvironmentLight(make_sky(width, 1 + width / 2, 3, has_halves)));
         expect_kernels_of(cpu::EnvironmentLight(make_sky(64, 32, 1, has_halves)));
     }
+    // Cells of several texels; a lamp, dark rows and columns.
+    Environment large = make_sky(1500, 750, 3, false);
+    Texture lamps = *large.texture;
+    for (size_t k = 0; k < lamps.floats.size(); ++k)
+        if (k / 6000 % 3 == 0 || k / 4 % 5 == 0) lamps.floats[k] = 0;
+    lamps.floats[4 * (1500 * 200 + 1499)] = 1e6f;
+    expect_kernels_of(cpu::EnvironmentLight(large));
+    large.texture = std::make_shared<Texture>(lamps);
+    expect_kernels_of(cpu::EnvironmentLight(large));
     Environment plain;
     plain.color = {0.5f, 1, 2};
     expect_kernels_of(cpu::EnvironmentLight(plain));
@@ -178,7 +195,8 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
             std::array<cpu::SurfacePoint, 16> points;
             std::array<cpu::TraceRay, 16> rays;
             std::array<Vec2f, 16> picks, pairs;
-            cpu::VertexLanes lanes{};
+            cpu::VertexLanes lanes;
+            std::memset(&lanes, 0xff, sizeof lanes); // no numbers in the lanes beyond
             for (size_t lane = 0; lane < count; ++lane) {
                 const Case& c = cases[first + lane];
                 points[lane] = c.point, rays[lane] = c.ray, picks[lane] = c.pick, pairs[lane] = c.u;
@@ -200,12 +218,65 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
 
 TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
     const Case c = make_cases()[1];
-    cpu::VertexLanes lanes{};
-    set_lane(c, 0, lanes);
-    lanes.goes_on = 1;
-    for (const std::string& isa : available_isas())
+    for (const std::string& isa : available_isas()) {
+        cpu::VertexLanes lanes{};
+        set_lane(c, 0, lanes);
+        lanes.goes_on = 1;
         cpu::find_shading_kernels(isa.c_str()).reflect({1, &c.point, &c.ray, nullptr, nullptr}, lanes);
-    EXPECT_EQ(lanes.goes_on, 0);
+        EXPECT_EQ(lanes.goes_on, 0) << isa;
+    }
+}
+
+/// An environment, a sun, a small and a large lamp, a glowing quad.
+Scene make_lit_scene() {
+    Scene scene;
+    add_object(scene, make_floor(10), make_matte(0.5f));
+    Material glowing = make_matte(0);
+    glowing.emission = {300, 300, 300};
+    add_object(scene, make_floor(1), glowing);
+    scene.objects.back().world_from_object.translation = {2, 1, 0};
+    scene.environment = make_sky(64, 32, 3, false);
+    scene.lights.resize(3);
+    scene.lights[0].strength = 400;
+    for (int k = 1; k < 3; ++k) {
+        scene.lights[k].type = LightType::point, scene.lights[k].strength = 500;
+        scene.lights[k].position = {-1, 1.5f, 0}, scene.lights[k].radius = k == 1 ? 0.0f : 0.3f;
+    }
+    return scene;
+}
+
+TEST(Lights, are_drawn_for_many_points_as_for_each) {
+    RenderSettings settings;
+    const cpu::Tracer tracer(prepare_scene(make_lit_scene(), settings), settings);
+    const cpu::LightSet lights(tracer);
+    Numbers numbers;
+    std::vector<cpu::LightSet::Receiver> at(kMany);
+    std::vector<cpu::LightSet::RandomNumbers> random(kMany);
+    for (size_t k = 0; k < kMany; ++k) {
+        at[k] = {numbers.direction(), 0};
+        random[k] = {numbers.next(), numbers.next(), numbers.pair()};
+    }
+    std::vector<cpu::LightSample> drawn(kMany);
+    lights.draw(at, random, drawn);
+    std::vector<uint32_t> odd;
+    for (uint32_t k = 1; k < kMany; k += 2) odd.push_back(k);
+    lights.weigh(drawn, odd);
+    std::array<size_t, 4> counts{}; // environment, sun, lamps, quad
+    for (uint32_t k = 0; k < kMany; ++k) {
+        cpu::LightSample one;
+        const uint32_t first = 0;
+        lights.draw({&at[k], 1}, {&random[k], 1}, {&one, 1});
+        const bool is_environment = one.lacks_radiance;
+        counts[is_environment ? 0 : one.emitter ? 3 : std::isinf(one.distance) ? 1 : 2] += 1;
+        if (k % 2 == 1) lights.weigh({&one, 1}, {&first, 1});
+        EXPECT_EQ(drawn[k].lacks_radiance, is_environment && k % 2 == 0) << k;
+        EXPECT_EQ(drawn[k].direction, one.direction) << k;
+        EXPECT_EQ(drawn[k].distance, one.distance) << k;
+        EXPECT_EQ(drawn[k].weight, one.weight) << k;
+        EXPECT_EQ(drawn[k].pdf, one.pdf) << k;
+        EXPECT_EQ(drawn[k].emitter.has_value(), one.emitter.has_value()) << k;
+    }
+    for (const size_t count : counts) EXPECT_GT(count, 3u);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "engine/cpu/environment_light.h"
+#include "engine/cpu/lane_arrays-inl.h"
 #include "engine/cpu/texel_lanes-inl.h"
 #include "math/wide-inl.h"
 
@@ -59,34 +60,6 @@ HWY_INLINE Float find_cell_density(const cpu::EnvironmentTables& tables, const U
         tables.data, find_share(tables.columns, cell) * find_share(tables.rows, row), direction);
 }
 
-/// Sixteen pairs of an array, or what is left of it.
-HWY_INLINE Vec2 load_pairs(const Vec2f* source, size_t count) {
-    alignas(64) float pairs[32] = {};
-    std::memcpy(pairs, source, HWY_MIN(count, size_t(16)) * sizeof(Vec2f));
-    Vec2 result;
-    Float::load_pairs(pairs, result.x, result.y);
-    return result;
-}
-
-/// The same of vectors.
-HWY_INLINE Vec3 load_vectors(const Vec3f* source, size_t count) {
-    alignas(64) float packed[48] = {};
-    std::memcpy(packed, source, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
-    Vec3 result;
-    for (size_t p = 0; p < Float::kParts; ++p)
-        hn::LoadInterleaved3(Float::D(), packed + 3 * p * Float::kLanes, result.x.part[p], result.y.part[p],
-                             result.z.part[p]);
-    return result;
-}
-
-HWY_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* target) {
-    alignas(64) float packed[48];
-    for (size_t p = 0; p < Float::kParts; ++p)
-        hn::StoreInterleaved3(vectors.x.part[p], vectors.y.part[p], vectors.z.part[p], Float::D(),
-                              packed + 3 * p * Float::kLanes);
-    std::memcpy(target, packed, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
-}
-
 /// The texels about sixteen places of an image.
 struct ImagePlaces {
     alignas(64) uint32_t left[16], right[16], top[16], bottom[16]; ///< columns; rows times the width
@@ -120,8 +93,8 @@ struct ImagePlaces {
 
     /// Bilinear colours; of the other lanes 0.
     HWY_INLINE Vec3 fetch(const Texture& texture, LaneMask which) const {
-        LaneQuads colours;
-        if (which != 0xffffu) std::memset(&colours, 0, sizeof colours);
+        LaneQuads colors;
+        if (which != 0xffffu) std::memset(&colors, 0, sizeof colors);
         for (; which != 0; which &= which - 1) {
             const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
             const auto load = [&](uint32_t row, uint32_t column)
@@ -129,15 +102,13 @@ struct ImagePlaces {
             texel::filter_texels(load(top[lane], left[lane]), load(top[lane], right[lane]),
                                  load(bottom[lane], left[lane]), load(bottom[lane], right[lane]),
                                  Lanes4(fx[lane]), Lanes4(fy[lane]))
-                .store_unaligned(colours.lane[lane]);
+                .store_unaligned(colors.lane[lane]);
         }
         Float r, g, b, alpha;
-        colours.transpose(r, g, b, alpha);
+        colors.transpose(r, g, b, alpha);
         return texture.channel_count < 3 ? Vec3{r, r, r} : Vec3{r, g, b};
     }
 };
-
-HWY_INLINE LaneMask first_lanes(size_t count) { return count >= 16 ? 0xffffu : (1u << count) - 1; }
 
 /// Rounds of sixteen whose texels are asked for before the first is read.
 inline constexpr size_t kRounds = 4;
@@ -167,10 +138,10 @@ inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3
         }
         for (size_t k = 0; k < rounds; ++k) {
             const size_t first = begin + 16 * k;
-            const Vec3 colour = places[k].fetch(*tables.texture, first_lanes(count - first));
+            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
             LaneQuads quads;
-            quads.set(colour.x * Float(data.scale.x), colour.y * Float(data.scale.y),
-                      colour.z * Float(data.scale.z), Float::load(densities[k]));
+            quads.set(color.x * Float(data.scale.x), color.y * Float(data.scale.y),
+                      color.z * Float(data.scale.z), Float::load(densities[k]));
             std::memcpy(found + first, quads.lane, 16 * HWY_MIN(size_t(16), count - first));
         }
     }
@@ -190,10 +161,10 @@ inline void fetch_environment(const cpu::EnvironmentTables& tables, const Vec2f*
         }
         for (size_t k = 0; k < rounds; ++k) {
             const size_t first = begin + 16 * k;
-            const Vec3 colour = places[k].fetch(*tables.texture, first_lanes(count - first));
-            store_vectors({colour.x * Float(data.scale.x), colour.y * Float(data.scale.y),
-                           colour.z * Float(data.scale.z)},
-                          count - first, radiances + first);
+            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
+            store_vectors(
+                {color.x * Float(data.scale.x), color.y * Float(data.scale.y), color.z * Float(data.scale.z)},
+                count - first, radiances + first);
         }
     }
 }

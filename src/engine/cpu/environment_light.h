@@ -24,15 +24,17 @@ struct EnvironmentLookup {
     float pdf;
 };
 
-/// Where the SIMD kernels find an environment with an image.
+/// Where the SIMD kernels find an environment with an image; valid as long as the light.
 struct EnvironmentTables {
     const Texture* texture;
     scalar::EnvironmentData data;
-    const float* rows;      ///< of the EnvironmentDistribution
-    const float* columns;   ///< likewise
-    const uint32_t* guides; ///< kGuides a row of cells, then kGuides for the rows
+    const float* rows;    ///< of the EnvironmentDistribution
+    const float* columns; ///< likewise
+    /// Where to search for a random number in [k, k + 1) / kGuides: kGuides entries a row of cells, then as
+    /// many for the rows. Each has the first interval that may be meant and, in the upper half, the last.
+    const uint32_t* guides;
 
-    static constexpr uint32_t kGuides = 64; ///< a power of two
+    static constexpr uint32_t kGuides = 64; ///< a power of two, so that k / kGuides is exact
 };
 
 /// Immutable once made.
@@ -68,9 +70,7 @@ class EnvironmentLight {
     Environment environment_;
     EnvironmentDistribution distribution_;
     scalar::EnvironmentData data_;
-    /// Where to search for a random number: the cells of each row, then the rows. Of each the first interval
-    /// that may be meant and, in the upper half, the last.
-    std::vector<uint32_t> guides_;
+    std::vector<uint32_t> guides_; ///< as EnvironmentTables has them
 };
 
 } // namespace relief::cpu

@@ -79,7 +79,7 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
     size_t count = 0;
     for (size_t k = 0; k < at.size(); ++k) {
         const Pick pick = pick_source(at[k].position, random[k].u_light);
-        drawn[k].is_environment = false;
+        drawn[k].lacks_radiance = false;
         drawn[k].emitter.reset();
         if (!pick.source)
             drawn[k].pdf = 0, drawn[k].direction = {};
@@ -96,7 +96,7 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
         LightSample& sample = drawn[receivers[n]];
         sample.direction = found.direction, sample.distance = scalar::make_infinity();
         sample.weight = {weight, weight, weight}, sample.pdf = density;
-        sample.place = found.position, sample.is_environment = true;
+        sample.place = found.position, sample.lacks_radiance = true;
     }
 }
 
@@ -107,10 +107,14 @@ void LightSet::weigh(std::span<LightSample> drawn, std::span<const uint32_t> whi
     for (size_t first = 0; first < which.size(); first += kBlock) {
         size_t count = 0;
         for (const uint32_t k : which.subspan(first, std::min(kBlock, which.size() - first)))
-            if (drawn[k].is_environment) samples[count] = k, places[count++] = drawn[k].place;
+            if (drawn[k].lacks_radiance) samples[count] = k, places[count++] = drawn[k].place;
         if (count == 0) continue;
         environment_->fetch_radiance(tracer_.shading_kernels(), {places.data(), count}, radiances);
-        for (size_t n = 0; n < count; ++n) drawn[samples[n]].weight = drawn[samples[n]].weight * radiances[n];
+        for (size_t n = 0; n < count; ++n) {
+            LightSample& sample = drawn[samples[n]];
+            sample.weight = sample.weight * radiances[n];
+            sample.lacks_radiance = false;
+        }
     }
 }
 

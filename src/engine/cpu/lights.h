@@ -15,8 +15,9 @@ namespace relief::cpu {
 
 /// A direction towards a light; `pdf` and `weight` hold the probability of having picked the light.
 struct LightSample : scalar::LightDraw {
-    Vec2f place;         ///< in the environment's image, where the light is from there
-    bool is_environment; ///< `weight` is to be multiplied by the radiance of `place`
+    Vec2f place{}; ///< in the environment's image, where the light is from there
+    /// The radiance of `place` is not in `weight` yet: LightSet::weigh().
+    bool lacks_radiance = false;
     /// Set when the light is a surface that the shadow ray must stop short of.
     std::optional<SurfacePoint> emitter;
 };
@@ -37,7 +38,8 @@ class LightSet {
     };
 
     /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
-    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 when all is dark.
+    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 where nothing could be drawn: all is dark,
+    /// or a light is at the point itself or seen edge on. It may lie behind the surface.
     struct RandomNumbers {
         float u_light, u_emitter;
         Vec2f u;
@@ -45,8 +47,9 @@ class LightSet {
     /// For many points; drawn[k] belongs to at[k].
     void draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
               std::span<LightSample> drawn) const;
-    /// Multiplies the weights of those drawn[which[...]] that are from the environment by its radiance: most
-    /// directions lead into the surface, and its image, too large for a cache, need not be read for them.
+    /// Completes the weights of drawn[which[...]], before they are used: those from the environment lack its
+    /// radiance. Many directions lead into the surface, and the image, too large for a cache, need not be
+    /// read for them.
     void weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
 
     /// False: `u_emitter` is never looked at.

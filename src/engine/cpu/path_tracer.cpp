@@ -208,6 +208,7 @@ void TileTracer::add_backgrounds() {
         paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
 }
 
+/// What misses looks at places of the image far apart, hits at none; both meet lamps, which few scenes have.
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];
@@ -272,6 +273,7 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     return next;
 }
 
+/// A light for each vertex of a block.
 void TileTracer::draw_lights(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
@@ -282,6 +284,7 @@ void TileTracer::draw_lights(size_t first, size_t count) {
     lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
 }
 
+/// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
         const PointMaterial m = make_material(hits_[first + n].instance, points_[first + n].uv);
@@ -297,6 +300,8 @@ void TileTracer::reflect(size_t first, size_t count) {
         lanes.light_direction[2][lane] = light.direction.z;
         lanes.light_pdf[lane] = light.pdf;
     }
+    for (size_t n = count; n % 16 != 0; ++n)
+        lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
     const bool goes_on = depth_ < settings_.bounces;
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;

@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-#include "engine/cpu/environment_lanes-inl.h"
+#include "engine/cpu/lane_arrays-inl.h"
 #include "engine/cpu/shading_kernels.h"
 #include "math/wide-inl.h"
 
@@ -81,15 +81,15 @@ HWY_INLINE Bool is_black(const Vec3& v) {
 }
 
 struct Scattering {
-    Basis basis; ///< about the bent shading normal
-    Vec3 wo;     ///< towards the viewer, in it
+    Basis basis;   ///< about the bent shading normal
+    Vec3 wo_local; ///< towards the viewer, in it
     Bsdf bsdf;
 };
 
 HWY_INLINE void reflect_light(const PointLanes& point, const Scattering& scattering, cpu::VertexLanes& v) {
     const Vec3 direction = load_vectors(v.light_direction);
     const BsdfValue toward =
-        evaluate_bsdf(scattering.bsdf, scattering.wo, to_local(scattering.basis, direction));
+        evaluate_bsdf(scattering.bsdf, scattering.wo_local, to_local(scattering.basis, direction));
     const Float zero(0.0f);
     const Bool is_lit = Float::load(v.light_pdf) > zero && dot(direction, point.geometric_normal) > zero &&
                         !is_black(toward.value);
@@ -101,7 +101,7 @@ HWY_INLINE void reflect_light(const PointLanes& point, const Scattering& scatter
 
 HWY_INLINE void reflect_path(const PointLanes& point, const Scattering& scattering, const Float& u_lobe,
                              const Vec2& u, cpu::VertexLanes& v) {
-    const BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo, u_lobe, u);
+    const BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
     const Vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
     v.goes_on = to_mask(dot(point.geometric_normal, direction) > Float(0.0f) && !is_black(drawn.weight));
     store_vectors(direction, v.bounce_direction), store_vectors(drawn.weight, v.bounce_weight);
@@ -110,7 +110,7 @@ HWY_INLINE void reflect_path(const PointLanes& point, const Scattering& scatteri
                   v.bounce_origin);
 }
 
-/// The first `count` lanes; the others repeat the last.
+/// Lanes beyond the batch run along with numbers of no meaning; their masks are clear.
 inline void reflect(const cpu::VertexBatch& batch, cpu::VertexLanes& v) {
     const size_t count = batch.count;
     PointLanes point(batch.points, count);
@@ -123,10 +123,10 @@ inline void reflect(const cpu::VertexBatch& batch, cpu::VertexLanes& v) {
 
     Scattering scattering;
     scattering.basis = make_basis(bend_normal(point.shading_normal, point.geometric_normal, wo));
-    scattering.wo = lift_viewer(to_local(scattering.basis, wo));
+    scattering.wo_local = lift_viewer(to_local(scattering.basis, wo));
     scattering.bsdf = make_bsdf(
         {load_vectors(v.base_color), Float::load(v.roughness), Float::load(v.metallic), Float::load(v.ior)},
-        scattering.wo.z);
+        scattering.wo_local.z);
     const LaneMask lanes = first_lanes(count);
     reflect_light(point, scattering, v);
     v.goes_on = 0;

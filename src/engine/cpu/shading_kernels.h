@@ -33,9 +33,9 @@ struct VertexBatch {
 
 /// Sixteen vertices, a lane each. Masks have a bit a lane.
 struct VertexLanes {
-    // Given. All lanes must hold numbers.
+    // Given. Lanes beyond the batch may hold anything; with metallic 0 and ior 1 they cost nothing.
     alignas(64) float base_color[3][16], roughness[16], metallic[16], ior[16];
-    alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn
+    alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn, any direction
     // Found. Normals are on the viewer's side; origins are moved off the surface.
     alignas(64) float geometric_normal[3][16], shading_normal[3][16];
     alignas(64) float light_reflected[3][16]; ///< BSDF times cosine

@@ -44,8 +44,10 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
                                     : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
 }
 
-/// Hits of one key read the same image and go to the SIMD kernel together.
+/// Hits of one key are on polygons of one surface, or on patches of one that read the same image: they go to
+/// a SIMD kernel together.
 constexpr uint32_t kAlone = kNoIndex;
+constexpr size_t kFewPolygons = 4; ///< of less than these one after another is faster
 
 uint32_t make_key(const PreparedScene& scene, const TraceHit& hit) {
     const uint32_t index = scene.instances[hit.instance].surface;
@@ -137,9 +139,9 @@ void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std:
     for (size_t first = 0, last; first < keys.size(); first = last) {
         const uint32_t key = uint32_t(keys[first] >> 32);
         for (last = first + 1; last < keys.size() && uint32_t(keys[last] >> 32) == key;) ++last;
-        if (key != kAlone) {
-            const TraceHit& any = hits[scratch.order[first]];
-            const Surface& surface = scene.surfaces[scene.instances[any.instance].surface];
+        const TraceHit& any = hits[scratch.order[first]];
+        const Surface& surface = scene.surfaces[scene.instances[any.instance].surface];
+        if (key != kAlone && (surface.has_displacement || last - first >= kFewPolygons)) {
             const auto make = surface.has_displacement ? kernels.make_points : kernels.make_polygon_points;
             make({scene, scratch.patches, hits.data(), scratch.order.data() + first, last - first,
                   points.data()});
