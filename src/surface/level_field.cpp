@@ -5,28 +5,31 @@
 
 #include "base/parallel.h"
 #include "relief/render.h"
+#include "surface/level_lines.h"
 #include "surface/patch_samples.h"
 
 namespace relief {
 
 namespace {
 
-constexpr int kEdgeSegments = 8;
-constexpr int kMiddleSegments = 16;
 constexpr double kBicubicCells = 32; // a side, that bicubic patches may have on any map
 
-/// Level of a displaced line from its points, world space; `texels` is its length on the map.
-int choose_level(const Vec3f* points, int count, double texels, const LevelFieldConfig& config) {
+/// Level of a displaced line from its points, object space; `texels` is its length on the map.
+template <size_t N>
+int choose_level(const std::array<Vec3f, N>& line, double texels, const Affine& world_from_object,
+                 const LevelFieldConfig& config) {
     const int cap = std::clamp(int(std::ceil(std::log2(std::max(texels, 1.0)))), 0, kMaxLevel);
     double line_length = 0;
     Box box;
-    for (int k = 0; k < count; ++k) {
+    std::array<Vec3f, N> points;
+    for (size_t k = 0; k < N; ++k) {
+        points[k] = transform_point(world_from_object, line[k]);
         box.extend(points[k]);
         if (k > 0) line_length += length(points[k] - points[k - 1]);
     }
     const Vec3f center = box.center();
     double radius = 0;
-    for (int k = 0; k < count; ++k) radius = std::max(radius, double(length(points[k] - center)));
+    for (const Vec3f& point : points) radius = std::max(radius, double(length(point - center)));
     const double distance = length(config.camera - center) - radius;
     if (!(line_length > 0)) return 0;
     const double cell = double(config.pixel_error) * config.pixel_angle * distance;
@@ -45,49 +48,28 @@ double count_texels(const Surface& surface, uint8_t tile, const Vec2f& a, const 
                     std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height));
 }
 
-int choose_edge_level(const Surface& surface, const PatchSamples& samples, int edge,
-                      const Affine& world_from_object, const LevelFieldConfig& config) {
-    Vec3f points[kEdgeSegments + 1];
-    for (int k = 0; k <= kEdgeSegments; ++k) {
-        const Vec3f point = k == 0               ? samples.corner(samples.line_start(edge))
-                            : k == kEdgeSegments ? samples.corner(samples.line_end(edge))
-                                                 : samples.edge(edge, float(k) / kEdgeSegments);
-        points[k] = transform_point(world_from_object, point);
-    }
-    const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
-    const double texels = count_texels(surface, first.tile, first.uv, second.uv);
-    return choose_level(points, kEdgeSegments + 1, texels, config);
-}
-
-/// Level of the two lines through the middle, along u and along v: the map may stretch the inside more than
-/// the edges.
-int choose_middle_level(const Surface& surface, const PatchSamples& samples, const Affine& world_from_object,
-                        const LevelFieldConfig& config) {
-    int level = 0;
-    for (int direction = 0; direction < 2; ++direction) {
-        Vec3f points[kMiddleSegments - 1];
-        for (int k = 1; k < kMiddleSegments; ++k) {
-            const float s = float(k) / kMiddleSegments;
-            const Vec3f point = direction == 0 ? samples.interior(s, 0.5f) : samples.interior(0.5f, s);
-            points[k - 1] = transform_point(world_from_object, point);
-        }
-        const VertexData a =
-            blend_corners(samples.corners(), direction == 0 ? 0 : 0.5f, direction == 0 ? 0.5f : 0);
-        const VertexData b =
-            blend_corners(samples.corners(), direction == 0 ? 1 : 0.5f, direction == 0 ? 0.5f : 1);
-        const double texels = count_texels(surface, a.tile, a.uv, b.uv);
-        level = std::max(level, choose_level(points, kMiddleSegments - 1, texels, config));
-    }
-    return level;
-}
-
+/// Of an edge by itself, and of the lines through the middle: the map may stretch the inside more than the
+/// edges.
 PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& world_from_object,
                           const LevelFieldConfig& config) {
     const PatchSamples samples(surface, patch, PatchSamples::Filtering::none);
-    PatchLevels levels;
-    levels.patch = uint8_t(choose_middle_level(surface, samples, world_from_object, config));
+    const LevelLines lines = evaluate_level_lines(surface, patch, samples);
+    PatchLevels levels{};
+    for (size_t direction = 0; direction < 2; ++direction) {
+        const auto blend = [&](float s) {
+            return direction == 0 ? blend_corners(samples.corners(), s, 0.5f)
+                                  : blend_corners(samples.corners(), 0.5f, s);
+        };
+        const VertexData a = blend(0), b = blend(1);
+        const int level = choose_level(lines.middles[direction], count_texels(surface, a.tile, a.uv, b.uv),
+                                       world_from_object, config);
+        levels.patch = std::max(levels.patch, uint8_t(level));
+    }
     for (int edge = 0; edge < 4; ++edge) {
-        levels.edge[edge] = uint8_t(choose_edge_level(surface, samples, edge, world_from_object, config));
+        const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
+        const double texels = count_texels(surface, first.tile, first.uv, second.uv);
+        levels.edge[edge] =
+            uint8_t(choose_level(lines.edges[size_t(edge)], texels, world_from_object, config));
         levels.patch = std::max(levels.patch, levels.edge[edge]);
     }
     return levels;

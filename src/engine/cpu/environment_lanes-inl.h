@@ -11,8 +11,8 @@
 
 #include "engine/cpu/environment_light.h"
 #include "engine/cpu/lane_arrays-inl.h"
-#include "engine/cpu/texel_lanes-inl.h"
 #include "math/wide-inl.h"
+#include "surface/texel_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
