@@ -26,7 +26,7 @@ ALLOWED = {
 LIBRARIES = {
     r"(oneapi/)?tbb/": ["src/base"],
     r"opensubdiv/": ["src/surface"],
-    r"hwy/": ["src/math", "src/engine/cpu"],
+    r"hwy/": ["src/math", "src/surface", "src/engine/cpu"],
     r"OpenImageIO/": ["src/io/pictures"],
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
     r"tiny_obj_loader\.h": ["src/io"],
