@@ -25,14 +25,15 @@ void evaluate_lines(const Surface& surface, uint32_t patch, LevelLines& lines) {
     const MapImage image{surface.tile(surface.quads[patch].vertex[0]), 0};
     const Lanes16 ramp = make_ramp(0) * Lanes16(1.0f / kMiddleSegments), half(0.5f);
     Lanes16 position[3];
-    evaluate_samples(surface, image, values, ramp, half, position);
-    store_lanes(position, kMiddleSegments - 1, lines.middles[0].data());
-    evaluate_samples(surface, image, values, half, ramp, position);
-    store_lanes(position, kMiddleSegments - 1, lines.middles[1].data());
+    for (const bool is_along_u : {true, false}) {
+        evaluate_samples<Spacing::wide>(surface, image, values, is_along_u ? ramp : half,
+                                        is_along_u ? half : ramp, position);
+        store_lanes(position, kMiddleSegments - 1, lines.middles[is_along_u ? 0 : 1].data());
+    }
     for (int edge = 0; edge < 4; ++edge) {
         const Surface::EdgeLine line = surface.edge_line(patch, edge);
-        evaluate_line(surface, line, surface.line_controls(patch, edge, line), 0,
-                      make_ramp(0) * Lanes16(1.0f / kEdgeSegments), position);
+        evaluate_line<Spacing::wide>(surface, line, surface.line_controls(patch, edge, line), 0,
+                                     make_ramp(0) * Lanes16(1.0f / kEdgeSegments), position);
         store_lanes(position, kEdgeSegments - 1, lines.edges[size_t(edge)].data() + 1);
     }
 }

@@ -134,12 +134,16 @@ HWY_INLINE bool fetch_run(const DisplacementMap& map, const MapImage& image, con
     return true;
 }
 
+/// Whether sixteen samples are neighbours of a grid as fine as the picture, or lie all over a patch.
+enum class Spacing { close, wide };
+
 /// Displaced positions of sixteen samples whose interpolated values are given.
+template <Spacing kSpacing>
 HWY_INLINE void displace(const Surface& surface, const MapImage& image, const Lanes16 (&value)[kValueCount],
                          Lanes16 (&position)[3]) {
     const DisplacementMap& map = surface.map;
     Lanes16 raw[3], d[3];
-    if (!fetch_run(map, image, value[kUv], value[kUv + 1], raw))
+    if (kSpacing == Spacing::wide || !fetch_run(map, image, value[kUv], value[kUv + 1], raw))
         fetch_raw(map, image, value[kUv], value[kUv + 1], raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
@@ -190,6 +194,7 @@ HWY_INLINE Lanes16 blend_base(const BicubicBase& base, int axis, const wide::Cub
 }
 
 /// Sixteen samples at (u, v) on a patch, by the formula of interior samples.
+template <Spacing kSpacing>
 HWY_INLINE void evaluate_samples(const Surface& surface, const MapImage& image, const PatchValues& patch,
                                  const Lanes16& u, const Lanes16& v, Lanes16 (&position)[3]) {
     const int values = surface.map.is_tangent ? kValueCount : kFrame;
@@ -202,11 +207,12 @@ HWY_INLINE void evaluate_samples(const Surface& surface, const MapImage& image, 
         const wide::CubicWeights along = wide::weigh_cubic(u), across = wide::weigh_cubic(v);
         for (int axis = 0; axis < 3; ++axis) value[axis] = blend_base(*patch.base, axis, along, across);
     }
-    displace(surface, image, value, position);
+    displace<kSpacing>(surface, image, value, position);
 }
 
 /// Sixteen samples of the line of an edge that reads copy `mip` of the map, at s; `controls` lie between its
 /// ends where the base is bicubic.
+template <Spacing kSpacing>
 HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& line,
                               const std::array<Vec3f, 2>& controls, uint32_t mip, const Lanes16& s,
                               Lanes16 (&position)[3]) {
@@ -223,7 +229,7 @@ HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& l
                 Lanes16(first.value[axis]), Lanes16(get_component(controls[0], axis)),
                 Lanes16(get_component(controls[1], axis)), Lanes16(second.value[axis]), weights);
     }
-    displace(surface, {surface.tile(line.first), mip}, value, position);
+    displace<kSpacing>(surface, {surface.tile(line.first), mip}, value, position);
 }
 
 /// A surface whose samples need no exception: displaced by a real tile, and inside the map everywhere.

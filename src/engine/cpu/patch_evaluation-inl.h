@@ -44,7 +44,8 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     for (uint32_t c = 0; c < n; c += 16) {
         const Lanes16 u = make_ramp(float(range.cell_x + c)) * inverse;
         for (uint32_t r = row_begin; r < row_end; ++r) {
-            evaluate_samples(surface, image, patch, u, Lanes16(float(range.cell_y + r)) * inverse, position);
+            evaluate_samples<Spacing::close>(surface, image, patch, u,
+                                             Lanes16(float(range.cell_y + r)) * inverse, position);
             for (int axis = 0; axis < 3; ++axis)
                 position[axis].store_unaligned(&grid.axis[axis][r * VertexGrid::kPitch + c]);
         }
@@ -53,7 +54,8 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     // The last column by itself: a run of sixteen along each row would be for one sample.
     const Lanes16 u = Lanes16(float(range.cell_x + n)) * inverse;
     for (uint32_t r = row_begin; r < row_end; r += 16) {
-        evaluate_samples(surface, image, patch, u, make_ramp(float(range.cell_y + r)) * inverse, position);
+        evaluate_samples<Spacing::close>(surface, image, patch, u,
+                                         make_ramp(float(range.cell_y + r)) * inverse, position);
         alignas(64) float point[3][16];
         for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         for (uint32_t lane = 0; lane < 16 && r + lane < row_end; ++lane)
@@ -88,7 +90,7 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
         }
         if (has_others) {
             Lanes16 position[3];
-            evaluate_line(surface, line, controls, mip, Lanes16::load(s), position);
+            evaluate_line<Spacing::close>(surface, line, controls, mip, Lanes16::load(s), position);
             for (int axis = 0; axis < 3; ++axis) position[axis].store(point[axis]);
         }
         for (uint32_t lane = 0; lane < 16 && c + lane <= range.cell_count; ++lane) {
