@@ -51,13 +51,16 @@ template <size_t kWidth> struct Lanes {
         for (size_t p = 0; p < kParts; ++p)
             hn::LoadInterleaved2(D(), source + 2 * p * kLanes, first.part[p], second.part[p]);
     }
-    /// Codes of a quantised box as floats, exactly.
-    static HWY_INLINE Lanes load_codes(const uint8_t* source) {
+    /// origin + code * scale of the codes of a quantised box. The scale is a power of two, so products are
+    /// exact, and the sum has the same bits whether it is fused with them or not.
+    static HWY_INLINE Lanes decode(const uint8_t* codes, float origin, float scale) {
         const hn::Rebind<uint8_t, D> d8;
         const hn::Rebind<int32_t, D> d32;
         Lanes r;
-        for (size_t p = 0; p < kParts; ++p)
-            r.part[p] = hn::ConvertTo(D(), hn::PromoteTo(d32, hn::LoadU(d8, source + p * kLanes)));
+        for (size_t p = 0; p < kParts; ++p) {
+            const V code = hn::ConvertTo(D(), hn::PromoteTo(d32, hn::LoadU(d8, codes + p * kLanes)));
+            r.part[p] = hn::MulAdd(code, hn::Set(D(), scale), hn::Set(D(), origin));
+        }
         return r;
     }
     HWY_INLINE void store(float* aligned) const {

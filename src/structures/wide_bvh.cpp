@@ -15,7 +15,7 @@ namespace {
 
 class Collapse {
   public:
-    explicit Collapse(const Bvh& bvh) : bvh_(bvh), leaf_counts_(count_leaves(bvh)) {}
+    explicit Collapse(const Bvh& bvh) : bvh_(bvh), collapse_(bvh) {}
 
     WideBvh run() {
         wide_.bounds = bvh_.nodes[0].box();
@@ -41,7 +41,7 @@ class Collapse {
     };
 
     void make_node(const Pending& pending) {
-        const WideChildren list = collect_wide_children(bvh_, leaf_counts_, pending.binary_node);
+        const WideChildren list = collapse_.collect_children(pending.binary_node);
         WideNode node{};
         node.child_count = uint8_t(list.count);
         std::fill(std::begin(node.child), std::end(node.child), WideNode::kNoChild);
@@ -68,7 +68,7 @@ class Collapse {
     }
 
     const Bvh& bvh_;
-    const std::vector<uint32_t> leaf_counts_;
+    const WideCollapse collapse_;
     WideBvh wide_;
     std::vector<Pending> pending_;
 };

@@ -26,8 +26,7 @@ struct WideNode {
     float origin[3];
     int8_t exponent[3]; ///< [-126, 127]: a normal float
     uint8_t child_count;
-    uint8_t lower[3][8];
-    uint8_t upper[3][8];
+    uint8_t planes[6][8]; ///< lower x y z, upper x y z
     uint32_t child[8];
 
     /// Box of child k < child_count; holds the original box.
@@ -62,7 +61,7 @@ struct WideBvh {
     }
 };
 
-/// Collapses the binary tree, always opening the child with the largest area (Wald, Benthin, Boulos 2008).
+/// Collapses the binary tree into the nodes of least area (structures/wide_children.h).
 /// Inner children of a node are adjacent. Throws Error for more than 2^28 primitives.
 WideBvh make_wide_bvh(const Bvh& bvh);
 
@@ -70,8 +69,8 @@ inline Box WideNode::child_box(int k) const {
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
         const float scale = decode_scale(exponent[axis]);
-        low[axis] = decode(origin[axis], scale, lower[axis][k]);
-        high[axis] = decode(origin[axis], scale, upper[axis][k]);
+        low[axis] = decode(origin[axis], scale, planes[axis][k]);
+        high[axis] = decode(origin[axis], scale, planes[3 + axis][k]);
     }
     return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }

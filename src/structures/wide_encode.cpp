@@ -49,9 +49,9 @@ void encode_boxes(WideNode& node, const Box& bounds, const std::array<Box, 8>& b
             const bool is_used = k < node.child_count;
             const uint8_t upper =
                 is_used ? encode_upper(get_component(boxes[k].upper, axis), origin, scale) : 0;
-            node.lower[axis][k] =
+            node.planes[axis][k] =
                 is_used ? encode_lower(get_component(boxes[k].lower, axis), origin, scale) : 255;
-            node.upper[axis][k] = upper;
+            node.planes[3 + axis][k] = upper;
         }
     }
 }

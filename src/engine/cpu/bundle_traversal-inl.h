@@ -181,9 +181,9 @@ inline void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
 /// Bounds of the children of a quantised node, by the decoder that the builder checked with.
 HWY_INLINE void load_bounds(const WideNode& node, Lanes8 (&bound)[6]) {
     for (int k = 0; k < 3; ++k) {
-        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
-        bound[k] = origin + Lanes8::load_codes(node.lower[k]) * scale;
-        bound[3 + k] = origin + Lanes8::load_codes(node.upper[k]) * scale;
+        const float scale = WideNode::decode_scale(node.exponent[k]);
+        bound[k] = Lanes8::decode(node.planes[k], node.origin[k], scale);
+        bound[3 + k] = Lanes8::decode(node.planes[3 + k], node.origin[k], scale);
     }
 }
 HWY_INLINE void load_bounds(const cpu::PolygonNode& node, Lanes8 (&bound)[6]) {

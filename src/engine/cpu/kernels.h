@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/cpu/bottom_cache.h"
-#include "engine/cpu/open_nodes.h"
 #include "engine/cpu/polygon_tree.h"
 #include "engine/cpu/tracer.h"
 #include "math/scalar.h"
@@ -19,7 +18,6 @@ struct SceneView {
     const Surface* surfaces = nullptr;
     uint32_t instance_count = 0;
     const WideBvh* surface_trees = nullptr; ///< these three are those of UpperTrees
-    const OpenNodes* open_nodes = nullptr;
     const WideBvh* instance_tree = nullptr;
     const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
     BottomCache* cache = nullptr;

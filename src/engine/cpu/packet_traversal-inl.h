@@ -42,9 +42,8 @@ HWY_INLINE LaneMask test_children(const cpu::PolygonNode& node, const PacketBoun
 HWY_INLINE LaneMask test_children(const WideNode& node, const PacketBounds& bounds) {
     const auto load = [&](int plane) {
         const int axis = plane % 3;
-        const uint8_t* const codes = plane < 3 ? node.lower[axis] : node.upper[axis];
-        return Lanes8(node.origin[axis]) +
-               Lanes8::load_codes(codes) * Lanes8(WideNode::decode_scale(node.exponent[axis]));
+        return Lanes8::decode(node.planes[plane], node.origin[axis],
+                              WideNode::decode_scale(node.exponent[axis]));
     };
     return test_planes<8>(bounds, load) & ((1u << node.child_count) - 1);
 }

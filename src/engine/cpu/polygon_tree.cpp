@@ -16,8 +16,8 @@ constexpr size_t kMaxPolygonCount = size_t(1) << 28;
 
 /// A block is tested at once, however full it is, and no dearer than a node: what fits one is not split.
 SahBvhBuilder::Config choose_config(const Surface& surface) {
-    const bool has_quads = std::any_of(surface.quads.begin(), surface.quads.end(),
-                                       [](const Quad& quad) { return !quad.is_triangle(); });
+    bool has_quads = false;
+    for (const Quad quad : surface.quads) has_quads = has_quads || !quad.is_triangle();
     SahBvhBuilder::Config config;
     config.max_leaf_size = has_quads ? TriangleBlock::kWidth / 2 : TriangleBlock::kWidth;
     config.intersection_cost = config.traversal_cost / TriangleBlock::kWidth;
@@ -27,7 +27,7 @@ SahBvhBuilder::Config choose_config(const Surface& surface) {
 /// Adds one triangle to the next free lane.
 void add_triangle(const Surface& surface, uint32_t patch, uint32_t is_upper, uint32_t lane,
                   TriangleBlock& block) {
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     const uint32_t vertex[3] = {quad.vertex[0], quad.vertex[1 + is_upper], quad.vertex[2 + is_upper]};
     for (int corner = 0; corner < 3; ++corner) {
         const Vec3f& p = surface.positions[vertex[corner]];
@@ -40,12 +40,11 @@ void add_triangle(const Surface& surface, uint32_t patch, uint32_t is_upper, uin
 
 class Collapse {
   public:
-    Collapse(const Surface& surface, const Bvh& bvh)
-        : surface_(surface), bvh_(bvh), leaf_counts_(count_leaves(bvh)) {}
+    Collapse(const Surface& surface, const Bvh& bvh) : surface_(surface), bvh_(bvh), collapse_(bvh) {}
 
     PolygonTree run() {
         tree_.bounds = bvh_.nodes[0].box();
-        tree_.blocks.resize(leaf_counts_[0]);
+        tree_.blocks.resize(collapse_.leaf_count());
         tree_.nodes.resize(1);
         pending_.push_back({0, 0});
         while (!pending_.empty()) {
@@ -65,7 +64,7 @@ class Collapse {
     };
 
     void make_node(const Pending& pending) {
-        const WideChildren list = collect_wide_children(bvh_, leaf_counts_, pending.binary_node);
+        const WideChildren list = collapse_.collect_children(pending.binary_node);
         PolygonNode node;
         for (int k = 0; k < kMaxWideChildCount; ++k) {
             const Box box = k < list.count ? bvh_.nodes[list.nodes[k]].box() : Box{};
@@ -112,7 +111,7 @@ class Collapse {
 
     const Surface& surface_;
     const Bvh& bvh_;
-    const std::vector<uint32_t> leaf_counts_;
+    const WideCollapse collapse_;
     PolygonTree tree_;
     std::vector<Pending> pending_;
     std::vector<uint32_t> leaves_;

@@ -107,13 +107,12 @@ HWY_INLINE LaneMask test_node(const float (&bounds)[6][W], const RayState& ray, 
 HWY_INLINE LaneMask test_node(const WideNode& node, const RayState& ray, Lanes8& entry) {
     Lanes8 near[3], far[3];
     for (int k = 0; k < 3; ++k) {
-        const bool is_negative = ray.near_plane[k] != k;
-        const uint8_t* const near_codes = is_negative ? node.upper[k] : node.lower[k];
-        const uint8_t* const far_codes = is_negative ? node.lower[k] : node.upper[k];
-        const Lanes8 origin(node.origin[k]), scale(WideNode::decode_scale(node.exponent[k]));
+        const float scale = WideNode::decode_scale(node.exponent[k]);
+        const Lanes8 near_bound = Lanes8::decode(node.planes[ray.near_plane[k]], node.origin[k], scale);
+        const Lanes8 far_bound = Lanes8::decode(node.planes[ray.far_plane[k]], node.origin[k], scale);
         const Lanes8 reciprocal(ray.reciprocal[k]);
-        near[k] = (origin + Lanes8::load_codes(near_codes) * scale - Lanes8(ray.near_origin[k])) * reciprocal;
-        far[k] = (origin + Lanes8::load_codes(far_codes) * scale - Lanes8(ray.far_origin[k])) * reciprocal;
+        near[k] = (near_bound - Lanes8(ray.near_origin[k])) * reciprocal;
+        far[k] = (far_bound - Lanes8(ray.far_origin[k])) * reciprocal;
     }
     entry = max(max(near[0], near[1]), max(near[2], Lanes8(ray.t_min)));
     const Lanes8 exit = min(min(far[0], far[1]), min(far[2], Lanes8(ray.t_max)));

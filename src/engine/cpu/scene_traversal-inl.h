@@ -15,10 +15,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-HWY_INLINE LaneMask test_node(const cpu::PolygonNode& node, const RayState& ray, Lanes8& entry) {
-    return test_node(node.bounds, ray, entry);
-}
-
 /// A walk through a wide tree that stops at every primitive and goes on when asked.
 struct TreeCursor {
     uint32_t size;                           ///< of the stack
@@ -30,12 +26,11 @@ struct TreeCursor {
     HWY_INLINE TreeCursor(uint32_t root, const RayState& ray) : size(1) { stack[0] = {root, ray.t_min}; }
 
     /// The next primitive of the tree whose box the ray enters before ray.t_max, or kNoIndex.
-    template <class Node>
-    HWY_INLINE uint32_t next(const Node* nodes, const WideBvh& tree, const RayState& ray) {
+    HWY_INLINE uint32_t next(const WideBvh& tree, const RayState& ray) {
         while (leaf_count == 0) {
             if (size == 0) return kNoIndex;
             const StackEntry top = stack[--size];
-            if (top.entry <= ray.t_max * kBoxSlack) descend(nodes, top.child, ray);
+            if (top.entry <= ray.t_max * kBoxSlack) descend(tree, top.child, ray);
         }
         --leaf_count;
         return tree.primitive_at(leaf_first++);
@@ -43,9 +38,9 @@ struct TreeCursor {
 
   private:
     /// To the nearest leaf below `child`; the rest goes on the stack.
-    template <class Node> HWY_INLINE void descend(const Node* nodes, uint32_t child, const RayState& ray) {
+    HWY_INLINE void descend(const WideBvh& tree, uint32_t child, const RayState& ray) {
         while (!WideNode::is_leaf(child)) {
-            const Node& node = nodes[child];
+            const WideNode& node = tree.nodes[child];
             Lanes8 entry;
             ++visited;
             const LaneMask mask = test_node(node, ray, entry);
@@ -56,15 +51,15 @@ struct TreeCursor {
     }
 };
 
-/// Walks the subtree of `root` and calls visit(primitive) until it is true. `nodes` are those of the tree.
-template <class Node, class Visit>
-HWY_INLINE bool walk_tree(const Node* nodes, const WideBvh& tree, cpu::TraceContext& context, uint32_t root,
-                          const RayState& ray, Visit visit) {
+/// Walks the subtree of `root` and calls visit(primitive) until it is true.
+template <class Visit>
+HWY_INLINE bool walk_tree(const WideBvh& tree, cpu::TraceContext& context, uint32_t root, const RayState& ray,
+                          Visit visit) {
     if (tree.nodes.empty()) return false;
     TreeCursor cursor(root, ray);
     bool has_ended = false;
     while (!has_ended) {
-        const uint32_t primitive = cursor.next(nodes, tree, ray);
+        const uint32_t primitive = cursor.next(tree, ray);
         if (primitive == kNoIndex) break;
         has_ended = visit(primitive);
     }
@@ -140,9 +135,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
         const bool has_hit = trace_displaced<kQuery>(scene, context, world, patch, ray);
         return kQuery == Query::any && has_hit;
     };
-    const cpu::OpenNodes& nodes = scene.open_nodes[surface];
-    return nodes.empty() ? walk_tree(tree.nodes.data(), tree, context, root, ray, visit)
-                         : walk_tree(nodes.data(), tree, context, root, ray, visit);
+    return walk_tree(tree, context, root, ray, visit);
 }
 
 /// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
@@ -150,21 +143,20 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(scene.instance_tree->nodes.data(), *scene.instance_tree, context, root, best,
-                     [&](uint32_t instance) {
-                         const Instance& placed = scene.instances[instance];
-                         if (placed.is_in_place) {
-                             best.instance = instance;
-                             return trace_instance<kQuery>(scene, context, world, 0, best);
-                         }
-                         RayState ray = best;
-                         ray.instance = instance;
-                         enter_object(world, placed.object_from_world, ray);
-                         const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
-                         best.t_max = ray.t_max;
-                         best.hit = ray.hit;
-                         return is_hit;
-                     });
+    return walk_tree(*scene.instance_tree, context, root, best, [&](uint32_t instance) {
+        const Instance& placed = scene.instances[instance];
+        if (placed.is_in_place) {
+            best.instance = instance;
+            return trace_instance<kQuery>(scene, context, world, 0, best);
+        }
+        RayState ray = best;
+        ray.instance = instance;
+        enter_object(world, placed.object_from_world, ray);
+        const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
+        best.t_max = ray.t_max;
+        best.hit = ray.hit;
+        return is_hit;
+    });
 }
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.

@@ -51,7 +51,7 @@ struct Tracer::Implementation {
     template <class Trace> void trace_wide(size_t cast, size_t rays, const Trace& trace) const {
         const std::shared_ptr<const UpperTrees> current = trees->current();
         SceneView full = view;
-        full.surface_trees = current->surfaces.data(), full.open_nodes = current->open.data();
+        full.surface_trees = current->surfaces.data();
         full.instance_tree = &current->instances;
         trace_batch(cast, rays, [&](TraceContext& context) { trace(full, context); });
         trees->count_rays(rays);

@@ -18,7 +18,6 @@ constexpr int64_t kRaysPerVertex = 2;
 size_t UpperTrees::byte_count() const {
     size_t count = instances.byte_count();
     for (const WideBvh& tree : surfaces) count += tree.byte_count();
-    for (const OpenNodes& nodes : open) count += nodes.size() * sizeof(PolygonNode);
     return count;
 }
 
@@ -56,7 +55,6 @@ void UpperTreeHolder::follow(std::span<const SurfaceChange> changes, std::vector
         add_places(change, tree, places);
         refit_wide_bvh(tree, change.is_changed,
                        [&](uint32_t patch) { return boxes.find(change.surface, patch); });
-        trees_->open[change.surface] = open_nodes(tree);
         add_places(change, tree, places);
     }
     trees_->instances = make_instance_tree(trees_->surfaces);
@@ -71,7 +69,6 @@ std::shared_ptr<UpperTrees> UpperTreeHolder::make_trees(BoxSource source) const 
         trees->surfaces.push_back(surface.has_displacement
                                       ? make_wide_bvh(build_surface_bvh(surface, boxes.find_all(k)))
                                       : WideBvh{});
-        trees->open.push_back(open_nodes(trees->surfaces.back()));
     }
     trees->instances = make_instance_tree(trees->surfaces);
     return trees;

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/cpu/open_nodes.h"
 #include "engine/cpu/patch_boxes.h"
 #include "engine/engine.h"
 #include "structures/wide_bvh.h"
@@ -18,7 +17,6 @@ namespace relief::cpu {
 struct UpperTrees {
     BoxSource source = BoxSource::bounds; ///< of the boxes of displaced patches
     std::vector<WideBvh> surfaces;        ///< one a surface, over its patches; empty without displacement
-    std::vector<OpenNodes> open;          ///< of `surfaces`
     WideBvh instances;
 
     size_t byte_count() const;
