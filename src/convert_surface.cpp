@@ -72,7 +72,7 @@ class SurfaceCutter {
     }
 
     uint32_t find_or_add(const PatchSamples& samples, uint32_t patch, uint32_t i, uint32_t j) {
-        const Quad& quad = surface_.quads[patch];
+        const Quad quad = surface_.quads[patch];
         const bool is_on_column = i == 0 || i == side_, is_on_row = j == 0 || j == side_;
         if (is_on_column && is_on_row) {
             const uint32_t corner = j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2);
@@ -108,7 +108,7 @@ class SurfaceCutter {
 
     /// With the offset of the tile, which surfaces take off.
     Vec2f get_uv(uint32_t patch, float u, float v) const {
-        const Quad& quad = surface_.quads[patch];
+        const Quad quad = surface_.quads[patch];
         const auto& uvs = surface_.uvs;
         Vec2f uv = (uvs[quad.vertex[0]] * (1 - u) + uvs[quad.vertex[1]] * u) * (1 - v) +
                    (uvs[quad.vertex[3]] * (1 - u) + uvs[quad.vertex[2]] * u) * v;
@@ -156,7 +156,7 @@ Mesh make_smooth_mesh(const Mesh& source) {
     const Surface surface = make_surface(source, nullptr, Affine{});
     Mesh mesh;
     mesh.positions = surface.positions, mesh.uvs = surface.uvs;
-    for (const Quad& quad : surface.quads) {
+    for (const Quad quad : surface.quads) {
         mesh.face_sizes.push_back(quad.is_triangle() ? 3 : 4);
         mesh.position_indices.insert(mesh.position_indices.end(), quad.vertex.begin(),
                                      quad.vertex.begin() + mesh.face_sizes.back());

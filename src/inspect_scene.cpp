@@ -149,7 +149,7 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
             max_level = std::max(max_level, instance.levels->max_level());
             continue;
         }
-        for (const Quad& quad : surface.quads) triangles += quad.is_triangle() ? 1 : 2;
+        for (const Quad quad : surface.quads) triangles += quad.is_triangle() ? 1 : 2;
     }
     Statistics statistics;
     make_cpu_engine(prepared, settings)->add_statistics(statistics);

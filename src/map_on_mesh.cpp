@@ -72,10 +72,11 @@ MapSamples sample_map(const Surface& surface) {
 
 std::vector<SeamSample> sample_seams(const Surface& surface, size_t most) {
     std::vector<SeamSample> seams;
-    const size_t step = std::max<size_t>(1, (surface.overrides.size() + most - 1) / most);
-    for (size_t k = 0; k < surface.overrides.size(); k += step) {
-        const EdgeOverride& entry = surface.overrides[k];
-        const Quad& quad = surface.quads[entry.patch_edge / 4];
+    const std::vector<EdgeOverride> overrides = surface.overrides.list();
+    const size_t step = std::max<size_t>(1, (overrides.size() + most - 1) / most);
+    for (size_t k = 0; k < overrides.size(); k += step) {
+        const EdgeOverride& entry = overrides[k];
+        const Quad quad = surface.quads[entry.patch_edge / 4];
         const uint32_t a = quad.vertex[entry.patch_edge & 3], b = quad.vertex[(entry.patch_edge + 1) & 3];
         if (a == entry.first && b == entry.second) continue;
         const VertexData own[2] = {load_vertex(surface, a), load_vertex(surface, b)};

@@ -16,7 +16,7 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
         return true;
     };
     for (const Surface& surface : scene.surfaces) {
-        for (const Quad& quad : surface.quads) {
+        for (const Quad quad : surface.quads) {
             if (surface.has_displacement)
                 ++statistics.patches;
             else

@@ -32,7 +32,7 @@ bool can_be_told(const Surface& surface) {
     for (const Vec3f& row : surface.map.matrix)
         if (row == Vec3f{}) return false;
     double area = 0;
-    for (const Quad& quad : surface.quads) area += measure_uv_area(surface, quad) / 2;
+    for (const Quad quad : surface.quads) area += measure_uv_area(surface, quad) / 2;
     constexpr double kOverlap = 1.05;
     return area <= kOverlap * double(surface.map.tiles.size());
 }

@@ -281,7 +281,7 @@ std::array<Vec3f, 3> TracerProbe::find_corners(const ProbeHit& hit) const {
     const auto corner = [&](uint32_t i, uint32_t j, size_t quad_corner) {
         const Vec3f p = surface.has_displacement
                             ? evaluate_vertex(surface, hit.patch, levels, hit.i + i, hit.j + j)
-                            : surface.positions[surface.quads[hit.patch].vertex[quad_corner]];
+                            : surface.position(surface.quads[hit.patch].vertex[quad_corner]);
         return transform_point(instance.world_from_object, p);
     };
     if (hit.is_upper) return {corner(0, 0, 0), corner(1, 1, 2), corner(0, 1, 3)};
@@ -348,9 +348,10 @@ ProbeCounts TracerProbe::count() const {
         counts.micro_quads += uint64_t(1) << (2 * patch_level(patch));
     for (uint32_t k = 0; k < self.scene->instances.size(); ++k)
         if (!self.surface_of(k).has_displacement)
-            for (const Quad& quad : self.surface_of(k).quads) counts.triangles += quad.is_triangle() ? 1 : 2;
+            for (const Quad quad : self.surface_of(k).quads) counts.triangles += quad.is_triangle() ? 1 : 2;
     counts.geometry_bytes = statistics.geometry_bytes;
     counts.structures_bytes = statistics.structures_bytes;
+    counts.plain_bytes = self.tracer->count_plain_bytes();
     for (size_t level = 0; level < statistics.bottom_levels.size(); ++level) {
         const uint64_t built = statistics.bottom_levels[level];
         counts.trees_built += built;

@@ -95,11 +95,13 @@ class CastMeasure {
                        {"triangles", counts.triangles},
                        {"geometry_bytes", counts.geometry_bytes},
                        {"structures_bytes", counts.structures_bytes},
+                       {"plain_bytes", counts.plain_bytes},
                        {"cache_bytes", counts.cache_bytes},
                        {"bottom_trees_built", counts.trees_built}};
         if (counts.patches > 0)
             memory["bytes_a_patch"] =
-                double(counts.geometry_bytes + counts.structures_bytes) / double(counts.patches);
+                double(counts.geometry_bytes + counts.structures_bytes - counts.plain_bytes) /
+                double(counts.patches);
         if (counts.built_quads > 0)
             memory["bytes_a_micro_quad"] = double(counts.built_bytes) / double(counts.built_quads);
         for (const BuiltWay& built : built_) {

@@ -55,6 +55,7 @@ struct ProbeCounts {
     uint64_t micro_quads = 0; ///< of these at their levels
     uint64_t triangles = 0;   ///< of what is not displaced
     uint64_t geometry_bytes = 0, structures_bytes = 0;
+    uint64_t plain_bytes = 0; ///< of these, what serves surfaces that are not displaced
     uint64_t trees_built = 0; ///< bottom trees since the cache was emptied last
     uint64_t built_quads = 0; ///< micro-quads in them
     uint64_t built_bytes = 0; ///< bytes of them, whether kept or not

@@ -12,7 +12,7 @@ namespace {
 float world_area(const Surface& surface, const Instance& instance, const Quad& quad) {
     Vec3f p[4];
     for (int k = 0; k < 4; ++k)
-        p[k] = transform_point(instance.world_from_object, surface.positions[quad.vertex[size_t(k)]]);
+        p[k] = transform_point(instance.world_from_object, surface.position(quad.vertex[size_t(k)]));
     return 0.5f * (length(cross(p[1] - p[0], p[2] - p[0])) + length(cross(p[2] - p[0], p[3] - p[0])));
 }
 
@@ -55,9 +55,9 @@ EmitterTable make_emitter_table(const PreparedScene& scene) {
         const Surface& surface = scene.surfaces[instance.surface];
         table.first_of_instance[i] = table.size();
         table.ranges.push_back({i, table.first_of_instance[i]});
-        for (const Quad& quad : surface.quads) {
+        for (const Quad quad : surface.quads) {
             for (uint32_t vertex : quad.vertex)
-                box.extend(transform_point(instance.world_from_object, surface.positions[vertex]));
+                box.extend(transform_point(instance.world_from_object, surface.position(vertex)));
             table.power += double(brightness) * world_area(surface, instance, quad);
             table.cumulative.push_back(table.power);
         }

@@ -82,7 +82,7 @@ PatchOffsets compute_offsets(const Surface& surface, const LevelField& levels) {
 void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t vertex,
                       uint64_t cell, Surface& result) {
     const uint32_t side = 1u << levels.patch;
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     for (uint32_t j = 0; j <= side; ++j)
         for (uint32_t i = 0; i <= side; ++i) {
             const uint64_t at = vertex + uint64_t(j) * (side + 1) + i;
@@ -97,8 +97,8 @@ void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels&
     for (uint32_t j = 0; j < side; ++j)
         for (uint32_t i = 0; i < side; ++i) {
             const uint32_t first = uint32_t(vertex) + j * (side + 1) + i;
-            result.quads[cell + uint64_t(j) * side + i] = {
-                {first, first + 1, first + side + 2, first + side + 1}};
+            result.quads.set(cell + uint64_t(j) * side + i,
+                             {{first, first + 1, first + side + 2, first + side + 1}});
         }
 }
 
@@ -109,7 +109,7 @@ Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     result.positions.resize(offsets.vertex.back());
     result.frames.resize(offsets.vertex.back());
     result.uvs.resize(offsets.vertex.back());
-    result.quads.resize(offsets.cell.back());
+    result.quads.reset(offsets.cell.back(), uint32_t(offsets.vertex.back()));
     parallel_for("tessellate", surface.patch_count(), 16, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
             tessellate_patch(surface, uint32_t(patch), levels.at(uint32_t(patch)), offsets.vertex[patch],
@@ -127,7 +127,7 @@ TessellationCost estimate_tessellation(const PreparedScene& scene) {
     for (const Surface& surface : scene.surfaces) {
         if (surface.has_displacement) continue;
         cost.geometry_bytes += surface.geometry_bytes();
-        for (const Quad& quad : surface.quads)
+        for (const Quad quad : surface.quads)
             plain_bytes += quad.is_triangle() ? kTreeBytesPerTriangle : kTreeBytesPerQuad;
     }
     cost.geometry_bytes += scene.instances.size() * sizeof(Instance);
@@ -135,7 +135,8 @@ TessellationCost estimate_tessellation(const PreparedScene& scene) {
         const Surface& surface = scene.surfaces[scene.instances[k].surface];
         if (!surface.has_displacement || equals[k] != k) continue;
         const MicroCounts counts = count_micro(surface, *scene.instances[k].levels);
-        const uint64_t bytes = counts.quads * sizeof(Quad) + counts.vertices * kBytesPerVertex;
+        const uint64_t bytes =
+            QuadList::byte_count(counts.quads, counts.vertices) + counts.vertices * kBytesPerVertex;
         cost.micro_quads += counts.quads;
         cost.geometry_bytes += bytes;
         cost.peak_bytes += bytes + counts.quads * kBuildBytesPerQuad;

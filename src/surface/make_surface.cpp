@@ -43,7 +43,26 @@ class VertexSplitter {
         return vertex;
     }
 
-    size_t count() const { return vertices_.size(); }
+    /// Vertices are numbered anew: first the dominant ones, then the others, each kind in its order. Their
+    /// old numbers to new ones.
+    std::vector<uint32_t> put_copies_last() {
+        std::vector<uint32_t> numbers(vertices_.size());
+        uint32_t next = 0;
+        for (const bool is_dominant : {true, false})
+            for (uint32_t v = 0; v < vertices_.size(); ++v)
+                if ((dominant(v) == v) == is_dominant) numbers[v] = next++;
+        const auto renumber = [&](uint32_t v) { return v == kNoIndex ? v : numbers[v]; };
+        std::vector<Vertex> sorted(vertices_.size());
+        for (uint32_t v = 0; v < vertices_.size(); ++v) {
+            sorted[numbers[v]] = vertices_[v];
+            sorted[numbers[v]].next = renumber(vertices_[v].next);
+        }
+        vertices_.swap(sorted);
+        for (uint32_t& first : first_of_point_) first = renumber(first);
+        return numbers;
+    }
+
+    uint32_t count() const { return uint32_t(vertices_.size()); }
     uint32_t point(uint32_t vertex) const { return vertices_[vertex].point; }
     uint32_t dominant(uint32_t vertex) const { return first_of_point_[vertices_[vertex].point]; }
     const Attributes& attributes(uint32_t vertex) const { return vertices_[vertex].attributes; }
@@ -57,10 +76,11 @@ class VertexSplitter {
     std::vector<Vertex> vertices_;
 };
 
-void copy_positions(Surface& surface, const Polygons& polygons, const VertexSplitter& vertices) {
-    surface.positions.resize(vertices.count());
-    for (uint32_t v = 0; v < vertices.count(); ++v)
-        surface.positions[v] = polygons.positions[vertices.point(v)];
+/// Of the first `count` vertices.
+void copy_positions(Surface& surface, const Polygons& polygons, const VertexSplitter& vertices,
+                    uint32_t count) {
+    surface.positions.resize(count);
+    for (uint32_t v = 0; v < count; ++v) surface.positions[v] = polygons.positions[vertices.point(v)];
 }
 
 void copy_uvs(Surface& surface, const VertexSplitter& vertices) {
@@ -119,10 +139,23 @@ VertexSources list_sources(const Polygons& polygons, const VertexSplitter& verti
     return sources;
 }
 
+/// Patches and what their vertices share: the dominant ones get the lowest numbers.
+void store_patches(std::vector<Quad>& quads, VertexSplitter& vertices, Surface& surface) {
+    const std::vector<uint32_t> numbers = vertices.put_copies_last();
+    surface.quads.reset(quads.size(), vertices.count());
+    for (size_t k = 0; k < quads.size(); ++k) {
+        for (uint32_t& vertex : quads[k].vertex) vertex = numbers[vertex];
+        surface.quads.set(k, quads[k]);
+    }
+    for (uint32_t v = 0; v < vertices.count(); ++v)
+        if (vertices.dominant(v) != v) surface.copies.push_back({vertices.dominant(v)});
+    surface.copies.shrink_to_fit();
+}
+
 /// Patches and split vertices.
 VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
     VertexSplitter vertices(polygons.positions.size());
-    surface.quads.reserve(polygons.face_count());
+    std::vector<Quad> quads(polygons.face_count());
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         const uint32_t start = polygons.starts[face];
         std::array<Vec2f, 4> uvs;
@@ -134,37 +167,33 @@ VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool i
         VertexSplitter::Attributes attributes;
         attributes.tile = tile.index;
         attributes.handedness = compute_uv_area(uvs) < 0 ? -1.0f : 1.0f;
-        Quad quad;
         for (uint32_t k = 0; k < 4; ++k) {
             attributes.uv = {uvs[k].x - tile.offset.x, uvs[k].y - tile.offset.y};
             add_frame_attributes(polygons, start + k, attributes);
-            quad.vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
+            quads[face].vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
         }
-        surface.quads.push_back(quad);
     }
-    copy_positions(surface, polygons, vertices);
+    store_patches(quads, vertices, surface);
+    if (is_udim)
+        for (uint32_t v = 0; v < vertices.count(); ++v)
+            surface.vertex_tiles.push_back(vertices.attributes(v).tile);
+    copy_positions(surface, polygons, vertices, vertices.count() - uint32_t(surface.copies.size()));
     copy_uvs(surface, vertices);
-    bool has_copies = false;
-    for (uint32_t v = 0; v < vertices.count(); ++v) {
-        has_copies = has_copies || vertices.dominant(v) != v;
-        if (is_udim) surface.vertex_tiles.push_back(vertices.attributes(v).tile);
-    }
-    if (has_copies)
-        for (uint32_t v = 0; v < vertices.count(); ++v) surface.dominants.push_back(vertices.dominant(v));
     return list_sources(polygons, vertices);
 }
 
 /// Where patch edges between the same two points have different vertices, all take those of the lowest.
 void find_overrides(Surface& surface) {
-    if (surface.dominants.empty()) return;
+    if (surface.copies.empty()) return;
     struct Edge {
         uint64_t key;
         uint32_t patch_edge;
     };
     std::vector<Edge> edges;
+    std::vector<EdgeOverride> overrides;
     edges.reserve(4 * surface.quads.size());
     const auto get_ends = [&](uint32_t patch_edge) {
-        const Quad& quad = surface.quads[patch_edge / 4];
+        const Quad quad = surface.quads[patch_edge / 4];
         return std::array<uint32_t, 2>{quad.vertex[patch_edge & 3], quad.vertex[(patch_edge + 1) & 3]};
     };
     for (uint32_t patch_edge = 0; patch_edge < 4 * surface.patch_count(); ++patch_edge) {
@@ -177,23 +206,19 @@ void find_overrides(Surface& surface) {
     });
     for (size_t first = 0, end = 0; first < edges.size(); first = end) {
         bool is_seam = false;
-        const size_t begin = surface.overrides.size();
+        const size_t begin = overrides.size();
         for (end = first; end < edges.size() && edges[end].key == edges[first].key; ++end) {
             std::array<uint32_t, 2> leading = get_ends(edges[first].patch_edge);
             const auto own = get_ends(edges[end].patch_edge);
             if (surface.dominant(leading[0]) != surface.dominant(own[0])) std::swap(leading[0], leading[1]);
             is_seam = is_seam || leading != own;
-            surface.overrides.push_back({edges[end].patch_edge, leading[0], leading[1]});
+            overrides.push_back({edges[end].patch_edge, leading[0], leading[1]});
         }
-        if (!is_seam) surface.overrides.resize(begin);
+        if (!is_seam) overrides.resize(begin);
     }
-    std::sort(surface.overrides.begin(), surface.overrides.end(),
+    std::sort(overrides.begin(), overrides.end(),
               [](const EdgeOverride& a, const EdgeOverride& b) { return a.patch_edge < b.patch_edge; });
-    surface.overrides.shrink_to_fit();
-    if (surface.overrides.empty()) return;
-    surface.override_bits.assign((4 * surface.quads.size() + 63) / 64, 0);
-    for (const EdgeOverride& entry : surface.overrides)
-        surface.override_bits[entry.patch_edge >> 6] |= uint64_t(1) << (entry.patch_edge & 63);
+    surface.overrides = EdgeOverrides(overrides, surface.quads.size());
 }
 
 /// Fails where an axis of a relative frame carries the map's largest displacement too far.
@@ -254,7 +279,8 @@ Surface make_plain(const Mesh& mesh) {
         }
         surface.quads.push_back(quad);
     }
-    copy_positions(surface, polygons, vertices);
+    copy_positions(surface, polygons, vertices, vertices.count());
+    surface.quads.shrink_to_fit();
     if (!polygons.uvs.empty()) copy_uvs(surface, vertices);
     if (!polygons.normals.empty())
         for (uint32_t v = 0; v < vertices.count(); ++v)

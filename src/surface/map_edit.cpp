@@ -70,7 +70,7 @@ class MapReads {
 
 /// The patch itself, and where its edges and corners belong to other vertices, those.
 bool is_patch_touched(const Surface& surface, const MapReads& reads, uint32_t patch, float reach) {
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     const auto get_mip = [&](uint32_t place) {
         return scalar::packed_mip(surface.packed_mips(patch), place);
     };

@@ -254,7 +254,7 @@ Box round_outward(const std::array<Interval, 3>& bounds) {
 
 Box compute_plain_box(const Surface& surface, uint32_t patch) {
     Box box;
-    for (const uint32_t vertex : surface.quads[patch].vertex) box.extend(surface.positions[vertex]);
+    for (const uint32_t vertex : surface.quads[patch].vertex) box.extend(surface.position(vertex));
     return box;
 }
 

@@ -16,7 +16,7 @@ constexpr int kFinestDetail = 20; // levels; a cell is far below a float's steps
 class MipChooser {
   public:
     MipChooser(const Surface& surface, std::span<const LevelField* const> levels)
-        : surface_(surface), levels_(levels), corners_(surface.positions.size(), scalar::kMaxMip) {}
+        : surface_(surface), levels_(levels), corners_(surface.vertex_count(), scalar::kMaxMip) {}
 
     std::vector<uint32_t> run() {
         std::vector<uint32_t> mips(surface_.patch_count());

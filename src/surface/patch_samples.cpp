@@ -49,7 +49,7 @@ Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& 
 
 VertexData load_vertex(const Surface& surface, uint32_t vertex) {
     VertexData data;
-    data.position = surface.positions[vertex];
+    data.position = surface.position(vertex);
     if (!surface.uvs.empty()) data.uv = surface.uvs[vertex];
     if (surface.map.is_tangent && !surface.frames.empty()) data.frame = surface.frame(vertex);
     data.tile = surface.tile(vertex);
@@ -93,7 +93,7 @@ VertexData blend_line(const VertexData& a, const VertexData& b, float s) {
 }
 
 PatchSamples::PatchSamples(const Surface& surface, uint32_t patch, Filtering filtering) : map_(&surface.map) {
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     const uint32_t mips = filtering == Filtering::none ? 0 : surface.packed_mips(patch);
     const auto load = [&](uint32_t vertex, uint32_t place) {
         VertexData data = load_vertex(surface, vertex);

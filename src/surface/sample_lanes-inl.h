@@ -27,7 +27,7 @@ struct VertexValues {
 
 HWY_INLINE VertexValues read_vertex(const Surface& surface, uint32_t vertex) {
     VertexValues values{};
-    const Vec3f& p = surface.positions[vertex];
+    const Vec3f& p = surface.position(vertex);
     const Vec2f& uv = surface.uvs[vertex];
     values.value[0] = p.x, values.value[1] = p.y, values.value[2] = p.z;
     values.value[kUv] = uv.x, values.value[kUv + 1] = uv.y;
@@ -171,13 +171,12 @@ struct PatchValues {
     std::optional<BicubicBase> base; ///< where it is bicubic
 
     HWY_INLINE PatchValues(const Surface& surface, uint32_t patch) {
-        const Quad& quad = surface.quads[patch];
+        const Quad quad = surface.quads[patch];
         for (size_t k = 0; k < 4; ++k) corner[k] = read_vertex(surface, quad.vertex[k]);
         if (surface.controls.empty()) return;
-        base.emplace(
-            std::array<Vec3f, 4>{surface.positions[quad.vertex[0]], surface.positions[quad.vertex[1]],
-                                 surface.positions[quad.vertex[2]], surface.positions[quad.vertex[3]]},
-            surface.controls[patch]);
+        base.emplace(std::array<Vec3f, 4>{surface.position(quad.vertex[0]), surface.position(quad.vertex[1]),
+                                          surface.position(quad.vertex[2]), surface.position(quad.vertex[3])},
+                     surface.controls[patch]);
     }
 };
 

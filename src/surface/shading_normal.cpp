@@ -26,9 +26,9 @@ Vec3f compute_plain_normal(const Surface& surface, const Quad& quad, float u, fl
                               ? scalar::interpolate_triangle(normals[0], normals[1], normals[2], {u, v})
                               : blend_normals(normals, {u, v});
     const bool is_upper = v > u && !quad.is_triangle();
-    const Vec3f& p = surface.positions[quad.vertex[0]];
-    const Vec3f facet = cross(surface.positions[quad.vertex[is_upper ? 2 : 1]] - p,
-                              surface.positions[quad.vertex[is_upper ? 3 : 2]] - p);
+    const Vec3f& p = surface.position(quad.vertex[0]);
+    const Vec3f facet = cross(surface.position(quad.vertex[is_upper ? 2 : 1]) - p,
+                              surface.position(quad.vertex[is_upper ? 3 : 2]) - p);
     return scalar::make_plain_normal(blended, facet);
 }
 

@@ -6,14 +6,11 @@
 namespace relief {
 
 Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
-    uint32_t first = quads[patch].vertex[edge], second = quads[patch].vertex[(edge + 1) & 3];
+    const Quad quad = quads[patch];
+    uint32_t first = quad.vertex[size_t(edge)], second = quad.vertex[size_t(edge + 1) & 3];
     if (is_seam(patch, edge)) {
-        const uint32_t patch_edge = 4 * patch + uint32_t(edge);
-        const auto found =
-            std::lower_bound(overrides.begin(), overrides.end(), patch_edge,
-                             [](const EdgeOverride& entry, uint32_t key) { return entry.patch_edge < key; });
-        first = found->first;
-        second = found->second;
+        const std::array<uint32_t, 2> ends = overrides.ends(4 * patch + uint32_t(edge));
+        first = ends[0], second = ends[1];
     }
     // The vertices decide where both ends are one point, so that both sides still agree.
     const bool is_reversed = std::pair(dominant(second), second) < std::pair(dominant(first), first);
@@ -21,11 +18,10 @@ Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
 }
 
 size_t Surface::geometry_bytes() const {
-    return positions.size() * sizeof(Vec3f) + uvs.size() * sizeof(Vec2f) +
+    return positions.size() * sizeof(Vec3f) + copies.byte_count() + uvs.size() * sizeof(Vec2f) +
            frames.size() * sizeof(PackedFrame) + derivatives.size() * sizeof(derivatives[0]) +
-           dominants.size() * sizeof(uint32_t) + vertex_tiles.size() + quads.size() * sizeof(Quad) +
-           mips.size() * sizeof(uint32_t) + controls.size() * sizeof(InnerControls) +
-           overrides.size() * sizeof(EdgeOverride) + override_bits.size() * sizeof(uint64_t);
+           vertex_tiles.size() + quads.byte_count() + mips.size() * sizeof(uint32_t) +
+           controls.size() * sizeof(InnerControls) + overrides.byte_count();
 }
 
 } // namespace relief

@@ -1,8 +1,9 @@
 // A mesh with its displacement, made ready to be evaluated: compact patches, seams resolved, frames packed.
 //
-// Vertices are split where uvs or what their frames are made from differ; the copies of one point share its
-// position bit for bit and know their dominant copy (the lowest-numbered one). Patches have corners 0..3
-// counter-clockwise at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to corner (k + 1) mod 4.
+// Vertices are split where uvs or what their frames are made from differ; the vertices of one point share its
+// position and know their dominant one, the lowest-numbered of them. Dominant vertices come first. Patches
+// have corners 0..3 counter-clockwise at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to
+// corner (k + 1) mod 4.
 #pragma once
 
 #include <array>
@@ -17,22 +18,10 @@
 #include "math/scalar.h"
 #include "relief/scene.h"
 #include "surface/bounds_pyramid.h"
+#include "surface/edge_overrides.h"
+#include "surface/quad_list.h"
 
 namespace relief {
-
-/// A quad, or a triangle when vertex[3] == vertex[2]. Displaced surfaces consist of quads only.
-struct Quad {
-    std::array<uint32_t, 4> vertex;
-    bool is_triangle() const { return vertex[3] == vertex[2]; }
-    friend bool operator==(const Quad&, const Quad&) = default;
-};
-
-/// An edge of a patch whose samples come from the other side of a uv seam (both ends, in the patch's edge
-/// direction).
-struct EdgeOverride {
-    uint32_t patch_edge; ///< 4 * patch + edge; the table is sorted by it
-    uint32_t first, second;
-};
 
 /// Unit normal and tangent of a vertex: octahedral, 2 x 16 bit each; the lowest bit of `tangent` is set where
 /// the bitangent is -cross(N, T).
@@ -86,18 +75,17 @@ using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 /// Immutable once made; safe to read from any thread.
 struct Surface {
     std::string name;                ///< of the mesh, for messages
-    std::vector<Vec3f> positions;    ///< one a split vertex
+    std::vector<Vec3f> positions;    ///< one a dominant vertex; the others have theirs
+    NarrowIndices<1> copies;         ///< the dominant vertex of vertex positions.size() + k
     std::vector<Vec2f> uvs;          ///< one a split vertex, or empty; tile offset taken off when displaced
     std::vector<PackedFrame> frames; ///< one a split vertex, or empty: facets (undisplaced, no normals)
     std::vector<std::array<Vec3f, 2>> derivatives; ///< dP/du, dP/dv; one a split vertex where lengths are
                                                    ///< relative, or empty
-    std::vector<uint32_t> dominants;               ///< one a split vertex, or empty: every vertex is its own
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
-    std::vector<Quad> quads;
+    QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
     std::vector<uint32_t> mips;          ///< one a patch (shared/mips.h), or empty: the map itself everywhere
-    std::vector<EdgeOverride> overrides;
-    std::vector<uint64_t> override_bits; ///< one bit a patch edge that stands in `overrides`; empty: none
+    EdgeOverrides overrides;             ///< edges whose samples come from the other side of a uv seam
     DisplacementMap map;                 ///< no tiles: undisplaced
     bool has_displacement = false;
 
@@ -105,7 +93,11 @@ struct Surface {
     static_assert(kMaxMapTiles < kNoTile);
 
     uint32_t patch_count() const { return uint32_t(quads.size()); }
-    uint32_t dominant(uint32_t vertex) const { return dominants.empty() ? vertex : dominants[vertex]; }
+    uint32_t vertex_count() const { return uint32_t(positions.size() + copies.size()); }
+    uint32_t dominant(uint32_t vertex) const {
+        return vertex < positions.size() ? vertex : copies[vertex - positions.size()][0];
+    }
+    const Vec3f& position(uint32_t vertex) const { return positions[dominant(vertex)]; }
     uint32_t packed_mips(uint32_t patch) const { return mips.empty() ? 0 : mips[patch]; }
     /// What a vertex is displaced through; `frames` must not be empty.
     Frame frame(uint32_t vertex) const {
@@ -130,10 +122,7 @@ struct Surface {
     }
 
     /// True on both sides of an edge whose patches join its ends by different vertices.
-    bool is_seam(uint32_t patch, int edge) const {
-        const uint32_t patch_edge = 4 * patch + uint32_t(edge);
-        return !override_bits.empty() && (override_bits[patch_edge >> 6] >> (patch_edge & 63) & 1) != 0;
-    }
+    bool is_seam(uint32_t patch, int edge) const { return overrides.contains(4 * patch + uint32_t(edge)); }
 
     /// Bytes of the arrays above except the map's texels and pyramid.
     size_t geometry_bytes() const;

@@ -24,11 +24,11 @@ Corner make_corner(const Vec3d& to_next, const Vec3d& to_previous) {
 
 /// Corner k of a patch.
 Corner make_corner(const Surface& surface, size_t patch, int k) {
-    const Quad& quad = surface.quads[patch];
-    const Vec3d p = to_double(surface.positions[quad.vertex[k]]);
+    const Quad quad = surface.quads[patch];
+    const Vec3d p = to_double(surface.position(quad.vertex[k]));
     if (surface.controls.empty())
-        return make_corner(to_double(surface.positions[quad.vertex[(k + 1) & 3]]) - p,
-                           to_double(surface.positions[quad.vertex[(k + 3) & 3]]) - p);
+        return make_corner(to_double(surface.position(quad.vertex[(k + 1) & 3])) - p,
+                           to_double(surface.position(quad.vertex[(k + 3) & 3])) - p);
     // A cubic leaves its end towards the next control point.
     const InnerControls& controls = surface.controls[patch];
     return make_corner((to_double(controls[size_t(2 * k)]) - p) * 3.0,
@@ -62,7 +62,7 @@ Vec3d compute_u_direction(const CornerUvs& uvs, const Corner& corner, const Vec3
 template <class Visit> void visit_corners(const Surface& surface, const Visit& visit) {
     for (size_t patch = 0; patch < surface.quads.size(); ++patch)
         for (int k = 0; k < 4; ++k) {
-            const Quad& quad = surface.quads[patch];
+            const Quad quad = surface.quads[patch];
             visit(quad.vertex[k], make_corner(surface, patch, k), measure_uvs(surface, quad, k));
         }
 }
@@ -74,7 +74,7 @@ Vec3d get_normal(const VertexSources& sources, uint32_t vertex) {
 
 /// Directions of growing u in the planes of the normals, not normalised.
 std::vector<Vec3d> make_tangents(const Surface& surface, const VertexSources& sources) {
-    std::vector<Vec3d> tangents(surface.positions.size());
+    std::vector<Vec3d> tangents(surface.vertex_count());
     for (uint32_t vertex = 0; vertex < sources.tangents.size(); ++vertex) {
         const std::array<float, 4>& given = sources.tangents[vertex];
         const Vec3d tangent{given[0], given[1], given[2]}, normal = get_normal(sources, vertex);
@@ -88,7 +88,7 @@ std::vector<Vec3d> make_tangents(const Surface& surface, const VertexSources& so
 }
 
 void fill_derivatives(Surface& surface, const VertexSources& sources) {
-    surface.derivatives.resize(surface.positions.size());
+    surface.derivatives.resize(surface.vertex_count());
     for (size_t vertex = 0; vertex < sources.tangents.size(); ++vertex) {
         const std::array<float, 4>& given = sources.tangents[vertex];
         surface.derivatives[vertex] = {Vec3f{given[0], given[1], given[2]}, sources.bitangents[vertex]};
@@ -98,7 +98,7 @@ void fill_derivatives(Surface& surface, const VertexSources& sources) {
         Vec3d along_u{}, along_v{};
         double angle = 0;
     };
-    std::vector<Sum> sums(surface.positions.size());
+    std::vector<Sum> sums(surface.vertex_count());
     visit_corners(surface, [&](uint32_t vertex, const Corner& corner, const CornerUvs& uvs) {
         const double determinant = uvs.determinant();
         if (determinant == 0) return;
@@ -153,7 +153,7 @@ void compute_vertex_frames(Surface& surface, const VertexSources& sources) {
     if (is_relative) fill_derivatives(surface, sources);
     std::vector<Vec3d> tangents;
     if (surface.map.is_tangent && !is_relative) tangents = make_tangents(surface, sources);
-    surface.frames.resize(surface.positions.size());
+    surface.frames.resize(surface.vertex_count());
     for (uint32_t vertex = 0; vertex < surface.frames.size(); ++vertex) {
         const Vec3d normal = get_normal(sources, vertex);
         if (tangents.empty()) {

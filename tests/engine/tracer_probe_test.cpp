@@ -102,6 +102,18 @@ TEST(TracerProbe, counts_what_was_built) {
     EXPECT_GT(probe.preparation().seconds(), 0);
 }
 
+TEST(TracerProbe, a_displaced_patch_takes_at_most_64_bytes) {
+    for (const char* name : {"rock", "pumpkin", "bark"}) {
+        const Scene scene =
+            std::string(name) == "rock" ? make_rock() : make_sample_scene(name, Instancing::none);
+        const ProbeCounts counts = TracerProbe(scene, make_settings(3)).count();
+        EXPECT_EQ(counts.plain_bytes > 0, counts.triangles > 0) << name;
+        const uint64_t bytes = counts.geometry_bytes + counts.structures_bytes - counts.plain_bytes;
+        EXPECT_LE(bytes, 64 * counts.patches) << name;
+        EXPECT_GE(bytes, 30 * counts.patches) << name;
+    }
+}
+
 TEST(TracerProbe, surfaces_without_displacement_are_triangles) {
     const Scene body = make_structure_scene("body", MeshDetail::reduced);
     const TracerProbe probe(body, make_settings(kAutoLevel));

@@ -51,7 +51,7 @@ double measure_folding(const Mesh& mesh, const Displacement& displacement) {
     for (int k = 0; k < kCells; ++k) {
         const uint32_t patch =
             std::min(uint32_t(random.unit() * float(surface.patch_count())), surface.patch_count() - 1);
-        const Quad& quad = surface.quads[patch];
+        const Quad quad = surface.quads[patch];
         const Vec2f edge = surface.uvs[quad.vertex[1]] - surface.uvs[quad.vertex[0]];
         int level = 0;
         while (level < 11 && float(1 << level) < length(edge) * size) ++level;
@@ -62,7 +62,7 @@ double measure_folding(const Mesh& mesh, const Displacement& displacement) {
         const PatchLevels levels{all, {all, all, all, all}};
         const auto at = [&](uint32_t x, uint32_t y) { return evaluate_vertex(surface, patch, levels, x, y); };
         const Vec3f normal = cross(at(i + 1, j + 1) - at(i, j), at(i, j + 1) - at(i + 1, j));
-        const auto corner = [&](int c) { return surface.positions[quad.vertex[size_t(c)]]; };
+        const auto corner = [&](int c) { return surface.position(quad.vertex[size_t(c)]); };
         const Vec3f base = cross(corner(2) - corner(0), corner(3) - corner(1));
         folded += dot(normal, base) < 0;
     }

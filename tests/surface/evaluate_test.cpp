@@ -18,7 +18,7 @@ std::map<std::pair<uint32_t, uint32_t>, std::vector<Side>> find_sides(const Surf
     std::map<std::pair<uint32_t, uint32_t>, std::vector<Side>> sides;
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         for (int k = 0; k < 4; ++k) {
-            const Quad& quad = surface.quads[patch];
+            const Quad quad = surface.quads[patch];
             const uint32_t a = surface.dominant(quad.vertex[k]),
                            b = surface.dominant(quad.vertex[(k + 1) & 3]);
             sides[std::minmax(a, b)].push_back({patch, k});

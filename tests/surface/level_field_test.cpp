@@ -30,7 +30,7 @@ TEST(LevelField, agrees_across_shared_edges_and_patches_are_at_least_as_fine) {
         EXPECT_LE(int(levels.patch), field.max_level());
         for (int k = 0; k < 4; ++k) {
             EXPECT_LE(levels.edge[k], levels.patch);
-            const Quad& quad = surface.quads[patch];
+            const Quad quad = surface.quads[patch];
             const auto key =
                 std::minmax({surface.dominant(quad.vertex[k]), surface.dominant(quad.vertex[(k + 1) & 3])});
             EXPECT_EQ(level_of.try_emplace(key, levels.edge[k]).first->second, levels.edge[k]);

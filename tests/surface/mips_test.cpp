@@ -214,7 +214,7 @@ TEST(PatchMips, agree_wherever_patches_meet) {
             for (uint32_t place = 1; place < 9; ++place)
                 mixed += scalar::packed_mip(word, place) != scalar::packed_mip(word, scalar::kMipInside);
             for (int k = 0; k < 4; ++k) {
-                const Quad& quad = surface.quads[patch];
+                const Quad quad = surface.quads[patch];
                 const uint32_t a = surface.dominant(quad.vertex[k]),
                                b = surface.dominant(quad.vertex[(k + 1) & 3]);
                 std::vector<Vec3f> points =

@@ -37,7 +37,7 @@ TEST(SmoothSurface, both_sides_of_every_edge_have_the_same_samples) {
                     const PatchLevels levels{uint8_t(3 + patch % 3), {3, 3, 3, 3}};
                     std::vector<Vec3f> points =
                         test::drop_repeats(test::evaluate_edge(surface, patch, levels, edge));
-                    const Quad& quad = surface.quads[patch];
+                    const Quad quad = surface.quads[patch];
                     std::array<uint32_t, 2> ends = {surface.dominant(quad.vertex[size_t(edge)]),
                                                     surface.dominant(quad.vertex[size_t(edge + 1) & 3])};
                     if (ends[1] < ends[0]) {
@@ -87,7 +87,7 @@ double find_normal_jump(const Surface& surface) {
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         for (int edge = 0; edge < 4; ++edge) {
             const auto point = [&](int corner) {
-                const Vec3f& p = surface.positions[surface.quads[patch].vertex[size_t(corner & 3)]];
+                const Vec3f& p = surface.position(surface.quads[patch].vertex[size_t(corner & 3)]);
                 return Point{p.x, p.y, p.z};
             };
             std::array<Point, 2> ends = {point(edge), point(edge + 1)};

@@ -37,12 +37,12 @@ HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
 HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, const cpu::TraceRay& world) {
     const Surface& surface = visit.scene->surfaces[visit.surface];
-    const Quad& quad = surface.quads[visit.patch];
+    const Quad quad = surface.quads[visit.patch];
     float longest = 0;
     Vec3f sum{};
     for (size_t k = 0; k < 4; ++k) {
-        const Vec3f& from = surface.positions[quad.vertex[k]];
-        const Vec3f edge = surface.positions[quad.vertex[(k + 1) % 4]] - from;
+        const Vec3f& from = surface.position(quad.vertex[k]);
+        const Vec3f edge = surface.position(quad.vertex[(k + 1) % 4]) - from;
         longest = std::fmax(longest, length(transform_vector(placed.world_from_object, edge)));
         sum = sum + from;
     }

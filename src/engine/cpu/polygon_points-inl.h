@@ -19,7 +19,7 @@ struct PolygonCorner {
     LaneQuads normal; ///< v, octahedral coordinates of the normal
 
     HWY_INLINE void load(const Surface& surface, uint32_t vertex, size_t lane) {
-        const Vec3f& p = surface.positions[vertex];
+        const Vec3f& p = surface.position(vertex);
         const Vec2f uv = surface.uvs.empty() ? Vec2f{} : surface.uvs[vertex];
         const Vec2f folded =
             surface.frames.empty() ? Vec2f{} : scalar::unpack_octahedron(surface.frames[vertex].normal);
@@ -65,7 +65,7 @@ HWY_NOINLINE inline void make_polygon_points(const cpu::PointBatch& batch, size_
         const cpu::TraceHit& hit = batch.hits[batch.order[first + lane]];
         const Instance& instance = batch.scene.instances[hit.instance];
         const Surface& surface = batch.scene.surfaces[instance.surface];
-        const Quad& quad = surface.quads[hit.patch];
+        const Quad quad = surface.quads[hit.patch];
         load_place(instance, hit, unpack_levels(hit.levels), lane, lanes);
         for (size_t k = 0; k < 4; ++k) corners[k].load(surface, quad.vertex[k], lane);
         is_triangle_lane[lane] = quad.is_triangle() ? 1.0f : 0.0f;

@@ -30,7 +30,7 @@ void add_triangle(const Surface& surface, uint32_t patch, uint32_t is_upper, uin
     const Quad quad = surface.quads[patch];
     const uint32_t vertex[3] = {quad.vertex[0], quad.vertex[1 + is_upper], quad.vertex[2 + is_upper]};
     for (int corner = 0; corner < 3; ++corner) {
-        const Vec3f& p = surface.positions[vertex[corner]];
+        const Vec3f& p = surface.position(vertex[corner]);
         block.corner[corner][0][lane] = p.x;
         block.corner[corner][1][lane] = p.y;
         block.corner[corner][2][lane] = p.z;

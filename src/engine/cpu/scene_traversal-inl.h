@@ -69,13 +69,13 @@ HWY_INLINE bool walk_tree(const WideBvh& tree, cpu::TraceContext& context, uint3
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
 template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     static constexpr uint8_t kCorner[3][2] = {{0, 0}, {1, 2}, {2, 3}};
     Lanes4 x[3], y[3], z[3];
     for (int corner = 0; corner < 3; ++corner) {
         alignas(16) float coordinate[3][4];
         for (int lane = 0; lane < 4; ++lane) {
-            const Vec3f& p = surface.positions[quad.vertex[kCorner[corner][lane & 1]]];
+            const Vec3f& p = surface.position(quad.vertex[kCorner[corner][lane & 1]]);
             coordinate[0][lane] = p.x, coordinate[1][lane] = p.y, coordinate[2][lane] = p.z;
         }
         const Lanes4 vertex[3] = {Lanes4::load(coordinate[0]), Lanes4::load(coordinate[1]),

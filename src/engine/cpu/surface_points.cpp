@@ -16,9 +16,9 @@ using Corners = std::array<Vec3f, 3>;
 Corners make_corners(const Surface& surface, const PatchSamples* samples, const PatchLevels& levels,
                      const TraceHit& hit) {
     if (!samples) {
-        const Quad& quad = surface.quads[hit.patch];
-        return {surface.positions[quad.vertex[0]], surface.positions[quad.vertex[hit.is_upper ? 2 : 1]],
-                surface.positions[quad.vertex[hit.is_upper ? 3 : 2]]};
+        const Quad quad = surface.quads[hit.patch];
+        return {surface.position(quad.vertex[0]), surface.position(quad.vertex[hit.is_upper ? 2 : 1]),
+                surface.position(quad.vertex[hit.is_upper ? 3 : 2])};
     }
     const auto vertex = [&](uint32_t i, uint32_t j) {
         return evaluate_vertex(*samples, levels, hit.i + i, hit.j + j);
@@ -38,7 +38,7 @@ float bound_position_error(const Affine& world_from_object, const Corners& corne
 
 Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     if (surface.uvs.empty()) return {};
-    const Quad& quad = surface.quads[patch];
+    const Quad quad = surface.quads[patch];
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
     return surface.has_displacement ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
                                     : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});

@@ -237,4 +237,15 @@ void Tracer::add_statistics(Statistics& statistics) const {
         statistics.geometry_bytes += sizeof(Instance) + instance.levels->byte_count();
 }
 
+size_t Tracer::count_plain_bytes() const {
+    size_t bytes = 0;
+    for (const PolygonTree& tree : implementation_->polygon_trees) bytes += tree.byte_count();
+    for (const Surface& surface : scene_->surfaces)
+        if (!surface.has_displacement) bytes += surface.geometry_bytes();
+    for (const Instance& instance : scene_->instances)
+        if (!scene_->surfaces[instance.surface].has_displacement)
+            bytes += sizeof(Instance) + instance.levels->byte_count();
+    return bytes;
+}
+
 } // namespace relief::cpu

@@ -104,6 +104,8 @@ class Tracer {
     Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
 
     void add_statistics(Statistics& statistics) const;
+    /// Of the bytes of geometry and structures, what serves surfaces without displacement alone.
+    size_t count_plain_bytes() const;
 
     const PreparedScene& scene() const { return *scene_; }
     const ShadingKernels& shading_kernels() const;

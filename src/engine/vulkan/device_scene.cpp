@@ -127,7 +127,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
     for (const Surface& surface : scene.surfaces) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
-        append(arrays.positions, surface.positions);
+        for (uint32_t v = 0; v < surface.vertex_count(); ++v) arrays.positions.push_back(surface.position(v));
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
             arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
@@ -136,17 +136,18 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
             arrays.positions.insert(arrays.positions.end(), derivatives.begin(), derivatives.end());
         data.first_uv = append(arrays.uvs, surface.uvs);
         data.first_frame = append(arrays.frames, surface.frames);
-        data.first_dominant = append(arrays.dominants, surface.dominants);
+        data.first_dominant = surface.copies.empty() ? kNone : uint32_t(arrays.dominants.size());
+        for (uint32_t v = 0; v < surface.vertex_count() && !surface.copies.empty(); ++v)
+            arrays.dominants.push_back(surface.dominant(v));
         data.first_vertex_tile = append(arrays.vertex_tiles, surface.vertex_tiles);
         data.first_quad = uint32_t(arrays.quads.size());
-        append(arrays.quads, surface.quads);
+        for (const Quad quad : surface.quads) arrays.quads.push_back(quad);
         data.first_override = uint32_t(arrays.overrides.size());
         data.override_count = uint32_t(surface.overrides.size());
-        for (const EdgeOverride& o : surface.overrides)
+        for (const EdgeOverride& o : surface.overrides.list())
             arrays.overrides.push_back({o.patch_edge, o.first, o.second, 0});
-        data.first_override_word =
-            surface.override_bits.empty() ? kNone : uint32_t(arrays.override_bits.size());
-        for (const uint64_t word : surface.override_bits) {
+        data.first_override_word = surface.overrides.empty() ? kNone : uint32_t(arrays.override_bits.size());
+        for (const uint64_t word : surface.overrides.bits()) {
             arrays.override_bits.push_back(uint32_t(word));
             arrays.override_bits.push_back(uint32_t(word >> 32));
         }
