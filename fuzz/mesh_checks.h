@@ -36,7 +36,9 @@ inline void check_surface(const Mesh& mesh, const Displacement* displacement) {
     try {
         const Surface surface = make_surface(mesh, displacement, Affine{});
         for (const Quad& quad : surface.quads)
-            for (const uint32_t vertex : quad.vertex) require(vertex < surface.positions.size());
+            for (const uint32_t vertex : quad.vertex)
+                require(vertex < surface.vertex_count() &&
+                        surface.dominant(vertex) < surface.positions.size());
         if (!surface.has_displacement) return;
         const PatchLevels levels{2, {2, 1, 0, 2}};
         for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
