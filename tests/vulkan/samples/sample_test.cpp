@@ -2,6 +2,8 @@
 // compares more, at a size that takes longer.
 #include <algorithm>
 #include <map>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -41,10 +43,12 @@ struct Subject {
 
 class Samples : public testing::TestWithParam<Subject> {
   protected:
-    /// The same one for all tests of the process.
+    /// Made once for all tests of the process.
     static const Scene& scene() {
-        static const Scene scene = make_sample_scene(GetParam().scene, GetParam().instancing);
-        return scene;
+        static std::map<std::pair<std::string, Instancing>, Scene> scenes;
+        const auto [place, is_new] = scenes.try_emplace({GetParam().scene, GetParam().instancing});
+        if (is_new) place->second = make_sample_scene(GetParam().scene, GetParam().instancing);
+        return place->second;
     }
 
     static RenderSettings make_settings() {
