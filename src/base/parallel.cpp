@@ -66,10 +66,10 @@ void parallel_for(const char* name, size_t count, size_t grain,
     tbb::profiling::event trace(name);
     LoopScope loop;
     tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, count, std::max<size_t>(grain, 1)),
+        tbb::blocked_range<size_t>(0, (count + grain - 1) / grain, 1),
         [&](const tbb::blocked_range<size_t>& range) {
             BodyScope scope(loop.order);
-            body(range.begin(), range.end());
+            body(range.begin() * grain, std::min(range.end() * grain, count));
         },
         tbb::simple_partitioner());
 }
