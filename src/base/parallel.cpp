@@ -65,11 +65,13 @@ void parallel_for(const char* name, size_t count, size_t grain,
     DCHECK(name && grain > 0);
     tbb::profiling::event trace(name);
     LoopScope loop;
+    grain = std::max<size_t>(grain, 1);
     tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, (count + grain - 1) / grain, 1),
+        tbb::blocked_range<size_t>(0, count / grain + (count % grain != 0), 1),
         [&](const tbb::blocked_range<size_t>& range) {
             BodyScope scope(loop.order);
-            body(range.begin() * grain, std::min(range.end() * grain, count));
+            const size_t begin = range.begin() * grain;
+            body(begin, begin + std::min(grain, count - begin));
         },
         tbb::simple_partitioner());
 }

@@ -148,6 +148,13 @@ template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
     return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
 }
 
+/// In no order that is promised.
+template <size_t W> HWY_INLINE float reduce_sum(const Lanes<W>& a) {
+    auto sum = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) sum = hn::Add(sum, a.part[p]);
+    return hn::GetLane(hn::SumOfLanes(typename Lanes<W>::D(), sum));
+}
+
 /// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
 /// triangle.
 template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {

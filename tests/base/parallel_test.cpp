@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -20,6 +22,14 @@ TEST(Parallel, for_covers_every_index_once_in_ranges_of_the_grain) {
     });
     for (size_t i = 0; i < visits.size(); ++i) ASSERT_EQ(visits[i], 1) << i;
     EXPECT_EQ(odd_ranges.load(), 0u);
+}
+
+TEST(Parallel, for_with_a_grain_beyond_its_count_is_one_range) {
+    for (const size_t grain : {size_t(10), size_t(11), SIZE_MAX - 3, SIZE_MAX}) {
+        std::atomic<size_t> covered{0};
+        parallel_for("one", 10, grain, [&](size_t begin, size_t end) { covered += 100 + end - begin; });
+        EXPECT_EQ(covered.load(), 110u) << grain;
+    }
 }
 
 TEST(Parallel, for_over_nothing_never_calls_its_body) {

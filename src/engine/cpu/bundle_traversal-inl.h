@@ -1,5 +1,6 @@
-// A bundle of rays from one point through the scene: what the projection of micro-polygons onto the picture
-// is in a rasteriser, with every box, patch and block visited once for all rays of a tile, nearest first.
+// A bundle of rays (ray_bundle-inl.h) through the scene: what the projection of micro-polygons onto the
+// picture is in a rasteriser, with every box, patch and block visited once for all rays of a tile, nearest
+// first.
 #if defined(RELIEF_BUNDLE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_BUNDLE_TRAVERSAL_INL_H
 #undef RELIEF_BUNDLE_TRAVERSAL_INL_H
@@ -12,7 +13,6 @@
 #include "base/check.h"
 #include "engine/cpu/hit_log-inl.h"
 #include "engine/cpu/packet_traversal-inl.h"
-#include "engine/cpu/ray_bundle-inl.h"
 #include "engine/cpu/ray_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,24 +53,51 @@ struct QuadPlaces {
     }
 };
 
+template <size_t W>
+HWY_INLINE void measure_from(const Vec3f& origin, const Lanes<W> (&vertex)[3], Lanes<W> (&v)[3]) {
+    v[0] = vertex[0] - Lanes<W>(origin.x), v[1] = vertex[1] - Lanes<W>(origin.y);
+    v[2] = vertex[2] - Lanes<W>(origin.z);
+}
+
+/// The window of the vertices of a block; `v` is relative to the bundle's origin.
+template <class Bundle> HWY_INLINE Window find_block_window(const Lanes16 (&v)[3], const Bundle& bundle) {
+    Lanes16 vertex[3];
+    for (int k = 0; k < 3; ++k) vertex[k] = hide_last(v[k]);
+    return find_window(vertex, bundle);
+}
+
+/// A window about all.
+HWY_INLINE Window find_union(const PartWindows& part) {
+    return {reduce_min(part.lower_x), reduce_max(part.upper_x), reduce_min(part.lower_y),
+            reduce_max(part.upper_y), reduce_min(part.depth),   reduce_max(part.far)};
+}
+
 /// The triangles of a block, for each ray that may meet one.
-HWY_NOINLINE inline void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
-                                     RayBundle& bundle) {
-    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
+template <class Bundle>
+HWY_NOINLINE void trace_block(BundleVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+                              Bundle& bundle) {
     const BlockPlace place(tree, int(tree.level), block);
-    Lanes16 v[3];
-    for (int k = 0; k < 3; ++k) v[k] = place.load(k) - Lanes16(origin[k]);
+    const Lanes16 vertex[3] = {place.load(0), place.load(1), place.load(2)};
+    Lanes16 seen_from[3], v[3];
+    measure_from(bundle.origin, vertex, seen_from);
+    // A fan's groups are narrow: few blocks that it reaches concern none.
     Window all;
-    const PartWindows windows = find_quad_windows(v, bundle, all);
-    const LaneTable<16> table[3] = {LaneTable<16>(v[0]), LaneTable<16>(v[1]), LaneTable<16>(v[2])};
-    BlockHits hits(bundle, visit.hit);
+    if constexpr (Bundle::kIsWide) {
+        all = find_block_window(seen_from, bundle);
+        if (!find_groups(all, bundle)) return;
+    }
+    const PartWindows windows = find_quad_windows(seen_from, bundle);
+    if constexpr (!Bundle::kIsWide) all = find_union(windows);
+    measure_from(bundle.vertex_origin(), vertex, v);
+    BlockHits<Bundle> hits(bundle, visit.hit);
     QuadPlaces quads(visit.patch, tree, block);
+    const LaneTable<16> table[3] = {LaneTable<16>(v[0]), LaneTable<16>(v[1]), LaneTable<16>(v[2])};
     visit_pairs(
         windows, all, bundle, visit.tested,
-        visit.patch.context->counters.blocks, [&](PairList & list) __attribute__((always_inline)) {
-            const PairLanes pairs(list);
+        visit.patch.context->counters.blocks, [&](PairsOf<Bundle> & list) __attribute__((always_inline)) {
+            const PairLanes<Bundle::kPairValues> pairs(list);
             // Rows of five vertices, four quads wide; corners 00, 10, 11, 01.
-            const LaneIndices base = pairs.part + pairs.part.shifted_down<2>();
+            const LaneIndices quad = pairs.part, base = quad + quad.shifted_down<2>();
             const LaneIndices at[4] = {base, base + LaneIndices(1), base + LaneIndices(6),
                                        base + LaneIndices(5)};
             Lanes16 corner[3][4];
@@ -108,15 +135,16 @@ HWY_INLINE void visit_in_order(LaneMask mask, const Lanes<W>& nearest, const Ray
 }
 
 /// Calls visit(child) for the boxes of a node that the bundle reaches, nearest first.
-template <size_t W, class Visit>
-HWY_INLINE void visit_boxes(const float (&bounds)[6][W], const RayBundle& bundle, Visit visit) {
+template <size_t W, class Bundle, class Visit>
+HWY_INLINE void visit_boxes(const float (&bounds)[6][W], const Bundle& bundle, Visit visit) {
     Lanes<W> bound[6], nearest;
     for (int k = 0; k < 6; ++k) bound[k] = Lanes<W>::load(bounds[k]);
     const LaneMask mask = test_boxes(bound, bundle, nearest);
     visit_in_order(mask, nearest, bundle, visit);
 }
 
-HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayBundle& bundle) {
+template <class Bundle>
+HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, Bundle& bundle) {
     uint64_t& nodes = visit.patch.context->counters.patch_nodes;
     const auto test_block = [&](uint32_t block) { trace_block(visit, tree, block, bundle); };
     const auto test_square = [&](uint32_t square) { test_block(2 * square), test_block(2 * square + 1); };
@@ -141,8 +169,9 @@ HWY_INLINE void trace_tree(BundleVisit& visit, const cpu::BottomTree& tree, RayB
     }
 }
 
-inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& directory, uint32_t step,
-                            uint32_t x, uint32_t y, RayBundle& bundle) {
+template <class Bundle>
+void trace_directory(BundleVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t x,
+                     uint32_t y, Bundle& bundle) {
     using cpu::TileDirectory;
     const uint32_t depth = directory.depth, fanout = TileDirectory::fanout(depth, step);
     const uint32_t side = TileDirectory::step_side(depth, step);
@@ -162,8 +191,8 @@ inline void trace_directory(BundleVisit& visit, const cpu::TileDirectory& direct
     });
 }
 
-inline void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch,
-                        RayBundle& bundle) {
+template <class Bundle>
+void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch, Bundle& bundle) {
     BundleVisit visit{enter_patch(scene, context, bundle.instance, patch, bundle.rays->bias)};
     const std::optional<Timer> timer = context.is_timed ? std::optional<Timer>(std::in_place) : std::nullopt;
     const double built_before = context.counters.bottom_build_s;
@@ -191,7 +220,8 @@ HWY_INLINE void load_bounds(const cpu::PolygonNode& node, Lanes8 (&bound)[6]) {
 }
 
 /// The window of box k of eight.
-HWY_INLINE Window find_window(const Lanes8 (&bound)[6], uint32_t k, const RayBundle& bundle) {
+template <class Bundle>
+HWY_INLINE Window find_window(const Lanes8 (&bound)[6], uint32_t k, const Bundle& bundle) {
     alignas(32) float planes[6][8], corner[3][8];
     for (int plane = 0; plane < 6; ++plane) bound[plane].store(planes[plane]);
     const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
@@ -210,8 +240,8 @@ struct WalkEntry {
 
 /// Calls visit(child, window) for the leaves of a tree of wide nodes that rays may meet something nearer in,
 /// nearest first. Returns how many nodes were visited.
-template <class Nodes, class Visit>
-HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const RayBundle& bundle, Visit visit) {
+template <class Nodes, class Bundle, class Visit>
+HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const Bundle& bundle, Visit visit) {
     using Node = typename Nodes::value_type;
     if (nodes.empty()) return 0;
     WalkEntry stack[kStackSize];
@@ -246,24 +276,26 @@ HWY_INLINE uint32_t walk_bundle(const Nodes& nodes, const RayBundle& bundle, Vis
 }
 
 /// Eight triangles of a surface without displacement; lanes without one are NaN, and no ray meets them.
-HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Window& window,
-                                     RayBundle& bundle) {
-    const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
-    Lanes8 v[3][3];
-    for (int c = 0; c < 3; ++c)
-        for (int axis = 0; axis < 3; ++axis)
-            v[c][axis] = Lanes8::load(block.corner[c][axis]) - Lanes8(origin[axis]);
+template <class Bundle>
+HWY_NOINLINE void trace_block(const cpu::TriangleBlock& block, const Window& window, Bundle& bundle) {
+    Lanes8 corners[3][3], v[3][3];
+    for (int c = 0; c < 3; ++c) {
+        for (int axis = 0; axis < 3; ++axis) corners[c][axis] = Lanes8::load(block.corner[c][axis]);
+        measure_from(bundle.origin, corners[c], v[c]);
+    }
+    const PartWindows windows = find_triangle_windows(v, bundle);
+    for (int c = 0; c < 3; ++c) measure_from(bundle.vertex_origin(), corners[c], v[c]);
     using Table = LaneTable<8>;
     const Table table[3][3] = {{Table(v[0][0]), Table(v[0][1]), Table(v[0][2])},
                                {Table(v[1][0]), Table(v[1][1]), Table(v[1][2])},
                                {Table(v[2][0]), Table(v[2][1]), Table(v[2][2])}};
     LaneMask tested[kGroupCount] = {}, hit_rays[kGroupCount] = {};
     uint64_t count = 0;
-    BlockHits hits(bundle, hit_rays);
+    BlockHits<Bundle> hits(bundle, hit_rays);
     static_assert(offsetof(cpu::TriangleBlock, triangle) % 32 == 0);
     const Table triangles(Lanes8::load(reinterpret_cast<const float*>(block.triangle)));
-    visit_pairs(find_triangle_windows(v, bundle), window, bundle, tested, count, [&](PairList& list) {
-        const PairLanes pairs(list);
+    visit_pairs(windows, window, bundle, tested, count, [&](PairsOf<Bundle>& list) {
+        const PairLanes<Bundle::kPairValues> pairs(list);
         Lanes16 corner[3][3];
         shear_corners(
             pairs, bundle, [&](int c, int axis) { return table[c][axis].pick(pairs.part); }, corner);
@@ -280,7 +312,8 @@ HWY_NOINLINE inline void trace_block(const cpu::TriangleBlock& block, const Wind
 inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
                          BundleRays& rays) {
     for (uint32_t k = 0; k < rays.count; ++k) {
-        const cpu::TraceRay world{rays.origin, rays.t_min[k], rays.direction_of(k), rays.t[k], rays.bias};
+        const cpu::TraceRay world{rays.origin_of(k), rays.t_min[k], rays.direction_of(k), rays.t[k],
+                                  rays.bias};
         RayState ray;
         ray.t_min = world.t_min, ray.t_max = world.t_max;
         if (rays.found[k] == kWritten) ray.hit = rays.hits[k];
@@ -295,7 +328,8 @@ inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context
 }
 
 /// Everything of the instance in whose space the bundle is.
-inline void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, RayBundle& bundle) {
+template <class Bundle>
+void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, Bundle& bundle) {
     DCHECK(bundle.rays->log->count == 0);
     const uint32_t surface = scene.instances[bundle.instance].surface;
     if (!scene.surfaces[surface].has_displacement) {
@@ -316,9 +350,10 @@ inline void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
 
 /// The same from another space. False, with nothing done, where the rays are no bundle in that of the
 /// instance.
-inline bool enter_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                           BundleRays& rays) {
-    RayBundle bundle;
+template <class Bundle>
+bool enter_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                    BundleRays& rays) {
+    Bundle bundle;
     bundle.rays = &rays, bundle.instance = instance;
     if (!enter_space(scene.instances[instance].object_from_world, bundle)) return false;
     trace_instance(scene, context, bundle);
@@ -326,9 +361,10 @@ inline bool enter_instance(const cpu::SceneView& scene, cpu::TraceContext& conte
 }
 
 /// Everything of all instances, into found and hits. False where the rays are no bundle.
-inline bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays) {
-    if (scene.instance_count == 1) return enter_instance(scene, context, 0, rays);
-    RayBundle world;
+template <class Bundle>
+bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays) {
+    if (scene.instance_count == 1) return enter_instance<Bundle>(scene, context, 0, rays);
+    Bundle world;
     world.rays = &rays;
     if (!enter_space(Affine{}, world)) return false;
     const auto trace = [&](uint32_t instance) {
@@ -336,7 +372,8 @@ inline bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& cont
             world.instance = instance;
             return trace_instance(scene, context, world);
         }
-        if (!enter_instance(scene, context, instance, rays)) trace_singly(scene, context, instance, rays);
+        if (!enter_instance<Bundle>(scene, context, instance, rays))
+            trace_singly(scene, context, instance, rays);
         for (uint32_t group = 0; group < kGroupCount; ++group)
             world.group_farthest[group] = find_farthest(world, group);
         update_farthest(world);
@@ -349,15 +386,15 @@ inline bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& cont
     return true;
 }
 
-/// Nearest hits of up to kBundleSize rays from one point and of one bias. False where they are no bundle;
+/// Nearest hits of the rays, as a RayFan or RayShaft; fill_rest comes before. False where they are no bundle;
 /// `hits` is undefined then.
-inline bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays,
-                         cpu::TraceHit* hits) {
-    fill_rest(rays);
+template <class Bundle>
+bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays,
+                  cpu::TraceHit* hits) {
     HitLog log;
     rays.hits = hits, rays.log = &log;
     std::fill_n(rays.found, kBundleSize, kNothing);
-    if (!trace_instances(scene, context, rays)) return false;
+    if (!trace_instances<Bundle>(scene, context, rays)) return false;
     cpu::TraceHit none;
     none.bias = uint8_t(rays.bias);
     for (uint32_t k = 0; k < rays.count; ++k)

@@ -142,9 +142,9 @@ HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&h
 
 /// The hits of one block: noted as they are found, and offered to their rays when all pairs of the block have
 /// been tested. At once for many, a processor foresees more of it.
-class BlockHits {
+template <class Bundle> class BlockHits {
   public:
-    HWY_INLINE BlockHits(RayBundle& bundle, LaneMask (&hit_rays)[kGroupCount])
+    HWY_INLINE BlockHits(Bundle& bundle, LaneMask (&hit_rays)[kGroupCount])
         : bundle_(bundle), hit_rays_(hit_rays), first_(bundle.rays->log->count) {}
 
     HWY_INLINE void note(const TriangleTest<16>& test, const LaneIndices& rays, const HitPlaces& places) {
@@ -162,7 +162,7 @@ class BlockHits {
     }
 
   private:
-    RayBundle& bundle_;
+    Bundle& bundle_;
     LaneMask (&hit_rays_)[kGroupCount];
     uint32_t first_; ///< what is before it in the log has been offered
 };

@@ -67,15 +67,25 @@ bool may_trace_bundles(const cpu::SceneView& scene) {
     return scene.lod == LodRule::field && scene.leaf == LeafKind::exact;
 }
 
-/// Hits of the rays at the front that leave one point together; returns how many that were.
+/// Hits of the rays at the front that leave one point together, or else go about the same way; returns how
+/// many that were.
 size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                    cpu::TraceHit* hits, size_t count) {
-    if (!may_trace_bundles(scene)) return 0;
+    if (count < kLeastBundle || !may_trace_bundles(scene)) return 0;
     BundleRays bundle;
-    load_rays(rays, count, bundle);
+    load_fan(rays, count, bundle);
+    if (bundle.count >= kLeastBundle) {
+        fill_rest(bundle);
+        scene.cache->refresh(context);
+        return trace_bundle<RayFan>(scene, context, bundle, hits) ? bundle.count : 0;
+    }
+    if (!may_be_coherent(rays)) return 0;
+    load_shaft(rays, count, bundle);
     if (bundle.count < kLeastBundle) return 0;
+    fill_rest(bundle);
+    if (!are_neighbours_close(bundle)) return 0;
     scene.cache->refresh(context);
-    return trace_bundle(scene, context, bundle, hits) ? bundle.count : 0;
+    return trace_bundle<RayShaft>(scene, context, bundle, hits) ? bundle.count : 0;
 }
 
 /// Nearest hits of rays that are no bundle.
@@ -104,12 +114,13 @@ void camera_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const 
     for (size_t begin = 0; begin < pixels.count; begin += kBundleSize) {
         const uint32_t size = uint32_t(HWY_MIN(size_t(kBundleSize), pixels.count - begin));
         BundleRays bundle;
-        load_rays(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
+        load_fan(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
+        fill_rest(bundle);
         scene.cache->refresh(context);
         // make_pinhole_ray leaves nothing infinite in a direction; the origin is the same for all.
         const bool may_be_bundle = size >= kLeastBundle && may_trace_bundles(scene) &&
                                    relief::can_hit(cpu::TraceRay{bundle.origin, 0, bundle.direction_of(0)});
-        if (may_be_bundle && trace_bundle(scene, context, bundle, hits + begin)) continue;
+        if (may_be_bundle && trace_bundle<RayFan>(scene, context, bundle, hits + begin)) continue;
         cpu::TraceRay aimed[kBundleSize];
         for (uint32_t k = 0; k < size; ++k)
             aimed[k].origin = bundle.origin, aimed[k].direction = bundle.direction_of(k);

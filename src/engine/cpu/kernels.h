@@ -51,7 +51,8 @@ struct CameraPixels {
 
 struct Kernels {
     const char* name;
-    /// Nearest hits of `count` rays; neighbours in runs of 16 may be traced as one packet.
+    /// Nearest hits of `count` rays; neighbours in runs of 256 may be traced as a bundle, in runs of 16
+    /// as a packet.
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     /// The same of the rays that scalar::make_pinhole_ray aims through each position; neighbours in runs of
     /// 256. They are written to `rays` unless it is null.

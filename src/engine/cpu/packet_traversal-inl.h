@@ -1,7 +1,7 @@
 // Sixteen coherent rays at once: every box is tested against all of them, every leaf block against those that
 // enter it. Boxes and triangles are the very tests of the single ray, so that a ray's hit does not depend on
 // its company.
-// Rays from one point travel as a bundle instead (bundle_traversal-inl.h).
+// Many rays from one point, and those through a lens, travel as a bundle instead (bundle_traversal-inl.h).
 #if defined(RELIEF_PACKET_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_PACKET_TRAVERSAL_INL_H
 #undef RELIEF_PACKET_TRAVERSAL_INL_H

@@ -196,6 +196,15 @@ HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
     return r;
 }
 
+/// The vertices of a block with lane 15 like lane 0.
+HWY_INLINE Lanes16 hide_last(const Lanes16& vertex) {
+    const Lanes16::D d;
+    Lanes16 r = vertex;
+    auto& last = r.part[Lanes16::kParts - 1];
+    last = hn::IfThenElse(hn::FirstN(d, Lanes16::kLanes - 1), last, hn::Set(d, hn::GetLane(vertex.part[0])));
+    return r;
+}
+
 /// One corner of the eight quads of a block out of two registers: the first kFromFirst come from the first
 /// one.
 template <size_t kFromFirst, size_t W>

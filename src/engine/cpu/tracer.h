@@ -76,9 +76,9 @@ class Tracer {
     /// become smaller with improve_trees().
     Box displaced_bounds() const;
 
-    /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together and go the same way are traced in
-    /// packets: give neighbours in runs of 16. `depth` says where the statistics count them: bounces behind
-    /// the rays.
+    /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as
+    /// bundles of 256 or packets of 16: give neighbours in such runs. `depth` says where the statistics count
+    /// them: bounces behind the rays.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0) const;
 
     /// Nearest hits of what a camera without an aperture sees at positions of the picture, in pixels:
