@@ -181,6 +181,17 @@ TEST(Shaft, finds_it_where_coordinates_are_large) {
     }
 }
 
+TEST(Shaft, is_none_where_rays_begin_before_their_origins) {
+    const cpu::Tracer tracer = make_tracer(rock(), 4, Isa::best);
+    Rays rays = make_parallel_tiles({0.3f, -0.2f, -1}, 2, 4);
+    for (cpu::TraceRay& ray : rays)
+        ray.origin = ray.origin + normalize(ray.direction) * 10.0f, ray.t_min = -12;
+    EXPECT_GT(expect_same(tracer, rays, "all of them"), 1000u);
+    for (size_t k = 0; k < rays.size(); ++k)
+        if (k % 256 < 200) rays[k].t_min = 0;
+    expect_same(tracer, rays, "the last of each tile");
+}
+
 TEST(Shaft, finds_it_whatever_the_length_of_directions) {
     for (const float factor : {1e-20f, 1e-10f, 1e10f, 1e20f, 1e30f}) {
         const cpu::Tracer tracer = make_tracer(make_many_spaces(), 3, Isa::best);
