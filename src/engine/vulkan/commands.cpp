@@ -109,7 +109,7 @@ void Commands::Implementation::bind_kernel(const Kernel& kernel, std::span<const
     DCHECK(push.size() <= scalar::kMaxPushBytes && push.size() % 4 == 0);
     const Kernel::Implementation& used = kernel.internals();
     buffer.bindPipeline(used.is_drawn ? vk::PipelineBindPoint::eGraphics : vk::PipelineBindPoint::eCompute,
-                        *used.pipeline);
+                        **used.pipeline);
     (*buffer).pushConstants(*device.pipeline_layout, device.shader_stages, 0, uint32_t(push.size()),
                             push.data(), *buffer.getDispatcher());
     kernel_names.insert(used.name);

@@ -31,7 +31,8 @@ struct DeviceDescription {
 /// missing driver.
 std::vector<DeviceDescription> list_devices();
 
-/// Immutable once made, apart from its memory accounts; one thread at a time may record and submit.
+/// Immutable once made, apart from its memory accounts and the pipelines that it keeps; one thread at a time
+/// may record and submit.
 class Device {
   public:
     struct Config {

@@ -12,6 +12,7 @@
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/instance.h"
 #include "engine/vulkan/memory.h"
+#include "engine/vulkan/pipeline_store.h"
 
 namespace relief::vulkan {
 
@@ -55,6 +56,7 @@ struct Device::Implementation {
     size_t loaded_cache_bytes = 0;
     vk::raii::DescriptorSetLayout set_layout = nullptr;
     vk::raii::PipelineLayout pipeline_layout = nullptr;
+    mutable PipelineStore pipelines;
     vk::raii::CommandPool pool = nullptr;
     vk::raii::Fence fence = nullptr;
     std::unique_ptr<MemoryAllocator> memory;

@@ -72,9 +72,21 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
     const vk::PipelineShaderStageCreateInfo stage(
         {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
         "main", &constants);
-    if (is_drawn) return make_drawn_pipeline(device, config, stage);
-    return {device.device, device.pipeline_cache,
-            vk::ComputePipelineCreateInfo({}, stage, *device.pipeline_layout)};
+    vk::raii::Pipeline pipeline =
+        is_drawn ? make_drawn_pipeline(device, config, stage)
+                 : vk::raii::Pipeline(device.device, device.pipeline_cache,
+                                      vk::ComputePipelineCreateInfo({}, stage, *device.pipeline_layout));
+    device.set_name(pipeline, config.shader);
+    return pipeline;
+}
+
+/// The device's, or one of its own for a shader of somebody else.
+std::shared_ptr<const vk::raii::Pipeline> find_pipeline(const Device::Implementation& device,
+                                                        const KernelConfig& config,
+                                                        std::span<const uint32_t> code) {
+    const auto make = [&] { return make_pipeline(device, config, code); };
+    if (!config.code.empty()) return std::make_shared<const vk::raii::Pipeline>(make());
+    return device.pipelines.find_or_make({config.shader, config.vertex_shader, config.constants}, make);
 }
 
 } // namespace
@@ -88,10 +100,8 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
     implementation_->name = config.shader;
     implementation_->group_size = config.constants[0];
     implementation_->is_drawn = !config.vertex_shader.empty();
-    check_vulkan("compiling " + config.shader, [&] {
-        implementation_->pipeline = make_pipeline(device.internals(), config, code);
-        device.internals().set_name(implementation_->pipeline, config.shader);
-    });
+    check_vulkan("compiling " + config.shader,
+                 [&] { implementation_->pipeline = find_pipeline(device.internals(), config, code); });
 }
 Kernel::~Kernel() = default;
 Kernel::Kernel(Kernel&&) noexcept = default;

@@ -29,7 +29,8 @@ struct KernelConfig {
 inline constexpr const char* kFullScreen = "full_screen";
 inline constexpr uint32_t kFragmentGroup = 64;
 
-/// One compiled shader with its constants. The device must outlive it.
+/// One compiled shader with its constants. A device compiles each of its shaders once for the same constants,
+/// however many kernels there are of it. The device must outlive it.
 class Kernel {
   public:
     Kernel() noexcept;

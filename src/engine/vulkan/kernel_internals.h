@@ -1,6 +1,8 @@
-// Vulkan's side of Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp and commands.cpp only.
+// Vulkan's side of Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp, commands.cpp
+// and tests only.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,7 @@ struct Kernel::Implementation {
     std::string name;
     uint32_t group_size = 0;
     bool is_drawn = false;
-    vk::raii::Pipeline pipeline = nullptr;
+    std::shared_ptr<const vk::raii::Pipeline> pipeline;
 };
 
 struct BindingTable::Implementation {

@@ -1,0 +1,37 @@
+// The pipelines of a device, each compiled once, however many tracers use it. Included by the files behind
+// device.h and kernel.h only.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <vulkan/vulkan_raii.hpp>
+
+namespace relief::vulkan {
+
+/// Thread safe. Pipelines stay until the store goes.
+class PipelineStore {
+  public:
+    /// Shader, vertex shader, constants: as in KernelConfig, of shaders that belong to the build.
+    using Key = std::tuple<std::string, std::string, std::vector<uint32_t>>;
+
+    /// The pipeline of `key`; make() is called where there is none yet. What it throws, this throws.
+    template <class Make> std::shared_ptr<const vk::raii::Pipeline> find_or_make(Key key, const Make& make) {
+        const std::lock_guard lock(mutex_);
+        std::shared_ptr<const vk::raii::Pipeline>& place = pipelines_[std::move(key)];
+        if (!place) place = std::make_shared<const vk::raii::Pipeline>(make());
+        return place;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<Key, std::shared_ptr<const vk::raii::Pipeline>> pipelines_;
+};
+
+} // namespace relief::vulkan
