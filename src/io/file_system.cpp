@@ -78,6 +78,20 @@ std::string read_file_bytes(const fs::path& file) {
     return bytes;
 }
 
+namespace {
+
+/// Devices, pipes and sockets, and links of the system that stand for what is open already (/dev/stdout).
+bool is_special(const fs::path& target) {
+    std::error_code code;
+    const fs::file_status status = fs::status(target, code);
+    if (!fs::exists(status)) return false;
+    const std::string name = target.lexically_normal().string();
+    return !fs::is_regular_file(status) || name.starts_with("/dev/fd/") || name.starts_with("/dev/std") ||
+           name.starts_with("/proc/");
+}
+
+} // namespace
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     temporary_ = target_;
     temporary_ += fmt::format(".{}.tmp", ::getpid());
@@ -88,11 +102,13 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (!fs::is_directory(folder, code))
         throw Error(ErrorKind::failed, {fmt::format("the folder '{}' does not exist", folder.string()),
                                         target_.string(), "make the folder first"});
+    is_in_place_ = is_special(target_);
+    if (is_in_place_) temporary_ = target_;
 }
 
 AtomicFile::~AtomicFile() {
     std::error_code code;
-    if (!is_committed_) fs::remove(temporary_, code);
+    if (!is_committed_ && !is_in_place_) fs::remove(temporary_, code);
 }
 
 void AtomicFile::fail(const std::string& message) const {
@@ -101,6 +117,7 @@ void AtomicFile::fail(const std::string& message) const {
 }
 
 void AtomicFile::commit() {
+    if (is_in_place_) return;
     std::error_code code;
     const auto size = fs::file_size(temporary_, code);
     if (code || size == 0) fail("cannot be written: nothing reached the disk");
@@ -111,6 +128,11 @@ void AtomicFile::commit() {
 
 void check_text_writable(const fs::path& file) {
     const AtomicFile atomic(file);
+    if (atomic.is_in_place()) {
+        if (::access(file.c_str(), W_OK) != 0)
+            atomic.fail(fmt::format("cannot be written: {}", std::strerror(errno)));
+        return;
+    }
     const std::ofstream probe(atomic.temporary(), std::ios::binary);
     if (!probe) atomic.fail("cannot be written: no file can be made in its folder");
 }

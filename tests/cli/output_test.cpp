@@ -1,6 +1,14 @@
 // A picture that cannot be written where it was asked for is not lost.
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
 #include <vector>
+
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "output.h"
@@ -54,6 +62,22 @@ TEST_F(Output, the_first_failure_is_told_when_no_place_works) {
     } catch (const Error& error) {
         EXPECT_EQ(error.where(), (folder_ / "a.exr").string());
     }
+}
+
+TEST_F(Output, statistics_go_into_a_pipe_that_stays_one) {
+    const Path pipe = folder_ / "stats";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] {
+        std::ifstream stream(pipe);
+        received.assign(std::istreambuf_iterator<char>(stream), {});
+    });
+    const CommandResult result = render_bump("a.exr", {"--stats", "stats"});
+    if (result.exit_code != 0) std::ofstream(pipe) << result.errors; // so that the reader ends
+    reader.join();
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    EXPECT_EQ(nlohmann::json::parse(received)["image"]["spp"], 4);
 }
 
 } // namespace
