@@ -70,7 +70,7 @@ void ProgressPrinter::on_progress(const Progress& progress) {
         return;
     }
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_line_ < kPlainInterval) return;
+    if (now - last_line_ < kPlainInterval && progress.samples_done < progress.samples_total) return;
     last_line_ = now;
     fmt::print(stderr, "{}\n", format_progress(progress));
 }

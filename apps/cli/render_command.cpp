@@ -49,21 +49,22 @@ Scene load_input(const RenderOptions& options) {
     return load_scene(options.input);
 }
 
-void write_statistics(const std::filesystem::path& file, const Statistics& statistics,
+void write_statistics(const std::filesystem::path& file, const RenderResult& result,
                       const RenderSettings& settings) {
-    write_text_file(file, make_statistics_json(statistics, settings).dump(2) + "\n");
+    write_text_file(file, make_statistics_json(result, settings).dump(2) + "\n");
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
 }
 
-void print_summary(const Statistics& s, const RenderSettings& settings) {
+void print_summary(const RenderResult& result, const RenderSettings& settings) {
+    const Statistics& s = result.statistics;
     const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
                s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
-    fmt::print(stderr, "{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
-               settings.height, settings.spp, rays, s.render_s,
+    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
+               settings.height, result.is_complete ? "" : "some of ", settings.spp, rays, s.render_s,
                s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
@@ -88,7 +89,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     const bool has_samples = statistics.camera_rays > 0 && statistics.camera_rays != waiting.camera_rays;
     if (!result.is_complete && !has_samples) {
         fmt::print(stderr, "relief: interrupted before the first sample; no picture was written\n");
-        if (!options.statistics_file.empty()) write_statistics(options.statistics_file, statistics, settings);
+        if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
         return get_exit_code(options, result, {});
     }
     const double write_start = get_seconds();
@@ -97,10 +98,10 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     statistics.first_image_s += waiting.load_s; // from the start of the command, as a person waits for it
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
-    if (options.is_verbose) print_summary(statistics, settings);
+    if (options.is_verbose) print_summary(result, settings);
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // whoever sends edits waits for it
-    if (!options.statistics_file.empty()) write_statistics(options.statistics_file, statistics, settings);
+    if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
     return get_exit_code(options, result, saved);
 }

@@ -53,14 +53,16 @@ Json make_casts(const Statistics& s) {
 
 } // namespace
 
-Json make_statistics_json(const Statistics& s, const RenderSettings& settings) {
+Json make_statistics_json(const RenderResult& result, const RenderSettings& settings) {
+    const Statistics& s = result.statistics;
     Json root;
     root["relief"] = {{"version", RELIEF_VERSION}};
     root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
     root["image"] = {{"width", settings.width},
                      {"height", settings.height},
                      {"spp", settings.spp},
-                     {"bounces", settings.bounces}};
+                     {"bounces", settings.bounces},
+                     {"is_complete", result.is_complete}};
     root["scene"] = {{"meshes", s.meshes},
                      {"instances", s.instances},
                      {"patches", s.patches},

@@ -8,6 +8,6 @@
 namespace relief::cli {
 
 /// All numbers of one render under their stable keys.
-nlohmann::ordered_json make_statistics_json(const Statistics& statistics, const RenderSettings& settings);
+nlohmann::ordered_json make_statistics_json(const RenderResult& result, const RenderSettings& settings);
 
 } // namespace relief::cli

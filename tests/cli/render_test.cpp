@@ -263,14 +263,16 @@ TEST_F(Render, a_picture_that_fills_the_disk_goes_elsewhere) {
 
 TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture_and_two_at_once_do_as_well) {
     for (const int strokes : {1, 2}) {
-        const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576",
-                                     "--bounces", "0", "--progress", "json", "-o", "part.exr"});
+        const pid_t process =
+            start({"render", "plane.obj", "--size", "64x64", "--spp", "1048576", "--bounces", "0",
+                   "--progress", "json", "--stats", "part.json", "-o", "part.exr"});
         for (int i = 0; i < 1000 && read("stderr.txt").find("percent") == std::string::npos; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         for (int k = 0; k < strokes; ++k)
             kill(process, SIGINT), std::this_thread::sleep_for(std::chrono::milliseconds(1));
         const CommandResult result = finish(process);
         EXPECT_EQ(result.exit_code, 130) << result.errors;
+        EXPECT_EQ(json::parse(read("part.json"))["image"]["is_complete"], false);
         const Image image = read_image(folder_ / "part.exr");
         EXPECT_EQ(image.width, 64);
         const std::optional<size_t> samples = image.find_channel("samples.Y");
@@ -282,6 +284,12 @@ TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture_and_two_at_once_do_as
         EXPECT_LT(most, 1048576);
         std::filesystem::remove(folder_ / "part.exr"), std::filesystem::remove(folder_ / "stderr.txt");
     }
+}
+
+TEST_F(Render, plain_progress_ends_with_all_samples) {
+    const CommandResult result = render_bump("a.exr", {"--progress", "plain"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.errors.find("100 %  4/4 samples"), std::string::npos) << result.errors;
 }
 
 TEST_F(Render, one_pixel_is_explained_without_a_picture) {
