@@ -165,6 +165,19 @@ void add_report_options(CLI::App& verb, RenderOptions& o) {
     verb.add_flag("--strict", o.is_strict, "exit 6 when there were warnings");
 }
 
+void check_input(const std::filesystem::path& input) {
+    if (input.empty())
+        throw Error(ErrorKind::usage,
+                    {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
+    std::error_code code;
+    if (!std::filesystem::is_directory(input, code)) return;
+    const std::filesystem::path scene = input / "scene.json";
+    throw Error(ErrorKind::usage,
+                {"is a folder, neither a scene file nor a mesh", input.string(),
+                 std::filesystem::exists(scene, code) ? fmt::format("relief render {}", scene.string())
+                                                      : "give the name of a file in it"});
+}
+
 } // namespace
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {
@@ -181,9 +194,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
 
 void complete_render_options(RenderOptions& o) {
     complete_engine_options(o.engine, o.settings);
-    if (o.input.empty())
-        throw Error(ErrorKind::usage,
-                    {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
+    check_input(o.input);
     if (!is_mesh_file(o.input) && !o.mesh_only.empty())
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),

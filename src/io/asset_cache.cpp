@@ -65,7 +65,7 @@ void check_finite(const Texture& texture, int udim) {
             const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
             const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
             throw Error(ErrorKind::bad_input,
-                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", c),
+                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", "RGB"[c]),
                          fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
                          "repair the pixel, for example by painting over it, and export again"});
         }

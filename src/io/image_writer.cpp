@@ -19,9 +19,13 @@ constexpr std::array<std::string_view, 3> kWritable = {".exr", ".png", ".hdr"};
 
 void check_output_extension(const std::filesystem::path& file) {
     const std::string extension = get_extension(file);
-    if (std::find(kWritable.begin(), kWritable.end(), extension) == kWritable.end())
-        throw Error(ErrorKind::usage, {fmt::format("cannot write images of kind '{}'", extension),
-                                       file.string(), suggest_word(extension, kWritable)});
+    if (std::find(kWritable.begin(), kWritable.end(), extension) != kWritable.end()) return;
+    std::error_code code;
+    if (!file.has_filename() || std::filesystem::is_directory(file, code))
+        throw Error(ErrorKind::usage,
+                    {"is a folder, not a file", file.string(), "add a file name: .exr, .png or .hdr"});
+    throw Error(ErrorKind::usage, {fmt::format("cannot write images of kind '{}'", extension), file.string(),
+                                   suggest_word(extension, kWritable)});
 }
 
 void check_image(const Image& image, const std::filesystem::path& file) {

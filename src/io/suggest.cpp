@@ -25,6 +25,7 @@ size_t compute_edit_distance(std::string_view a, std::string_view b) {
 
 constexpr size_t kLongestWord = 64; // longer words are nobody's typing mistake
 constexpr size_t kLongestList = 16;
+constexpr size_t kShortestStem = 3; // that a longer word is known by
 
 } // namespace
 
@@ -38,6 +39,9 @@ std::string suggest_word(std::string_view word, std::span<const std::string_view
             if (distance < smallest) smallest = distance, nearest = candidate;
         }
     }
+    if (nearest.empty() && word.size() >= kShortestStem)
+        for (const std::string_view candidate : known)
+            if (candidate.starts_with(word)) nearest = nearest.empty() ? candidate : nearest;
     if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
     if (known.empty() || known.size() > kLongestList) return {};
     std::string list = "known: ";

@@ -38,7 +38,7 @@ void refuse_bad_texel(const Texture& texture, const TexelRectangle& rectangle) {
                 if (!std::isfinite(texel[c]))
                     throw Error(ErrorKind::bad_input,
                                 {fmt::format("map holds {} in channel {}",
-                                             std::isnan(texel[c]) ? "NaN" : "infinity", c),
+                                             std::isnan(texel[c]) ? "NaN" : "infinity", "RGB"[c]),
                                  fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
         }
     throw Error(ErrorKind::bad_input, {"map holds NaN or infinity", texture.file, "repair the map"});

@@ -36,6 +36,15 @@ TEST_F(Usage, no_verb_and_no_input_are_usage_errors) {
     expect_refused({"render", "plane.obj", "other.obj"}, "unexpected argument 'other.obj'");
 }
 
+TEST_F(Usage, a_folder_is_no_input_and_no_output) {
+    std::filesystem::create_directory(folder_ / "ear");
+    expect_refused({"render", "ear"}, "relief: error: ear: is a folder, neither a scene file nor a mesh");
+    write("ear/scene.json", "{}");
+    expect_refused({"render", "ear/"}, "hint: relief render ear/scene.json");
+    expect_refused({"render", "plane.obj", "-o", "ear/"}, "ear/: is a folder, not a file");
+    expect_refused({"render", "plane.obj", "-o", "ear"}, "ear: is a folder, not a file");
+}
+
 TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
     expect_refused({"render", "plane.obj", "--size", "0x0"}, "from 1 to 65536");
     expect_refused({"render", "plane.obj", "--size", "1000000x4"}, "from 1 to 65536");

@@ -96,6 +96,7 @@ TEST_F(SceneFiles, unknown_keys_get_a_suggestion) {
     EXPECT_EQ(error_of(R"({"materials": {"clay": {"rougness": 1}}})"),
               "s.json: unknown key 'rougness' in materials.clay (did you mean 'roughness'?)");
     EXPECT_HAS(error_of(R"({"matrials": {}})"), "did you mean 'materials'?");
+    EXPECT_HAS(error_of(R"({"camera": {"fov": 40}})"), "did you mean 'fov_degrees'?");
     EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "preset": "mudbx")")), "did you mean 'mudbox'?");
     EXPECT_HAS(error_of(R"({"objects": [{"mesh": "plane"}]})"), "objects[0].mesh: there is no mesh 'plane'");
 }
@@ -142,9 +143,9 @@ TEST_F(SceneFiles, bad_texels_are_named_with_pixel_and_tile) {
     write_pixels<uint16_t>("u.1012.exr", 2, 1, 3, OIIO::TypeDesc::HALF, {0, 0, 0, 0, 0, 0x7c00});
     const std::string message = error_of(with_map(R"("file": "n.exr")"));
     EXPECT_HAS(message, "displacements.ear");
-    EXPECT_HAS(message, "n.exr, pixel (1, 1): NaN in channel 1");
+    EXPECT_HAS(message, "n.exr, pixel (1, 1): NaN in channel G");
     EXPECT_HAS(error_of(with_map(R"("file": "u.<UDIM>.exr")")),
-               "pixel (1, 0), tile 1012: infinity in channel 2");
+               "pixel (1, 0), tile 1012: infinity in channel B");
     EXPECT_HAS(error_of(R"({"environment": {"file": "n.exr"}})"), "pixel (1, 1)");
 }
 

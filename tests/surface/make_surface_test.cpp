@@ -216,7 +216,7 @@ TEST(MakeSurface, bad_maps_are_refused_with_file_pixel_and_hint) {
     texture->floats[4 * (20 * 7 + 11) + 1] = std::nanf("");
     Displacement displacement = test::make_displacement(texture);
     const auto try_map = [&] { return catch_message([&] { make_surface(mesh, &displacement, {}); }); };
-    EXPECT_EQ(try_map(), "noise.exr, pixel (11, 7): map holds NaN in channel 1 (repair the map)");
+    EXPECT_EQ(try_map(), "noise.exr, pixel (11, 7): map holds NaN in channel G (repair the map)");
     texture->floats[4 * (20 * 7 + 11) + 1] = INFINITY;
     EXPECT_NE(try_map().find("pixel (11, 7): map holds infinity"), std::string::npos);
     displacement = test::make_displacement(test::make_constant(1, 1, {1e30f, 0, 0}));
