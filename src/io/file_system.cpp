@@ -42,6 +42,15 @@ std::string suggest_file(const fs::path& file) {
                                    : std::string("check the name; paths in a scene are relative to its file");
 }
 
+/// What a new file must not take the place of: /dev/null, say, or /dev/stdout, which may stand for a file.
+bool is_special(const fs::path& target) {
+    std::error_code code;
+    const fs::file_status status = fs::status(target, code);
+    if (fs::exists(status) && !fs::is_regular_file(status)) return true;
+    const fs::path folder = fs::weakly_canonical(target.has_parent_path() ? target.parent_path() : ".", code);
+    return folder == "/dev" || folder.native().starts_with("/proc/");
+}
+
 } // namespace
 
 std::string get_extension(const fs::path& file) {
@@ -78,20 +87,6 @@ std::string read_file_bytes(const fs::path& file) {
     return bytes;
 }
 
-namespace {
-
-/// Devices, pipes and sockets, and links of the system that stand for what is open already (/dev/stdout).
-bool is_special(const fs::path& target) {
-    std::error_code code;
-    const fs::file_status status = fs::status(target, code);
-    if (!fs::exists(status)) return false;
-    const std::string name = target.lexically_normal().string();
-    return !fs::is_regular_file(status) || name.starts_with("/dev/fd/") || name.starts_with("/dev/std") ||
-           name.starts_with("/proc/");
-}
-
-} // namespace
-
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     temporary_ = target_;
     temporary_ += fmt::format(".{}.tmp", ::getpid());
@@ -102,13 +97,14 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (!fs::is_directory(folder, code))
         throw Error(ErrorKind::failed, {fmt::format("the folder '{}' does not exist", folder.string()),
                                         target_.string(), "make the folder first"});
-    is_in_place_ = is_special(target_);
-    if (is_in_place_) temporary_ = target_;
+    if (is_special(target_))
+        throw Error(ErrorKind::failed, {"is a device, a pipe or the like, not a regular file",
+                                        target_.string(), "write to a file and pass that on"});
 }
 
 AtomicFile::~AtomicFile() {
     std::error_code code;
-    if (!is_committed_ && !is_in_place_) fs::remove(temporary_, code);
+    if (!is_committed_) fs::remove(temporary_, code);
 }
 
 void AtomicFile::fail(const std::string& message) const {
@@ -117,7 +113,6 @@ void AtomicFile::fail(const std::string& message) const {
 }
 
 void AtomicFile::commit() {
-    if (is_in_place_) return;
     std::error_code code;
     const auto size = fs::file_size(temporary_, code);
     if (code || size == 0) fail("cannot be written: nothing reached the disk");
@@ -128,11 +123,6 @@ void AtomicFile::commit() {
 
 void check_text_writable(const fs::path& file) {
     const AtomicFile atomic(file);
-    if (atomic.is_in_place()) {
-        if (::access(file.c_str(), W_OK) != 0)
-            atomic.fail(fmt::format("cannot be written: {}", std::strerror(errno)));
-        return;
-    }
     const std::ofstream probe(atomic.temporary(), std::ios::binary);
     if (!probe) atomic.fail("cannot be written: no file can be made in its folder");
 }

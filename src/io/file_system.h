@@ -16,25 +16,23 @@ void require_file(const std::filesystem::path& file);
 /// Whole content. Throws bad_input with the name.
 std::string read_file_bytes(const std::filesystem::path& file);
 
-/// A temporary name beside `target` that becomes the target on commit and is removed otherwise. What is no
-/// regular file, such as /dev/null, a pipe or a terminal, is written in place.
+/// A temporary name beside `target` that becomes the target on commit and is removed otherwise.
 class AtomicFile {
   public:
-    /// Throws Error{failed} where the folder does not exist or the target is a folder.
+    /// Throws Error{failed} where the folder does not exist or the target is there and no regular file.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     const std::filesystem::path& temporary() const { return temporary_; }
-    bool is_in_place() const { return is_in_place_; }
     /// Renames. Throws Error{failed} for an empty or missing temporary, or when the rename fails.
     void commit();
     [[noreturn]] void fail(const std::string& message) const;
 
   private:
     std::filesystem::path target_, temporary_;
-    bool is_in_place_ = false, is_committed_ = false;
+    bool is_committed_ = false;
 };
 
 } // namespace relief

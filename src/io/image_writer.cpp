@@ -21,9 +21,10 @@ void check_output_extension(const std::filesystem::path& file) {
     const std::string extension = get_extension(file);
     if (std::find(kWritable.begin(), kWritable.end(), extension) != kWritable.end()) return;
     std::error_code code;
-    if (!file.has_filename() || std::filesystem::is_directory(file, code))
-        throw Error(ErrorKind::usage,
-                    {"is a folder, not a file", file.string(), "add a file name: .exr, .png or .hdr"});
+    const bool is_folder = std::filesystem::is_directory(file, code);
+    if (is_folder || !file.has_filename())
+        throw Error(ErrorKind::usage, {is_folder ? "is a folder, not a file" : "a picture needs a file name",
+                                       file.string(), "add a file name: .exr, .png or .hdr"});
     throw Error(ErrorKind::usage, {fmt::format("cannot write images of kind '{}'", extension), file.string(),
                                    suggest_word(extension, kWritable)});
 }
