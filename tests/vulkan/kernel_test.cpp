@@ -1,4 +1,7 @@
 // Pipelines are compiled once for a device.
+#include <memory>
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "engine/vulkan/kernel_internals.h"
@@ -8,9 +11,11 @@
 namespace relief::vulkan::tests {
 namespace {
 
+using Pipeline = std::shared_ptr<const vk::raii::Pipeline>;
+
 class Kernels : public GpuTest {
   protected:
-    static VkPipeline pipeline(const Kernel& kernel) { return **kernel.internals().pipeline; }
+    static Pipeline pipeline(const Kernel& kernel) { return kernel.internals().pipeline; }
 };
 
 TEST_F(Kernels, of_one_shader_and_the_same_constants_share_a_pipeline) {
@@ -33,15 +38,31 @@ TEST_F(Kernels, of_shaders_from_elsewhere_do_not_even_under_one_name) {
     EXPECT_NE(pipeline(first), pipeline(second));
 }
 
-TEST_F(Kernels, outlive_those_that_they_share_with) {
+TEST_F(Kernels, leave_their_pipeline_to_those_that_come_later) {
     const KernelConfig config{.shader = "geometric_normal", .constants = {64}};
-    Kernel second;
+    std::weak_ptr<const vk::raii::Pipeline> first;
     {
-        const Kernel first(device(), config);
-        second = Kernel(device(), config);
+        const Kernel kernel(device(), config);
+        first = pipeline(kernel);
     }
-    const Kernel third(device(), config);
-    EXPECT_EQ(pipeline(second), pipeline(third));
+    EXPECT_EQ(first.lock(), pipeline(Kernel(device(), config)));
+}
+
+TEST(PipelineStore, asks_again_after_a_failure_and_no_more_after_a_success) {
+    vulkan::PipelineStore store;
+    int count = 0;
+    const auto make = [&](bool is_failure) {
+        return store.find_or_make({"shader", "", {64}}, [&] {
+            ++count;
+            if (is_failure) throw std::runtime_error("cannot be compiled");
+            return vk::raii::Pipeline(nullptr);
+        });
+    };
+    EXPECT_THROW(make(true), std::runtime_error);
+    const Pipeline made = make(false);
+    EXPECT_NE(made, nullptr);
+    EXPECT_EQ(make(true), made);
+    EXPECT_EQ(count, 2);
 }
 
 } // namespace

@@ -81,9 +81,8 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
 }
 
 /// The device's, or one of its own for a shader of somebody else.
-std::shared_ptr<const vk::raii::Pipeline> find_pipeline(const Device::Implementation& device,
-                                                        const KernelConfig& config,
-                                                        std::span<const uint32_t> code) {
+std::shared_ptr<const vk::raii::Pipeline>
+find_pipeline(Device::Implementation& device, const KernelConfig& config, std::span<const uint32_t> code) {
     const auto make = [&] { return make_pipeline(device, config, code); };
     if (!config.code.empty()) return std::make_shared<const vk::raii::Pipeline>(make());
     return device.pipelines.find_or_make({config.shader, config.vertex_shader, config.constants}, make);

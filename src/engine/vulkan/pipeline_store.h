@@ -1,5 +1,4 @@
-// The pipelines of a device, each compiled once, however many tracers use it. Included by the files behind
-// device.h and kernel.h only.
+// The pipelines of a device, each compiled once, however many tracers use it. Part of device_internals.h.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +14,15 @@
 
 namespace relief::vulkan {
 
-/// Thread safe. Pipelines stay until the store goes.
+/// Thread safe, one compilation at a time. Pipelines stay until the store goes, also where a tracer is made
+/// anew because memory ran out; kernels share them with it.
 class PipelineStore {
   public:
     /// Shader, vertex shader, constants: as in KernelConfig, of shaders that belong to the build.
     using Key = std::tuple<std::string, std::string, std::vector<uint32_t>>;
 
-    /// The pipeline of `key`; make() is called where there is none yet. What it throws, this throws.
+    /// The pipeline of `key`; make() is called where there is none yet. What it throws, this throws,
+    /// and asks again the next time.
     template <class Make> std::shared_ptr<const vk::raii::Pipeline> find_or_make(Key key, const Make& make) {
         const std::lock_guard lock(mutex_);
         std::shared_ptr<const vk::raii::Pipeline>& place = pipelines_[std::move(key)];
