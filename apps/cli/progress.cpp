@@ -53,7 +53,7 @@ std::string format_progress_json(const Progress& progress) {
 }
 
 ProgressPrinter::ProgressPrinter(ProgressStyle style)
-    : style_(style), last_line_(std::chrono::steady_clock::now()) {
+    : style_(style), last_line_(std::chrono::steady_clock::now()), tells_end_(style == ProgressStyle::plain) {
     if (style_ == ProgressStyle::automatic)
         style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
 }
@@ -70,8 +70,9 @@ void ProgressPrinter::on_progress(const Progress& progress) {
         return;
     }
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_line_ < kPlainInterval && progress.samples_done < progress.samples_total) return;
-    last_line_ = now;
+    const bool is_last = progress.samples_done == progress.samples_total;
+    if (now - last_line_ < kPlainInterval && !(is_last && tells_end_)) return;
+    last_line_ = now, tells_end_ = true;
     fmt::print(stderr, "{}\n", format_progress(progress));
 }
 

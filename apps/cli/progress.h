@@ -19,7 +19,8 @@ std::string format_progress_json(const Progress& progress);
 /// Prints what the renderer tells it and passes on Ctrl-C.
 class ProgressPrinter : public RenderObserver {
   public:
-    /// `automatic` is a bar on a terminal and lines otherwise.
+    /// `automatic` is a bar on a terminal and lines otherwise. Lines are some seconds apart; the last one
+    /// comes where there were others before it, or where lines were asked for.
     explicit ProgressPrinter(ProgressStyle style);
     ~ProgressPrinter() override;
     ProgressPrinter(const ProgressPrinter&) = delete;
@@ -34,6 +35,7 @@ class ProgressPrinter : public RenderObserver {
     ProgressStyle style_;
     std::chrono::steady_clock::time_point last_line_;
     bool has_bar_ = false;
+    bool tells_end_; ///< of lines
 };
 
 } // namespace relief::cli

@@ -64,7 +64,7 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
                s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
     fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
-               settings.height, result.is_complete ? "" : "some of ", settings.spp, rays, s.render_s,
+               settings.height, result.is_complete ? "" : "up to ", settings.spp, rays, s.render_s,
                s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);

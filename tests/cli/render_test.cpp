@@ -206,6 +206,7 @@ TEST_F(Render, statistics_hold_every_stable_key) {
 TEST_F(Render, statistics_add_up) {
     render_ok("a.exr", {"--stats", "s.json", "--level", "4"});
     const json s = json::parse(read("s.json"));
+    EXPECT_EQ(s["image"]["is_complete"], true);
     const json& rays = s["rays"];
     for (const char* kind : {"camera", "shadow", "bounce"}) EXPECT_GT(rays[kind], 0) << kind;
     EXPECT_EQ(rays["total"], rays["camera"].get<uint64_t>() + rays["shadow"].get<uint64_t>() +
@@ -282,7 +283,8 @@ TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture_and_two_at_once_do_as
             for (int x = 0; x < 64; ++x) most = std::max(most, image.at(x, y, *samples));
         EXPECT_GT(most, 0);
         EXPECT_LT(most, 1048576);
-        std::filesystem::remove(folder_ / "part.exr"), std::filesystem::remove(folder_ / "stderr.txt");
+        for (const char* name : {"part.exr", "part.json", "stderr.txt"})
+            std::filesystem::remove(folder_ / name);
     }
 }
 

@@ -143,8 +143,7 @@ class CpuEngine final : public Engine {
         while (done < settings_.spp && !reporter.is_cancelled()) {
             tracer_.improve_trees();
             const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
-            render_pass(film, tiles, samples, reporter);
-            if (reporter.is_cancelled()) break;
+            if (!render_pass(film, tiles, samples, reporter)) break;
             done += samples.count;
             if (first_image_s_ == 0) first_image_s_ = timer.seconds();
             reporter.finish_pass(done);
@@ -153,8 +152,10 @@ class CpuEngine final : public Engine {
         return done == settings_.spp;
     }
 
-    void render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
+    /// Whether all tiles have these samples, which they may have although the end was asked for meanwhile.
+    bool render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
         std::mutex mutex;
+        size_t done = 0;
         parallel_for("render_pass", tiles.size(), 1, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end && !reporter.is_cancelled(); ++k) {
                 const Window& tile = tiles[k];
@@ -165,6 +166,7 @@ class CpuEngine final : public Engine {
                 reporter.finish_tile(count_pixels(tile) * uint64_t(samples.count),
                                      counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
                 const std::lock_guard lock(mutex);
+                ++done;
                 counters_.camera_rays += counters.camera_rays;
                 counters_.shadow_rays += counters.shadow_rays;
                 counters_.bounce_rays += counters.bounce_rays;
@@ -172,6 +174,7 @@ class CpuEngine final : public Engine {
                 counters_.film_s += counters.film_s;
             }
         });
+        return done == tiles.size();
     }
 
     static std::vector<TraceRay> make_batch(std::span<const Ray> rays) {
