@@ -74,6 +74,7 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
     if (file.empty()) return;
     keep_files(list_files(scene), file);
     write_image(make_check_picture(scene, settings), file);
+    // Not where the facts go, which programs read.
     fmt::print(stderr, "wrote {}\n", file);
 }
 

@@ -172,7 +172,7 @@ void check_input(const std::filesystem::path& input) {
     std::error_code code;
     if (!std::filesystem::is_directory(input, code)) return;
     const std::filesystem::path scene = input / "scene.json";
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::bad_input,
                 {"is a folder, neither a scene file nor a mesh", input.string(),
                  std::filesystem::exists(scene, code) ? fmt::format("relief render {}", scene.string())
                                                       : "give the name of a file in it"});

@@ -64,8 +64,10 @@ void check_finite(const Texture& texture, int udim) {
             const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
             const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
             const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
+            const std::string channel =
+                texture.channel_count < 3 ? std::string() : fmt::format(" in channel {}", "RGB"[c]);
             throw Error(ErrorKind::bad_input,
-                        {fmt::format("{} in channel {}", is_nan ? "NaN" : "infinity", "RGB"[c]),
+                        {fmt::format("{}{}", is_nan ? "NaN" : "infinity", channel),
                          fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
                          "repair the pixel, for example by painting over it, and export again"});
         }

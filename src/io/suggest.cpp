@@ -23,9 +23,19 @@ size_t compute_edit_distance(std::string_view a, std::string_view b) {
     return table[a.size()][b.size()];
 }
 
+constexpr size_t kShortestStem = 3; // letters that a longer word is known by
+
+/// The one known word that begins with `word`; empty for none or several.
+std::string_view find_only_extension(std::string_view word, std::span<const std::string_view> known) {
+    const size_t dashes = std::min(word.find_first_not_of('-'), word.size());
+    const auto extends = [&](std::string_view candidate) { return candidate.starts_with(word); };
+    if (word.size() - dashes < kShortestStem || std::count_if(known.begin(), known.end(), extends) != 1)
+        return {};
+    return *std::find_if(known.begin(), known.end(), extends);
+}
+
 constexpr size_t kLongestWord = 64; // longer words are nobody's typing mistake
 constexpr size_t kLongestList = 16;
-constexpr size_t kShortestStem = 3; // that a longer word is known by
 
 } // namespace
 
@@ -39,9 +49,7 @@ std::string suggest_word(std::string_view word, std::span<const std::string_view
             if (distance < smallest) smallest = distance, nearest = candidate;
         }
     }
-    if (nearest.empty() && word.size() >= kShortestStem)
-        for (const std::string_view candidate : known)
-            if (candidate.starts_with(word)) nearest = nearest.empty() ? candidate : nearest;
+    if (nearest.empty()) nearest = find_only_extension(word, known);
     if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
     if (known.empty() || known.size() > kLongestList) return {};
     std::string list = "known: ";

@@ -36,10 +36,12 @@ void refuse_bad_texel(const Texture& texture, const TexelRectangle& rectangle) {
             const std::array<float, 3> texel = read_texel(texture, x, y);
             for (int c = 0; c < 3; ++c)
                 if (!std::isfinite(texel[c]))
-                    throw Error(ErrorKind::bad_input,
-                                {fmt::format("map holds {} in channel {}",
-                                             std::isnan(texel[c]) ? "NaN" : "infinity", "RGB"[c]),
-                                 fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
+                    throw Error(
+                        ErrorKind::bad_input,
+                        {fmt::format("map holds {}{}", std::isnan(texel[c]) ? "NaN" : "infinity",
+                                     texture.channel_count < 3 ? std::string()
+                                                               : fmt::format(" in channel {}", "RGB"[c])),
+                         fmt::format("{}, pixel ({}, {})", texture.file, x, y), "repair the map"});
         }
     throw Error(ErrorKind::bad_input, {"map holds NaN or infinity", texture.file, "repair the map"});
 }

@@ -38,9 +38,9 @@ TEST_F(Usage, no_verb_and_no_input_are_usage_errors) {
 
 TEST_F(Usage, a_folder_is_no_input_and_no_output) {
     std::filesystem::create_directory(folder_ / "ear");
-    expect_refused({"render", "ear"}, "relief: error: ear: is a folder, neither a scene file nor a mesh");
+    expect_refused({"render", "ear"}, "relief: error: ear: is a folder, neither a scene file nor a mesh", 3);
     write("ear/scene.json", "{}");
-    expect_refused({"render", "ear/"}, "hint: relief render ear/scene.json");
+    expect_refused({"render", "ear/"}, "hint: relief render ear/scene.json", 3);
     expect_refused({"render", "plane.obj", "-o", "ear/"}, "ear/: is a folder, not a file");
     expect_refused({"render", "plane.obj", "-o", "ear"}, "ear: is a folder, not a file");
 }

@@ -8,6 +8,7 @@
 #include "io/test_files.h"
 #include "math/vec.h"
 #include "relief/io.h"
+#include "relief/suggest.h"
 
 namespace relief {
 
@@ -97,6 +98,10 @@ TEST_F(SceneFiles, unknown_keys_get_a_suggestion) {
               "s.json: unknown key 'rougness' in materials.clay (did you mean 'roughness'?)");
     EXPECT_HAS(error_of(R"({"matrials": {}})"), "did you mean 'materials'?");
     EXPECT_HAS(error_of(R"({"camera": {"fov": 40}})"), "did you mean 'fov_degrees'?");
+    const std::vector<std::string_view> ears = {"ear_of_the_left_side", "ear_of_the_right_side",
+                                                "--of_the_nose"};
+    EXPECT_EQ(suggest_word("ear_of_the_r", ears), "did you mean 'ear_of_the_right_side'?");
+    for (const char* unclear : {"ear", "ea", "--o"}) EXPECT_HAS(suggest_word(unclear, ears), "known: ");
     EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "preset": "mudbx")")), "did you mean 'mudbox'?");
     EXPECT_HAS(error_of(R"({"objects": [{"mesh": "plane"}]})"), "objects[0].mesh: there is no mesh 'plane'");
 }
@@ -147,6 +152,8 @@ TEST_F(SceneFiles, bad_texels_are_named_with_pixel_and_tile) {
     EXPECT_HAS(error_of(with_map(R"("file": "u.<UDIM>.exr")")),
                "pixel (1, 0), tile 1012: infinity in channel B");
     EXPECT_HAS(error_of(R"({"environment": {"file": "n.exr"}})"), "pixel (1, 1)");
+    write_pixels<float>("y.exr", 1, 1, 1, OIIO::TypeDesc::FLOAT, {nan});
+    EXPECT_HAS(error_of(with_map(R"("file": "y.exr")")), "y.exr, pixel (0, 0): NaN (repair");
 }
 
 TEST_F(SceneFiles, missing_uvs_and_singular_objects_are_refused) {
