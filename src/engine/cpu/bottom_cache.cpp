@@ -122,6 +122,7 @@ void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
 const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                                        const TreeKey& key, BuildTreeFunction build) {
     if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
+    throw_if_stopped();
     const Timer timer;
     const PatchLevels levels = unpack_levels(key.levels);
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
@@ -145,6 +146,7 @@ const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, co
 const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                                           const TreeKey& key) {
     if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
+    throw_if_stopped();
     const Timer timer;
     const PatchLevels levels = unpack_levels(key.levels);
     const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
@@ -162,6 +164,10 @@ const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context,
     if (memory) offer(context, directory);
     context.counters.bottom_build_s += timer.seconds();
     return *directory;
+}
+
+void BottomCache::throw_if_stopped() const {
+    if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
 }
 
 void* BottomCache::allocate(TraceContext& context, size_t bytes) {

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -79,6 +80,11 @@ struct TraceContext {
     std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1
 };
 
+/// Thrown where a tree would have to be made after an end was asked for.
+struct StopRequest : std::exception {
+    const char* what() const noexcept override { return "an end was asked for"; }
+};
+
 class BottomCache {
   public:
     /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept.
@@ -89,6 +95,10 @@ class BottomCache {
 
     TraceContext& acquire();
     void release(TraceContext& context);
+
+    /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
+    /// StopRequest. Empty: never. Not while a context is taken.
+    void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
 
     /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.
     void remove(const std::function<bool(const TreeKey&)>& is_stale);
@@ -141,6 +151,7 @@ class BottomCache {
                                                  const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
     static void remember(TraceContext& context, const CachedTree& tree);
+    void throw_if_stopped() const;
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);
@@ -156,6 +167,7 @@ class BottomCache {
     std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};
     std::atomic<size_t> retired_{0}; ///< bytes unlinked and not freed yet; part of allocated_
     mutable std::atomic<uint64_t> epoch_{1};
+    std::function<bool()> is_stop_asked_for_;
     std::atomic<TraceContext*> contexts_{nullptr};
 };
 

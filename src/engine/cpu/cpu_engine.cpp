@@ -9,6 +9,7 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "engine/cpu/bottom_cache.h"
 #include "engine/cpu/path_tracer.h"
 #include "engine/cpu/picture_footprints.h"
 #include "engine/cpu/tiles.h"
@@ -138,6 +139,7 @@ class CpuEngine final : public Engine {
         uint64_t pixels = 0;
         for (const Window& tile : tiles) pixels += count_pixels(tile);
         Reporter reporter(observer, pixels * uint64_t(settings_.spp), settings_.spp);
+        const Tracer::StopWatch watch(tracer_, [&] { return reporter.is_cancelled(); });
         first_image_s_ = 0;
         int done = 0, length = 1;
         while (done < settings_.spp && !reporter.is_cancelled()) {
@@ -161,7 +163,11 @@ class CpuEngine final : public Engine {
                 const Window& tile = tiles[k];
                 TileReport report;
                 if (footprints_) report.footprints = &*footprints_;
-                trace_tile({tracer_, lights_, settings_}, film, tile, samples, report);
+                try {
+                    trace_tile({tracer_, lights_, settings_}, film, tile, samples, report);
+                } catch (const StopRequest&) {
+                    return; // the film has the whole samples before it
+                }
                 const TileCounters& counters = report.counters;
                 reporter.finish_tile(count_pixels(tile) * uint64_t(samples.count),
                                      counters.camera_rays + counters.shadow_rays + counters.bounce_rays);

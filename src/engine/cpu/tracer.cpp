@@ -124,6 +124,11 @@ void Tracer::improve_trees() const {
     if (implementation_->trees) implementation_->trees->improve();
 }
 
+Tracer::StopWatch::StopWatch(const Tracer& tracer, std::function<bool()> is_asked_for) : tracer_(tracer) {
+    tracer_.implementation_->cache->set_stop(std::move(is_asked_for));
+}
+Tracer::StopWatch::~StopWatch() { tracer_.implementation_->cache->set_stop({}); }
+
 Box Tracer::displaced_bounds() const {
     const Implementation& self = *implementation_;
     Box bounds;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -71,6 +72,20 @@ class Tracer {
 
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void improve_trees() const;
+
+    /// While this lives, rays end with StopRequest (engine/cpu/bottom_cache.h) before the next tree that they
+    /// need once `is_asked_for` is true: a ray at a high level may need many, each of which takes its time.
+    /// Any worker asks. To be made and ended while nothing is traced.
+    class StopWatch {
+      public:
+        StopWatch(const Tracer& tracer, std::function<bool()> is_asked_for);
+        ~StopWatch();
+        StopWatch(const StopWatch&) = delete;
+        StopWatch& operator=(const StopWatch&) = delete;
+
+      private:
+        const Tracer& tracer_;
+    };
 
     /// The box of all that has a displacement, world space; empty where follow() would be false. It may
     /// become smaller with improve_trees().
