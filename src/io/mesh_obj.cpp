@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include "io/obj_numbers.h"
 #include "io/obj_tags.h"
 #include "relief/error.h"
 
@@ -102,6 +103,7 @@ class ObjBuilder {
 } // namespace
 
 Mesh parse_obj(std::string_view text, const std::string& name) {
+    check_obj_numbers(text, name);
     TextBuffer buffer(text);
     std::istream stream(&buffer);
     ObjBuilder builder(buffer, name);
