@@ -39,8 +39,9 @@ extern "C" void note_signal(int signal) {
 } // namespace
 
 void catch_interrupts() {
-    std::signal(SIGINT, note_signal);
-    std::signal(SIGTERM, note_signal);
+    // What a shell has its background jobs ignore stays ignored.
+    for (const int signal : {SIGINT, SIGTERM})
+        if (std::signal(signal, note_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 int get_interrupt() { return caught_signal.load(); }

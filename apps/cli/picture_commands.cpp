@@ -1,6 +1,7 @@
 // compare and merge: what is done with finished pictures.
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,16 @@ int run_compare(const CompareOptions& options) {
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
 
+/// Those of the window that no part has samples of.
+size_t count_empty_pixels(const Image& image) {
+    const std::optional<size_t> samples = image.find_channel("samples.Y");
+    if (!samples) return 0;
+    size_t count = 0;
+    for (size_t k = *samples; k < image.pixels.size(); k += image.channels.size())
+        count += image.pixels[k] == 0 ? 1 : 0;
+    return count;
+}
+
 int run_merge(const MergeOptions& options) {
     if (options.parts.empty() || options.output.empty())
         throw Error(ErrorKind::usage,
@@ -57,7 +68,11 @@ int run_merge(const MergeOptions& options) {
     check_writable(options.output);
     std::vector<Image> parts;
     for (const std::string& part : options.parts) parts.push_back(read_image(part));
-    write_image(merge_images(parts), options.output);
+    const Image merged = merge_images(parts);
+    write_image(merged, options.output);
+    if (const size_t count = count_empty_pixels(merged); count > 0)
+        fmt::print(stderr, "relief: warning: {} of {} pixels have no sample: a part is missing\n", count,
+                   size_t(merged.width) * size_t(merged.height));
     fmt::print("wrote {}\n", options.output);
     return kExitDone;
 }

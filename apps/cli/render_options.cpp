@@ -224,7 +224,9 @@ void complete_render_options(RenderOptions& o) {
     const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
                                             o.mesh.environment.string(), o.edits};
     keep_files(files, o.output), keep_files(files, o.statistics_file);
-    keep_files({o.output.string()}, o.statistics_file);
+    if (!o.statistics_file.empty() && find_place(o.output) == find_place(o.statistics_file))
+        throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
+                                       o.statistics_file.string(), "name another one for --stats"});
     check_writable(o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }
