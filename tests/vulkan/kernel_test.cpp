@@ -49,18 +49,19 @@ TEST_F(Kernels, leave_their_pipeline_to_those_that_come_later) {
 }
 
 TEST(PipelineStore, asks_again_after_a_failure_and_no_more_after_a_success) {
-    vulkan::PipelineStore store;
+    vulkan::PipelineStore<int> store;
     int count = 0;
     const auto make = [&](bool is_failure) {
         return store.find_or_make({"shader", "", {64}}, [&] {
             ++count;
             if (is_failure) throw std::runtime_error("cannot be compiled");
-            return vk::raii::Pipeline(nullptr);
+            return 7;
         });
     };
     EXPECT_THROW(make(true), std::runtime_error);
-    const Pipeline made = make(false);
-    EXPECT_NE(made, nullptr);
+    const std::shared_ptr<const int> made = make(false);
+    ASSERT_NE(made, nullptr);
+    EXPECT_EQ(*made, 7);
     EXPECT_EQ(make(true), made);
     EXPECT_EQ(count, 2);
 }

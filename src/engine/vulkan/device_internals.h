@@ -56,7 +56,7 @@ struct Device::Implementation {
     size_t loaded_cache_bytes = 0;
     vk::raii::DescriptorSetLayout set_layout = nullptr;
     vk::raii::PipelineLayout pipeline_layout = nullptr;
-    PipelineStore pipelines;
+    PipelineStore<vk::raii::Pipeline> pipelines;
     vk::raii::CommandPool pool = nullptr;
     vk::raii::Fence fence = nullptr;
     std::unique_ptr<MemoryAllocator> memory;
