@@ -139,7 +139,7 @@ class CpuEngine final : public Engine {
         uint64_t pixels = 0;
         for (const Window& tile : tiles) pixels += count_pixels(tile);
         Reporter reporter(observer, pixels * uint64_t(settings_.spp), settings_.spp);
-        const Tracer::StopWatch watch(tracer_, [&] { return reporter.is_cancelled(); });
+        const Tracer::StopScope scope(tracer_, [&] { return reporter.is_cancelled(); });
         first_image_s_ = 0;
         int done = 0, length = 1;
         while (done < settings_.spp && !reporter.is_cancelled()) {

@@ -124,10 +124,10 @@ void Tracer::improve_trees() const {
     if (implementation_->trees) implementation_->trees->improve();
 }
 
-Tracer::StopWatch::StopWatch(const Tracer& tracer, std::function<bool()> is_asked_for) : tracer_(tracer) {
+Tracer::StopScope::StopScope(const Tracer& tracer, std::function<bool()> is_asked_for) : tracer_(tracer) {
     tracer_.implementation_->cache->set_stop(std::move(is_asked_for));
 }
-Tracer::StopWatch::~StopWatch() { tracer_.implementation_->cache->set_stop({}); }
+Tracer::StopScope::~StopScope() { tracer_.implementation_->cache->set_stop({}); }
 
 Box Tracer::displaced_bounds() const {
     const Implementation& self = *implementation_;

@@ -76,12 +76,12 @@ class Tracer {
     /// While this lives, rays end with StopRequest (engine/cpu/bottom_cache.h) before the next tree that they
     /// need once `is_asked_for` is true: a ray at a high level may need many, each of which takes its time.
     /// Any worker asks. To be made and ended while nothing is traced.
-    class StopWatch {
+    class StopScope {
       public:
-        StopWatch(const Tracer& tracer, std::function<bool()> is_asked_for);
-        ~StopWatch();
-        StopWatch(const StopWatch&) = delete;
-        StopWatch& operator=(const StopWatch&) = delete;
+        StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);
+        ~StopScope();
+        StopScope(const StopScope&) = delete;
+        StopScope& operator=(const StopScope&) = delete;
 
       private:
         const Tracer& tracer_;
