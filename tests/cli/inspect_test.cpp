@@ -111,7 +111,9 @@ TEST_F(Inspect, a_check_picture_shows_base_displaced_axes_and_folds) {
     };
     EXPECT_GT(differ(0, 0, 640, 0), 2000) << "the bump is in the second picture only";
     EXPECT_GT(differ(0, 480, 640, 480), 2000) << "colours are in the third only";
-    EXPECT_EQ(run({"inspect", "plane.obj", "-o", "plane.png"}).exit_code, 0);
+    const CommandResult checked = run({"inspect", "plane.obj", "-o", "plane.png"});
+    EXPECT_EQ(checked.exit_code, 0);
+    EXPECT_NE(checked.errors.find("wrote plane.png"), std::string::npos) << checked.errors;
     EXPECT_TRUE(exists("plane.png"));
     EXPECT_EQ(run({"inspect", "bump.exr", "-o", "check.txt"}).exit_code, 2);
 }

@@ -295,6 +295,17 @@ TEST_F(Render, an_interrupt_leaves_a_valid_partial_picture_and_two_at_once_do_as
     }
 }
 
+TEST_F(Render, goes_on_where_its_maker_had_it_ignore_interrupts) {
+    const pid_t process = start({"render", "plane.obj", "--size", "64x64", "--spp", "2000", "--bounces", "0",
+                                 "--progress", "json", "-o", "whole.exr"},
+                                [] { std::signal(SIGINT, SIG_IGN); });
+    for (int i = 0; i < 1000 && read("stderr.txt").find("percent") == std::string::npos; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(process, SIGINT);
+    EXPECT_EQ(finish(process).exit_code, 0);
+    EXPECT_FALSE(read_image(folder_ / "whole.exr").metadata.contains("relief:interrupted"));
+}
+
 TEST_F(Render, plain_progress_ends_with_all_samples) {
     const CommandResult result = render_bump("a.exr", {"--progress", "plain"});
     ASSERT_EQ(result.exit_code, 0) << result.errors;
