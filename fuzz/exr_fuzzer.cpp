@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/image_input.h"
+#include "io/picture/image_input.h"
 #include "relief/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

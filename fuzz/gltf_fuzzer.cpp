@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "io/mesh_gltf.h"
+#include "io/mesh/mesh_gltf.h"
 #include "mesh_checks.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <string>
 
-#include "io/exr_header.h"
-#include "io/png_header.h"
+#include "io/picture/exr_header.h"
+#include "io/picture/png_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string rest(reinterpret_cast<const char*>(data), size);

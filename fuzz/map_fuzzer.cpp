@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/image_input.h"
+#include "io/picture/image_input.h"
 #include "relief/error.h"
 
 namespace {

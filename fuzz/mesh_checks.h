@@ -11,7 +11,7 @@
 #include "math/vec.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
-#include "surface/surface.h"
+#include "surface/patch/surface.h"
 
 namespace relief {
 

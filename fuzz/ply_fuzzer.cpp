@@ -1,7 +1,7 @@
 // Bytes of a PLY file must end in a mesh that holds together or in an Error.
 #include <string_view>
 
-#include "io/mesh_ply.h"
+#include "io/mesh/mesh_ply.h"
 #include "mesh_checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/scene_reader.h"
+#include "io/scene/scene_reader.h"
 #include "relief/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

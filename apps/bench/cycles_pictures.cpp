@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cycles.h"
+#include "lab/scenes/peer_scenes.h"
 #include "relief/error.h"
-#include "relief/peer_scenes.h"
 #include "relief/samples.h"
 
 namespace relief::bench {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "lab/tracer_probe.h"
+#include "lab/trees.h"
 #include "relief/scene.h"
-#include "relief/tracer_probe.h"
-#include "relief/trees.h"
 
 namespace relief::bench {
 

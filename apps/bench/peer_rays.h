@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/tracer_probe.h"
+#include "lab/tracer_probe.h"
 
 namespace relief::bench {
 

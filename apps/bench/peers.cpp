@@ -12,9 +12,9 @@
 #include "bench/peer_casts.h"
 #include "bench/peer_cold.h"
 #include "bench/peers_goals.h"
+#include "lab/scenes/peer_scenes.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
-#include "relief/peer_scenes.h"
 #include "relief/samples.h"
 
 namespace relief::bench {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "lab/trees.h"
 #include "relief/scene.h"
-#include "relief/trees.h"
 
 namespace relief::bench {
 

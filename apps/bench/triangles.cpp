@@ -12,7 +12,7 @@
 #include "bench/embree_scene.h"
 #include "bench/machine.h"
 #include "bench/tree_rays.h"
-#include "relief/tracer_probe.h"
+#include "lab/tracer_probe.h"
 
 namespace relief::bench {
 

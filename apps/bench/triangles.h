@@ -7,9 +7,9 @@
 
 #include "bench/measure.h"
 #include "bench/report_file.h"
+#include "lab/scenes/structure_scenes.h"
 #include "relief/render.h"
 #include "relief/scene.h"
-#include "relief/structure_scenes.h"
 
 namespace relief::bench {
 

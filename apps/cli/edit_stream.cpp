@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
-#include "relief/suggest.h"
 
 namespace relief::cli {
 

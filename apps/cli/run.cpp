@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/suggest.h"
 #include "commands.h"
 #include "relief/error.h"
-#include "relief/suggest.h"
 
 namespace relief::cli {
 

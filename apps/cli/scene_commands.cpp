@@ -15,10 +15,10 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "lab/scenes/peer_scenes.h"
 #include "relief/devices.h"
 #include "relief/error.h"
 #include "relief/io.h"
-#include "relief/peer_scenes.h"
 #include "relief/render.h"
 #include "relief/samples.h"
 

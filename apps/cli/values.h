@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "base/suggest.h"
 #include "relief/error.h"
-#include "relief/suggest.h"
 
 namespace relief::cli {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/prepared_scene.h"
 #include "film/film.h"
+#include "prepare/prepared_scene.h"
 #include "relief/intersect.h"
 #include "relief/render.h"
 
@@ -49,18 +49,5 @@ class Engine {
     /// render() took to make itself ready moves from render_s to prepare_s.
     virtual void add_statistics(Statistics& statistics) const = 0;
 };
-
-/// Throws Error{device_missing} for an instruction set that this machine lacks.
-std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene,
-                                        const RenderSettings& settings);
-
-/// Only in builds with Vulkan. Throws Error{device_missing}: no driver, no such device, or one that lacks
-/// what is named; Error{out_of_memory} for a scene that the device cannot hold.
-std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
-                                           const RenderSettings& settings);
-
-/// The engine that `settings` names.
-std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
-                                    const RenderSettings& settings);
 
 } // namespace relief

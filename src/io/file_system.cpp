@@ -15,9 +15,9 @@
 
 #include <fmt/format.h>
 
+#include "base/suggest.h"
 #include "relief/error.h"
 #include "relief/io.h"
-#include "relief/suggest.h"
 
 namespace relief {
 

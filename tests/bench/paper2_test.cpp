@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/paper2_goals.h"
+#include "lab/trees.h"
 #include "relief/error.h"
-#include "relief/trees.h"
 #include "support/xml.h"
 
 namespace relief::bench {

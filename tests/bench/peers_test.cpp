@@ -11,8 +11,8 @@
 
 #include "bench/peer_agreement.h"
 #include "bench/peers_goals.h"
+#include "lab/scenes/peer_scenes.h"
 #include "relief/error.h"
-#include "relief/peer_scenes.h"
 #include "relief/samples.h"
 
 namespace relief::bench {

@@ -11,7 +11,7 @@
 #include "relief/render.h"
 #include "support/bodies.h"
 #include "support/sculpt.h"
-#include "surface/surface.h"
+#include "surface/patch/surface.h"
 
 namespace relief::test {
 namespace {

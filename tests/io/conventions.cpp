@@ -10,7 +10,7 @@
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "support/sculpt.h"
-#include "surface/surface.h"
+#include "surface/patch/surface.h"
 
 namespace relief {
 

@@ -14,7 +14,7 @@
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
-#include "io/exr_source.h"
+#include "io/picture/exr_source.h"
 #include "io/same_pictures.h"
 #include "io/test_files.h"
 #include "relief/io.h"

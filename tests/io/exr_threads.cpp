@@ -1,5 +1,5 @@
 // The pool of OpenEXR is the process's: a host program may have set it, and a caller may want fewer threads.
-#include "io/exr_threads.h"
+#include "io/picture/exr_threads.h"
 
 #include <OpenEXR/ImfThreading.h>
 

@@ -5,10 +5,10 @@
 
 #include <sys/resource.h>
 
-#include "io/image_input.h"
+#include "formulas/tonemap.h"
+#include "io/picture/image_input.h"
 #include "io/same_pictures.h"
 #include "io/test_files.h"
-#include "math/scalar.h"
 #include "relief/io.h"
 
 namespace relief {

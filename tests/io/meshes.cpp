@@ -1,8 +1,8 @@
 #include <assimp/Exporter.hpp>
 #include <assimp/scene.h>
 
-#include "io/mesh_obj.h"
-#include "io/scene_reader.h"
+#include "io/mesh/mesh_obj.h"
+#include "io/scene/scene_reader.h"
 #include "io/test_files.h"
 #include "relief/io.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "io/mesh_gltf.h"
+#include "io/mesh/mesh_gltf.h"
 #include "io/test_files.h"
 
 namespace relief {

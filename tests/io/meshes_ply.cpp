@@ -1,4 +1,4 @@
-#include "io/mesh_ply.h"
+#include "io/mesh/mesh_ply.h"
 
 #include "io/test_files.h"
 #include "relief/io.h"

@@ -1,5 +1,5 @@
 // The module that reads what is no plain EXR: missing, or of another version.
-#include "io/picture_library.h"
+#include "io/picture/picture_library.h"
 #include "io/test_files.h"
 
 namespace relief {

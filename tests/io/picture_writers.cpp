@@ -4,9 +4,9 @@
 #include <limits>
 #include <new>
 
-#include "io/image_output.h"
+#include "formulas/tonemap.h"
+#include "io/picture/image_output.h"
 #include "io/test_files.h"
-#include "math/scalar.h"
 #include "relief/io.h"
 
 namespace relief {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/image_input.h"
-#include "io/picture_library.h"
+#include "io/picture/image_input.h"
+#include "io/picture/picture_library.h"
 
 namespace relief {
 

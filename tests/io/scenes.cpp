@@ -3,12 +3,12 @@
 #include <limits>
 #include <numbers>
 
-#include "io/displacement_reader.h"
-#include "io/scene_reader.h"
+#include "base/suggest.h"
+#include "io/scene/displacement_reader.h"
+#include "io/scene/scene_reader.h"
 #include "io/test_files.h"
 #include "math/vec.h"
 #include "relief/io.h"
-#include "relief/suggest.h"
 
 namespace relief {
 

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "io/displacement_conventions.h"
-#include "io/scene_keys.h"
-#include "io/subdivision_json.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/subdivision_json.h"
 #include "relief/scene.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 

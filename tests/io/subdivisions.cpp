@@ -1,5 +1,5 @@
 // The key "subdivision" of a mesh: what is read, what is refused, what is written again.
-#include "io/scene_reader.h"
+#include "io/scene/scene_reader.h"
 #include "io/test_files.h"
 #include "relief/io.h"
 

@@ -13,7 +13,7 @@
 #include "relief/error.h"
 #include "samples/models.h"
 #include "samples/noise.h"
-#include "surface/surface.h"
+#include "surface/patch/surface.h"
 
 namespace relief {
 namespace {

@@ -5,7 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "engine/cpu/tracer.h"
+#include "cpu/tracer.h"
+#include "lab/scene_walks.h"
 #include "math/affine.h"
 #include "support/bodies.h"
 
@@ -22,7 +23,7 @@ inline CpuAnswers cast_on_cpu(const std::shared_ptr<const PreparedScene>& scene,
     CpuAnswers answers;
     answers.closest.resize(rays.size());
     answers.occluded.resize(rays.size());
-    const cpu::Tracer tracer(scene, settings);
+    const cpu::Tracer tracer(scene, settings, make_scene_walk(*scene, settings));
     tracer.closest_hits(rays, answers.closest);
     tracer.any_hits(rays, answers.occluded);
     return answers;

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/cpu/tracer.h"
+#include "cpu/tracer.h"
+#include "lab/scenes/peer_scenes.h"
 #include "math/vec.h"
-#include "relief/peer_scenes.h"
 
 namespace relief::test {
 

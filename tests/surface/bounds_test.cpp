@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "surface/mip_chain.h"
+#include "formulas/mips.h"
+#include "surface/map/mip_chain.h"
+#include "surface/map/texels.h"
 #include "surface/test_scenes.h"
-#include "surface/texels.h"
 
 namespace relief {
 

@@ -1,4 +1,4 @@
-#include "surface/edge_overrides.h"
+#include "surface/patch/edge_overrides.h"
 
 #include <gtest/gtest.h>
 

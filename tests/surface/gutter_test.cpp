@@ -1,9 +1,9 @@
 // Texels between uv islands: which are read, and what they are given.
-#include "surface/gutter.h"
+#include "surface/map/gutter.h"
 
 #include <gtest/gtest.h>
 
-#include "surface/patch_samples.h"
+#include "surface/patch/patch_samples.h"
 #include "test_scenes.h"
 
 namespace relief {

@@ -1,4 +1,4 @@
-#include "surface/level_field.h"
+#include "surface/patch/level_field.h"
 
 #include <gtest/gtest.h>
 

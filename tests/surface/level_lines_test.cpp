@@ -1,4 +1,4 @@
-#include "surface/level_lines.h"
+#include "surface/patch/level_lines.h"
 
 #include <cstring>
 

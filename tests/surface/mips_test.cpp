@@ -1,5 +1,5 @@
 // Filtered maps: their smaller copies, and which of them patches read.
-#include "surface/mip_chain.h"
+#include "surface/map/mip_chain.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,12 @@
 #include <numeric>
 #include <set>
 
-#include "surface/gutter.h"
-#include "surface/map_edit.h"
-#include "surface/patch_mips.h"
-#include "surface/patch_samples.h"
-#include "surface/texels.h"
+#include "formulas/mips.h"
+#include "surface/map/gutter.h"
+#include "surface/map/texels.h"
+#include "surface/patch/map_edit.h"
+#include "surface/patch/patch_mips.h"
+#include "surface/patch/patch_samples.h"
 #include "test_scenes.h"
 
 namespace relief {

@@ -2,7 +2,7 @@
 // images, not turned inside out.
 #include <gtest/gtest.h>
 
-#include "surface/patch_samples.h"
+#include "surface/patch/patch_samples.h"
 #include "test_scenes.h"
 
 namespace relief {

@@ -1,10 +1,10 @@
-#include "surface/narrow_indices.h"
+#include "surface/mesh/narrow_indices.h"
 
 #include <gtest/gtest.h>
 
 #include <utility>
 
-#include "surface/quad_list.h"
+#include "surface/mesh/quad_list.h"
 
 namespace relief {
 namespace {

@@ -4,8 +4,8 @@
 #include <map>
 #include <random>
 
-#include "surface/isolate.h"
-#include "surface/patch_samples.h"
+#include "surface/mesh/isolate.h"
+#include "surface/patch/patch_samples.h"
 #include "surface/smooth_shapes.h"
 
 namespace relief {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "math/box.h"
-#include "surface/bicubic.h"
-#include "surface/isolate.h"
-#include "surface/limit_patches.h"
 #include "surface/limit_reference.h"
-#include "surface/patch_samples.h"
+#include "surface/mesh/isolate.h"
+#include "surface/mesh/limit_patches.h"
+#include "surface/mesh/subdivide.h"
+#include "surface/patch/bicubic.h"
+#include "surface/patch/patch_samples.h"
 #include "surface/smooth_shapes.h"
-#include "surface/subdivide.h"
 
 namespace relief {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <map>
 
+#include "surface/mesh/mikk_tangents.h"
+#include "surface/mesh/vertex_frames.h"
 #include "surface/mikk_reference.h"
-#include "surface/mikk_tangents.h"
 #include "surface/smooth_shapes.h"
 #include "surface/test_scenes.h"
-#include "surface/vertex_frames.h"
 
 namespace relief {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "math/affine.h"
 #include "relief/error.h"
-#include "surface/displacement_map.h"
-#include "surface/surface.h"
+#include "surface/map/displacement_map.h"
+#include "surface/patch/surface.h"
 
 namespace relief::test {
 

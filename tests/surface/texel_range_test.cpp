@@ -1,4 +1,4 @@
-#include "surface/texel_range.h"
+#include "surface/map/texel_range.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "support/targets.h"
-#include "surface/texels.h"
+#include "surface/map/texels.h"
 
 namespace relief {
 namespace {

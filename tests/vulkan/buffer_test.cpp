@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
 #include "math/half.h"
-#include "math/scalar.h"
 #include "relief/error.h"
+#include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/bindings.h"
 #include "vulkan/test_shaders.h"
 
 namespace relief::vulkan::tests {

@@ -4,10 +4,12 @@
 #include <numeric>
 #include <vector>
 
-#include "engine/vulkan/tracer.h"
+#include "formulas/constants.h"
 #include "gpu_fixture.h"
-#include "math/scalar.h"
+#include "lab/scene_walks.h"
 #include "support/casts.h"
+#include "vulkan/layout/device_rays.h"
+#include "vulkan/tracer.h"
 
 namespace relief::vulkan::tests {
 
@@ -29,7 +31,8 @@ inline CastAnswers cast_on_device(const Device& device, const PreparedScene& sce
                                   TracerConfig config) {
     config.ray_capacity = std::max<uint32_t>(1, uint32_t(rays.size()));
     config.may_see_coarser = std::ranges::any_of(rays, [](const auto& ray) { return ray.bias > 0; });
-    const DeviceScene device_scene(device, scene, settings);
+    const std::optional<SceneWalk> walk = make_device_walk(scene, settings);
+    const DeviceScene device_scene(device, scene, walk ? &*walk : nullptr);
     Tracer tracer(device, scene, device_scene, settings, config);
     std::vector<scalar::RayData> data;
     for (const cpu::TraceRay& ray : rays)

@@ -4,9 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
-#include "math/scalar.h"
+#include "formulas/light_source.h"
+#include "formulas/tree.h"
+#include "lab/walks/trail.h"
+#include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_paths.h"
+#include "vulkan/layout/device_raster.h"
+#include "vulkan/layout/device_rays.h"
+#include "vulkan/layout/device_scene.h"
+#include "vulkan/layout/device_sort.h"
+#include "vulkan/layout/device_trees.h"
 #include "vulkan/test_shaders.h"
 
 namespace relief::scalar {

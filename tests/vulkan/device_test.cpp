@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "engine/vulkan/commands.h"
-#include "math/scalar.h"
 #include "relief/devices.h"
 #include "relief/error.h"
+#include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/bindings.h"
 #include "vulkan/test_shaders.h"
 
 namespace relief::vulkan::tests {

@@ -5,7 +5,8 @@
 #include <thread>
 
 #include "cast_fixture.h"
-#include "engine/vulkan/vulkan_engine.h"
+#include "cpu/cpu_engine.h"
+#include "vulkan/vulkan_engine.h"
 
 namespace relief::vulkan::tests {
 namespace {

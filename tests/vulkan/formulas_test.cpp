@@ -9,9 +9,26 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
-#include "math/scalar.h"
+#include "formulas/basis.h"
+#include "formulas/bsdf.h"
+#include "formulas/camera.h"
+#include "formulas/cell_place.h"
+#include "formulas/constants.h"
+#include "formulas/displace.h"
+#include "formulas/environment.h"
+#include "formulas/environment_data.h"
+#include "formulas/ggx_albedo.h"
+#include "formulas/light.h"
+#include "formulas/light_source.h"
+#include "formulas/shading_normal.h"
+#include "formulas/sobol.h"
+#include "formulas/surface_point.h"
+#include "formulas/tonemap.h"
+#include "formulas/warp.h"
+#include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_rays.h"
 #include "vulkan/test_shaders.h"
 
 namespace relief::scalar {

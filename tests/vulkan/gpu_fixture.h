@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/device.h"
+#include "vulkan/device/device.h"
 
 namespace relief::vulkan::tests {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/kernel_internals.h"
+#include "vulkan/device/kernel_internals.h"
 #include "vulkan/gpu_fixture.h"
 #include "vulkan/test_shaders.h"
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/lbvh_builder.h"
+#include "lab/vulkan/lbvh_builder.h"
 #include "relief/error.h"
-#include "structures/box_sets.h"
+#include "support/box_sets.h"
 #include "vulkan/gpu_fixture.h"
 
 namespace relief::vulkan::tests {

@@ -2,9 +2,10 @@
 #include <bit>
 
 #include "cast_fixture.h"
-#include "engine/vulkan/path_tracer.h"
-#include "engine/vulkan/vulkan_engine.h"
+#include "lab/scene_walks.h"
 #include "relief/error.h"
+#include "vulkan/path_tracer.h"
+#include "vulkan/vulkan_engine.h"
 
 namespace relief::vulkan::tests {
 namespace {
@@ -31,8 +32,9 @@ Picture render_with(RenderMethod method, const Scene& scene, RenderSettings sett
     auto device = std::make_unique<Device>(
         Device::Config{.index = get_test_device_index(), .method = method, .is_validated = true});
     const Device& used = *device;
+    const std::shared_ptr<PreparedScene> prepared = prepare_scene(scene, settings);
     const std::unique_ptr<Engine> engine =
-        make_engine_on(std::move(device), prepare_scene(scene, settings), settings);
+        make_engine_on(std::move(device), prepared, settings, make_device_walk(*prepared, settings));
     Film film(settings.width, settings.height, settings.crop, settings.layers);
     EXPECT_TRUE(engine->render(film, nullptr));
     Picture picture{film.resolve(), {}};

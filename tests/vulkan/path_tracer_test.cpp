@@ -1,8 +1,8 @@
 // Whole paths on the device: the same samples as the CPU engine's, however the picture is cut.
 #include <cmath>
 
-#include "engine/engine.h"
-#include "engine/vulkan/path_tracer.h"
+#include "cpu/cpu_engine.h"
+#include "vulkan/path_tracer.h"
 #include "vulkan/shading_fixture.h"
 
 namespace relief::vulkan::tests {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/radix_sort.h"
-#include "math/scalar.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/radix_sort.h"
 
 namespace relief::vulkan::tests {
 namespace {

@@ -6,14 +6,25 @@
 #include <numeric>
 #include <vector>
 
-#include "engine/cpu/lights.h"
-#include "engine/cpu/textures.h"
-#include "engine/cpu/tracer.h"
-#include "engine/vulkan/commands.h"
-#include "engine/vulkan/device_lights.h"
+#include "cpu/shading/lights.h"
+#include "cpu/shading/textures.h"
+#include "cpu/tracer.h"
+#include "formulas/basis.h"
+#include "formulas/bsdf.h"
+#include "formulas/cell_place.h"
+#include "formulas/constants.h"
+#include "formulas/path.h"
+#include "formulas/shading_normal.h"
+#include "formulas/sobol.h"
+#include "formulas/warp.h"
 #include "gpu_fixture.h"
 #include "support/bodies.h"
 #include "support/shading_scenes.h"
+#include "vulkan/device/commands.h"
+#include "vulkan/device_lights.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_paths.h"
+#include "vulkan/layout/device_rays.h"
 
 namespace relief::vulkan::tests {
 

@@ -2,8 +2,19 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/camera_frame.h"
+#include "formulas/basis.h"
+#include "formulas/bsdf.h"
+#include "formulas/camera.h"
+#include "formulas/constants.h"
+#include "formulas/light.h"
+#include "formulas/path.h"
+#include "formulas/pixel_order.h"
+#include "formulas/sobol.h"
+#include "prepare/camera_frame.h"
 #include "vulkan/shading_fixture.h"
+
+#include "vulkan/layout/device_paths.h"
+#include "vulkan/layout/device_rays.h"
 
 namespace relief::vulkan::tests {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/vulkan/kernel.h"
+#include "vulkan/device/kernel.h"
 
 namespace relief::vulkan::tests {
 

@@ -1,5 +1,6 @@
 // Directories of tiles that rays ask for after others were made.
 #include "cast_fixture.h"
+#include "vulkan/layout/device_rays.h"
 
 namespace relief::vulkan::tests {
 
@@ -35,7 +36,7 @@ TEST_F(TileDirectoriesTest, made_later_join_those_that_are_there) {
                       settings);
     const std::vector<cpu::TraceRay> rays = make_rays_at_tiles();
     const CpuAnswers expected = cast_on_cpu(scene, settings, rays);
-    const DeviceScene device_scene(device(), *scene, settings);
+    const DeviceScene device_scene(device(), *scene);
     TracerConfig config;
     config.ray_capacity = uint32_t(rays.size());
     Tracer tracer(device(), *scene, device_scene, settings, config);

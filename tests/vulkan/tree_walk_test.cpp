@@ -7,13 +7,19 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/lbvh_builder.h"
-#include "engine/vulkan/tree_tracer.h"
+#include "bvh/sah_bvh.h"
+#include "formulas/constants.h"
+#include "formulas/object_ray.h"
+#include "formulas/tree.h"
+#include "lab/vulkan/lbvh_builder.h"
+#include "lab/vulkan/tree_tracer.h"
+#include "lab/walks/trail.h"
 #include "relief/error.h"
-#include "structures/dense_heap.h"
-#include "structures/ray_cases.h"
-#include "structures/sah_bvh.h"
+#include "support/dense_heap.h"
+#include "support/ray_cases.h"
 #include "vulkan/gpu_fixture.h"
+
+#include "vulkan/layout/device_trees.h"
 
 namespace relief::vulkan::tests {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
-#include "engine/vulkan/device_internals.h"
 #include "gpu_fixture.h"
+#include "vulkan/device/commands.h"
+#include "vulkan/device/device_internals.h"
 
 namespace relief::vulkan::tests {
 namespace {

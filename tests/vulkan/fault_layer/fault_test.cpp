@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
-#include "math/scalar.h"
 #include "relief/devices.h"
 #include "relief/error.h"
+#include "vulkan/device/commands.h"
+#include "vulkan/layout/device_sort.h"
 
 namespace relief::vulkan::tests {
 namespace {

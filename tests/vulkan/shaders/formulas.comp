@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shared/all.h"
+#include "all_formulas.glsl"
 #include "formula_cases-inl.h"
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kPart = 0u;

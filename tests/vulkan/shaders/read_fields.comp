@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shared/all.h"
+#include "all_formulas.glsl"
 #include "device_fields-inl.h"
 layout(local_size_x_id = 0) in;
 layout(scalar, binding = kBindRays) readonly buffer Structs { AllStructs structs[]; };

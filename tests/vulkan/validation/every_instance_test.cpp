@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/vulkan/commands.h"
-#include "engine/vulkan/device_internals.h"
+#include "vulkan/device/commands.h"
+#include "vulkan/device/device_internals.h"
 
 namespace relief::vulkan::tests {
 namespace {

@@ -1,0 +1,256 @@
+#include "analysis/map_convention.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "analysis/map_on_mesh.h"
+#include "analysis/map_on_plane.h"
+#include "relief/error.h"
+#include "surface/map/displacement_map.h"
+
+namespace relief {
+
+namespace {
+
+constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
+constexpr double kClearRatio = 1.5; ///< by how much the best must be ahead of the next
+constexpr double kOneSided = 0.5;   ///< least one-sidedness of a channel along the normal
+
+/// The channel along the normal: sculpts rise more than they slide, so its mean is the most one-sided.
+struct NormalChannel {
+    size_t channel = 2;
+    int sign = 1;
+    double ratio = 0; ///< of its mean to the next largest one
+    bool is_clear = false;
+};
+
+NormalChannel find_normal_channel(const MapSurvey& survey) {
+    std::array<double, 3> strength{};
+    for (size_t c = 0; c < 3; ++c) strength[c] = std::fabs(survey.channels[c].mean - survey.midlevel[c]);
+    NormalChannel best;
+    best.channel = size_t(std::max_element(strength.begin(), strength.end()) - strength.begin());
+    const double next = std::max(strength[(best.channel + 1) % 3], strength[(best.channel + 2) % 3]);
+    const double one_sided = survey.channels[best.channel].one_sided;
+    best.sign = one_sided < 0 ? -1 : 1;
+    best.ratio = next > 0 ? strength[best.channel] / next : 1e9;
+    best.is_clear =
+        strength[best.channel] > 0 && best.ratio >= kClearRatio && std::fabs(one_sided) >= kOneSided;
+    return best;
+}
+
+AxisMap make_axes(const NormalChannel& normal, int choice) {
+    const size_t first = normal.channel == 0 ? 1 : 0, second = normal.channel == 2 ? 1 : 2;
+    AxisMap axes;
+    axes.axis[normal.channel] = 2, axes.sign[normal.channel] = int8_t(normal.sign);
+    axes.axis[first] = uint8_t(choice & 1), axes.axis[second] = uint8_t(1 - (choice & 1));
+    axes.sign[first] = (choice & 2) != 0 ? -1 : 1, axes.sign[second] = (choice & 4) != 0 ? -1 : 1;
+    return axes;
+}
+
+Vec3f round_midlevel(const MapSurvey& survey) {
+    return {float(survey.midlevel[0]), float(survey.midlevel[1]), float(survey.midlevel[2])};
+}
+
+/// Along the plane a sculpt spreads where it rises: of the eight ways to lay two channels, the right one
+/// overhangs most and has the largest area.
+void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, MapConvention& result) {
+    constexpr double kAhead = 1.15;
+    std::array<PlaneFolds, 8> folds;
+    for (int choice = 0; choice < 8; ++choice)
+        folds[size_t(choice)] = measure_folds(map, make_axes(normal, choice));
+    std::array<size_t, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return folds[a].area > folds[b].area; });
+    const PlaneFolds &best = folds[order[0]], &next = folds[order[1]];
+    double other_share = 0;
+    for (size_t k = 1; k < order.size(); ++k) other_share = std::max(other_share, folds[order[k]].share);
+    result.is_order_clear = best.share > kAhead * other_share && best.area > next.area;
+    if (!result.is_order_clear) return;
+    result.axes.value = make_axes(normal, int(order[0]));
+    result.axes.reason +=
+        fmt::format("; laid like this it overhangs in {:.1f} % of the texels, {:.1f} x as "
+                    "much as in any other order",
+                    100 * best.share, other_share > 0 ? std::min(best.share / other_share, 99.0) : 99.0);
+}
+
+/// The order that programs write for a channel along the normal.
+AxisMap make_usual_axes(const NormalChannel& normal) { return make_axes(normal, 0); }
+
+void guess_tangent_axes(const Displacement& map, const MapSurvey& survey, MapConvention& result) {
+    const NormalChannel normal = find_normal_channel(survey);
+    result.axes.is_clear = normal.is_clear;
+    if (!normal.is_clear) {
+        result.axes.reason = "no channel has a mean far more one-sided than the others";
+        return;
+    }
+    result.axes.value = make_usual_axes(normal);
+    result.axes.reason = fmt::format(
+        "{} is along the normal{}: its mean is {:.1f} x as far from the midlevel "
+        "as that of the next channel",
+        kChannelNames[normal.channel], normal.sign < 0 ? ", backwards" : "", std::min(normal.ratio, 99.0));
+    if (!map.is_udim && survey.bad_count == 0) guess_order_on_plane(map, normal, result);
+}
+
+/// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
+/// normal, not its sign: that is taken from a mean which is far to one side.
+void refine_by_seams(const std::vector<SeamSample>& seams, const MapSurvey& survey, MapConvention& result) {
+    std::array<double, 3> gaps{1e9, 1e9, 1e9};
+    std::array<AxisMap, 3> best;
+    for (size_t channel = 0; channel < 3; ++channel)
+        for (int choice = 0; choice < 8; ++choice) {
+            NormalChannel normal;
+            normal.channel = channel, normal.sign = survey.channels[channel].one_sided < -kOneSided ? -1 : 1;
+            const AxisMap axes = make_axes(normal, choice);
+            const double gap = measure_tangent_gap(seams, axes);
+            // Turned by quarters, t and b close as well: the usual order stays unless another is clearly
+            // better.
+            if (gap * (choice == 0 ? 1 : kClearRatio) < gaps[channel])
+                gaps[channel] = gap, best[channel] = axes;
+        }
+    const auto channel = size_t(std::min_element(gaps.begin(), gaps.end()) - gaps.begin());
+    const double next = std::min(gaps[(channel + 1) % 3], gaps[(channel + 2) % 3]);
+    if (!(kClearRatio * gaps[channel] < next)) return;
+    if (result.axes.is_clear && result.axes.value.axis[channel] == 2) return; // told already, with its order
+    result.axes = {
+        best[channel], true,
+        fmt::format("{} is along the normal: so the uv seams close to {:.0f} % of the movement, with "
+                    "another channel to {:.0f} %",
+                    kChannelNames[channel], 100 * gaps[channel], 100 * next)};
+    result.is_order_clear = false;
+}
+
+/// Object space: the order under which the surface moves most along its normals.
+void guess_object_axes(const MapSamples& samples, MapConvention& result) {
+    constexpr double kLeastRise = 0.3;
+    double best = 0, next = 0;
+    for (const AxisMap& axes : get_all_axis_maps()) {
+        // The opposite of an order moves in where it moves out: whether a sculpt digs or heaps is not known.
+        if (std::count(axes.sign.begin(), axes.sign.end(), int8_t(-1)) > 1) continue;
+        const double rise = std::fabs(measure_object_rise(samples.places, axes));
+        if (rise > best) {
+            next = best, best = rise;
+            result.axes.value = axes;
+        } else {
+            next = std::max(next, rise);
+        }
+    }
+    result.axes.is_clear = result.is_order_clear = best >= kLeastRise && best > kClearRatio * next;
+    if (result.axes.is_clear) {
+        result.axes.reason = fmt::format("so the surface moves along its normals ({:.2f} of all movement, "
+                                         "{:.2f} in the next best order)",
+                                         best, next);
+        return;
+    }
+    result.axes.value = AxisMap{};
+    result.axes.reason = "the usual order; the mesh's normals speak for no other";
+}
+
+double measure_best_tangent_gap(const std::vector<SeamSample>& seams) {
+    double best = 1e9;
+    for (const AxisMap& axes : get_all_axis_maps()) best = std::min(best, measure_tangent_gap(seams, axes));
+    return best;
+}
+
+void guess_space_by_normals(const MapSamples& samples, const MapSurvey& survey, MapConvention& result) {
+    constexpr double kLeast = 0.3;
+    double object = 0, tangent = 0;
+    for (const AxisMap& axes : get_all_axis_maps())
+        object = std::max(object, measure_object_rise(samples.places, axes));
+    for (const ChannelSurvey& channel : survey.channels)
+        tangent = std::max(tangent, std::fabs(channel.one_sided));
+    if (object >= kLeast && object > kClearRatio * tangent)
+        result.space = {
+            DisplacementSpace::object, true,
+            fmt::format("values follow the mesh's normals in object space ({:.2f}), and no channel "
+                        "rises by itself ({:.2f})",
+                        object, tangent)};
+    else if (tangent >= kLeast && tangent > kClearRatio * object)
+        result.space = {
+            DisplacementSpace::tangent, true,
+            fmt::format("one channel rises by itself ({:.2f}), and values do not follow the mesh's "
+                        "normals in object space ({:.2f})",
+                        tangent, object)};
+}
+
+/// Nothing where the mesh and the map do not go together; inspection of the mesh says why.
+std::optional<Surface> try_surface(const Mesh& mesh, const Displacement& map) {
+    try {
+        return make_surface(mesh, &map, Affine{});
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+                   MapConvention& result) {
+    Displacement raw = map;
+    raw.type = DisplacementType::vector, raw.space = DisplacementSpace::tangent;
+    raw.axes = AxisMap{}, raw.midlevel = round_midlevel(survey), raw.scale = {1, 1, 1};
+    const std::optional<Surface> surface = try_surface(mesh, raw);
+    if (!surface) {
+        guess_tangent_axes(map, survey, result);
+        return;
+    }
+    const MapSamples samples = sample_map(*surface);
+    const std::optional<Guess<DisplacementSpace>> by_seams = guess_space_by_seams(samples.seams);
+    if (by_seams)
+        result.space = *by_seams;
+    else
+        guess_space_by_normals(samples, survey, result);
+    if (result.space.value == DisplacementSpace::object) {
+        guess_object_axes(samples, result);
+        return;
+    }
+    guess_tangent_axes(map, survey, result);
+    if (by_seams) refine_by_seams(samples.seams, survey, result);
+}
+
+} // namespace
+
+MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh) {
+    MapConvention result;
+    result.space.reason = "not to be seen without a mesh that has seams or bends: give --mesh";
+    if (survey.channel_count < 3 || survey.is_gray || survey.texel_count == survey.bad_count) return result;
+    if (mesh && survey.bad_count == 0) {
+        result.space.reason = "seams and normals of the mesh do not tell";
+        guess_on_mesh(map, survey, *mesh, result);
+        return result;
+    }
+    guess_tangent_axes(map, survey, result);
+    return result;
+}
+
+std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams) {
+    constexpr size_t kFewest = 32;
+    constexpr double kFits = 0.5;
+    if (seams.size() < kFewest) return std::nullopt;
+    const double object = measure_object_gap(seams), tangent = measure_best_tangent_gap(seams);
+    const bool is_object = object < kFits && kClearRatio * object < tangent;
+    const bool is_tangent = tangent < kFits && kClearRatio * tangent < object;
+    if (!is_object && !is_tangent) return std::nullopt;
+    return Guess<DisplacementSpace>{
+        is_object ? DisplacementSpace::object : DisplacementSpace::tangent, true,
+        fmt::format("both sides of the uv seams differ by {:.0f} % as {} space, by {:.0f} % as {}",
+                    100 * std::min(object, tangent), is_object ? "object" : "tangent",
+                    100 * std::max(object, tangent), is_object ? "tangent" : "object")};
+}
+
+std::optional<double> measure_fold_share(const Displacement& map, const Mesh* mesh) {
+    if (mesh) {
+        const std::optional<Surface> surface = try_surface(*mesh, map);
+        return surface ? std::optional<double>(measure_folded_share(*surface)) : std::nullopt;
+    }
+    const bool is_flat = map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent;
+    return is_flat && !map.is_udim ? std::optional<double>(measure_folds(map, map.axes).share) : std::nullopt;
+}
+
+std::string list_presets(const AxisMap& axes) {
+    if (axes == AxisMap{}) return "blender-brush, genvdm, 3dcoat";
+    if (axes == AxisMap{{0, 2, 1}, {1, 1, 1}}) return "mudbox, maya, cycles, arnold, moonray";
+    return {};
+}
+
+} // namespace relief

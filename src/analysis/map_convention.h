@@ -1,0 +1,40 @@
+// How a displacement map is probably meant: space, axes and zero, each with its reason.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analysis/map_on_mesh.h"
+#include "analysis/map_survey.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// A guess with what speaks for it; `is_clear` is false where nothing does, and the value is the default.
+template <class Value> struct Guess {
+    Value value{};
+    bool is_clear = false;
+    std::string reason;
+};
+
+struct MapConvention {
+    Guess<DisplacementSpace> space;
+    Guess<AxisMap> axes;         ///< clear where the axis along the normal is
+    bool is_order_clear = false; ///< also which channels go along t and b, or x, y and z
+};
+
+/// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.
+MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh);
+
+/// Which space the uv seams speak for; nothing where they do not tell.
+std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams);
+
+/// Share of the places looked at where the surface faces away from its base: on its mesh, or without one on a
+/// plane 2 units wide. Nothing where that cannot be told: a map with tiles or in object space without a mesh,
+/// a mesh that does not go with the map.
+std::optional<double> measure_fold_share(const Displacement& map, const Mesh* mesh);
+
+/// The presets that write such a map, for people: "blender-brush, genvdm"; empty: none.
+std::string list_presets(const AxisMap& axes);
+
+} // namespace relief

@@ -1,0 +1,44 @@
+#include "api/picture_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace relief {
+
+void count_scene(const PreparedScene& scene, Statistics& statistics) {
+    statistics.meshes = scene.mesh_count;
+    statistics.instances = scene.instances.size();
+    std::vector<const void*> seen;
+    const auto is_new = [&](const void* part) {
+        if (!part || std::find(seen.begin(), seen.end(), part) != seen.end()) return false;
+        seen.push_back(part);
+        return true;
+    };
+    for (const Surface& surface : scene.surfaces) {
+        for (const Quad quad : surface.quads) {
+            if (surface.has_displacement)
+                ++statistics.patches;
+            else
+                statistics.triangles += quad.is_triangle() ? 1 : 2;
+        }
+        for (const DisplacementMap::Tile& tile : surface.map.tiles) {
+            if (is_new(tile.mips.get())) statistics.displacement_bytes += tile.mips->byte_count();
+            if (!is_new(tile.texture.get())) continue;
+            statistics.displacement_texels += uint64_t(tile.texture->width) * tile.texture->height;
+            statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
+        }
+    }
+}
+
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {
+    image.metadata["Software"] = "Relief " RELIEF_VERSION;
+    image.metadata["relief:version"] = RELIEF_VERSION;
+    image.metadata["relief:seed"] = std::to_string(settings.seed);
+    image.metadata["relief:samples"] =
+        fmt::format("{}:{}", settings.first_sample, settings.first_sample + settings.spp);
+    image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+    if (!is_complete) image.metadata["relief:interrupted"] = "yes";
+}
+
+} // namespace relief

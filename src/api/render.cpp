@@ -1,0 +1,58 @@
+// The whole path: scene -> surfaces and levels -> trees -> rays -> film -> image.
+#include "relief/render.h"
+
+#include <utility>
+
+#include "api/make_engine.h"
+#include "api/picture_report.h"
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "cpu/traversal/kernels.h"
+#include "prepare/space_warnings.h"
+#include "prepare/validate_settings.h"
+
+namespace relief {
+
+RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer) {
+    validate_settings(settings);
+    validate_method(settings, scene.camera);
+    const uint64_t scene_hash = scene.hash;
+    RenderResult result;
+    Statistics& statistics = result.statistics;
+    const Timer total;
+    with_threads(settings.threads, [&] {
+        // First, so that a picture that cannot be held is refused before the scene is prepared.
+        Film film(settings.width, settings.height, settings.crop, settings.layers);
+        std::shared_ptr<const PreparedScene> prepared = prepare_with_warnings(std::move(scene), settings);
+        std::unique_ptr<Engine> engine = make_engine(prepared, settings);
+        statistics.prepare_s = total.seconds();
+
+        const Timer timer;
+        result.is_complete = engine->render(film, observer);
+        statistics.render_s = timer.seconds();
+
+        engine->add_statistics(statistics);
+        statistics.threads = thread_count();
+        statistics.first_image_s += statistics.prepare_s;
+        statistics.ray_buffers_bytes += film.byte_count();
+        statistics.warnings = prepared->warnings;
+        count_scene(*prepared, statistics);
+        // The picture may lie where they lay.
+        engine.reset(), prepared.reset();
+        result.image = film.resolve();
+    });
+    add_metadata(settings, scene_hash, result.is_complete, result.image);
+    statistics.total_s = total.seconds();
+    statistics.peak_resident_bytes = peak_resident_bytes();
+    return result;
+}
+
+std::vector<std::string> available_isas() {
+    std::vector<std::string> names;
+    for (const Isa isa : {Isa::avx512, Isa::avx2, Isa::neon, Isa::sse4, Isa::scalar})
+        if (const cpu::Kernels* kernels = cpu::find_kernels(isa)) names.push_back(kernels->name);
+    return names;
+}
+
+} // namespace relief

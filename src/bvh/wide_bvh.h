@@ -1,0 +1,78 @@
+// Eight-wide BVH with 8-bit boxes, made from a binary one: what the CPU engine walks (after Ylitie, Karras,
+// Laine 2017).
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bvh/bvh.h"
+
+namespace relief {
+
+/// 96 bytes. Child boxes are origin + code * 2^exponent, so that the product is exact and every decoder
+/// agrees. Codes are rounded outward and checked with the decoder itself. Children fill the slots from 0.
+/// Unused slots have lower code 255 and upper code 0 in x and decode to lower > upper there; a slab test that
+/// widens its interval may still enter them where the box is tiny next to its distance, so walkers must mask
+/// by child_count.
+struct WideNode {
+    static constexpr uint32_t kLeafFlag =
+        0x80000000u; ///< then bits 28..30: primitives - 1, bits 0..27: first
+    static constexpr uint32_t kNoChild = 0xffffffffu;
+    static constexpr int kMaxChildCount = 8;
+    static constexpr uint32_t kMaxLeafFirst = 0x0fffffffu;
+
+    float origin[3];
+    int8_t exponent[3]; ///< [-126, 127]: a normal float
+    uint8_t child_count;
+    uint8_t planes[6][8]; ///< lower x y z, upper x y z
+    uint32_t child[8];
+
+    /// Box of child k < child_count; holds the original box.
+    Box child_box(int k) const;
+
+    /// What the words in `child` mean; not for kNoChild.
+    static bool is_leaf(uint32_t child) { return (child & kLeafFlag) != 0; }
+    static uint32_t leaf_first(uint32_t child) { return child & kMaxLeafFirst; }
+    static uint32_t leaf_count(uint32_t child) { return ((child >> 28) & 7) + 1; }
+    /// `first` <= kMaxLeafFirst, `count` in [1, 8].
+    static uint32_t make_leaf(uint32_t first, uint32_t count) {
+        return kLeafFlag | (count - 1) << 28 | first;
+    }
+
+    static float decode_scale(int exponent) { return std::bit_cast<float>(uint32_t(exponent + 127) << 23); }
+    static float decode(float origin, float scale, uint8_t code) { return origin + float(code) * scale; }
+};
+static_assert(sizeof(WideNode) == 96);
+
+/// `leaf first` indexes primitive_ids, or is the primitive itself when primitive_ids is empty (every leaf
+/// holds one).
+struct WideBvh {
+    std::vector<WideNode> nodes; ///< node 0 is the root; empty: no primitives
+    std::vector<uint32_t> primitive_ids;
+    Box bounds; ///< exact union of the boxes that the binary tree was built from
+
+    uint32_t primitive_at(uint32_t index) const {
+        return primitive_ids.empty() ? index : primitive_ids[index];
+    }
+    size_t byte_count() const {
+        return nodes.size() * sizeof(WideNode) + primitive_ids.size() * sizeof(uint32_t);
+    }
+};
+
+/// Collapses the binary tree into the nodes of least area (bvh/wide_children.h).
+/// Inner children of a node are adjacent. Throws Error for more than 2^28 primitives.
+WideBvh make_wide_bvh(const Bvh& bvh);
+
+inline Box WideNode::child_box(int k) const {
+    float low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const float scale = decode_scale(exponent[axis]);
+        low[axis] = decode(origin[axis], scale, planes[axis][k]);
+        high[axis] = decode(origin[axis], scale, planes[3 + axis][k]);
+    }
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+} // namespace relief

@@ -1,0 +1,24 @@
+// The way back through frames, also through those that have nearly collapsed: frames are blended between
+// corners, and where tangents of opposite directions meet, a blend loses directions that no (t, b, n) of
+// sensible size reaches.
+#pragma once
+
+#include "convert/texel_frames.h"
+#include "relief/types.h"
+
+namespace relief {
+
+/// Of the shortest direction to the length that its axes have at the corners.
+inline constexpr double kLeastStretch = 0.25;
+
+struct FrameCoordinates {
+    Vec3f tbn;
+    float error = 0; ///< distance from what the frame makes of `tbn` to what was asked for
+};
+
+/// The (t, b, n) that the frame turns into `d`. Along directions that the frame shortens to less than
+/// kLeastStretch of what its corners do, components are damped, so that none is larger than |d| /
+/// (kLeastStretch x the length of its axis at the corners); sound frames are inverted as they are.
+FrameCoordinates invert_frame(const TexelFrame& frame, const Vec3f& d);
+
+} // namespace relief

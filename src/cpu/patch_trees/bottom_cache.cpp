@@ -1,0 +1,271 @@
+#include "cpu/patch_trees/bottom_cache.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+#include "base/check.h"
+#include "base/timer.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr size_t kProbeCount = 8;       ///< slots looked at for one key
+constexpr size_t kMeanTreeBytes = 4096; ///< decides the size of the table
+constexpr size_t kLongestSearch = 8192; ///< slots that one eviction looks at
+
+uint64_t hash_key(const TreeKey& key) {
+    // Two rounds of the finalizer of Steele, Lea and Flood 2014 (SplitMix64).
+    const auto mix = [](uint64_t x) {
+        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+        x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+        return x ^ (x >> 31);
+    };
+    return mix(mix(uint64_t(key.patch) << 32 | key.surface) + (uint64_t(key.tile) << 32 | key.levels));
+}
+
+void* allocate_aligned(size_t bytes) {
+    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+} // namespace
+
+void TraceContext::AlignedFree::operator()(void* memory) const { std::free(memory); }
+
+void TraceCounters::add(const TraceCounters& other) {
+    pairs_emitted += other.pairs_emitted, pairs_with_hit += other.pairs_with_hit;
+    built += other.built, reused += other.reused;
+    upper_nodes += other.upper_nodes, patch_nodes += other.patch_nodes, blocks += other.blocks;
+    for (int level = 0; level <= kMaxLevel; ++level) built_at_level[level] += other.built_at_level[level];
+    bottom_build_s += other.bottom_build_s, sampled_bottom_s += other.sampled_bottom_s;
+}
+
+void CastCounters::add(const CastCounters& other) {
+    batches += other.batches, rays += other.rays, pairs += other.pairs;
+    bottom_build_s += other.bottom_build_s, trace_s += other.trace_s;
+    sampled_trace_s += other.sampled_trace_s, sampled_bottom_s += other.sampled_bottom_s;
+}
+
+BottomCache::BottomCache(size_t cap_bytes) : cap_bytes_(cap_bytes) {
+    if (cap_bytes == 0) return;
+    slot_count_ = std::bit_ceil(std::clamp<size_t>(cap_bytes / kMeanTreeBytes, 64, size_t(1) << 20));
+    slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
+    cap_bytes_ -= std::min(cap_bytes_, table_bytes());
+}
+
+BottomCache::~BottomCache() {
+    for (size_t slot = 0; slot < slot_count_; ++slot)
+        if (CachedTree* tree = slots_[slot].load()) free_tree(tree);
+    for (TraceContext* context = contexts_.load(); context;) {
+        for (const TraceContext::Retired& retired : context->retired) free_tree(retired.tree);
+        delete std::exchange(context, context->next);
+    }
+}
+
+TraceContext& BottomCache::acquire() {
+    TraceContext* context = contexts_.load();
+    for (; context; context = context->next)
+        if (!context->is_taken.load() && !context->is_taken.exchange(true)) break;
+    if (!context) {
+        context = new TraceContext;
+        context->is_taken.store(true);
+        context->tree_scratch.reset(allocate_aligned(BottomTree::size_bytes(kTileLevel)));
+        context->next = contexts_.load();
+        while (!contexts_.compare_exchange_weak(context->next, context)) {
+        }
+    }
+    refresh(*context);
+    return *context;
+}
+
+void BottomCache::release(TraceContext& context) {
+    context.epoch.store(0);
+    context.is_taken.store(false);
+}
+
+void BottomCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
+    for (size_t slot = 0; slot < slot_count_; ++slot) {
+        CachedTree* tree = slots_[slot].load();
+        if (!tree || !is_stale(tree->key)) continue;
+        slots_[slot].store(nullptr);
+        free_tree(tree);
+    }
+    // What workers found last is found anew.
+    epoch_.fetch_add(1);
+}
+
+CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
+    if (slot_count_ == 0) return nullptr;
+    const size_t home = hash_key(key);
+    for (size_t probe = 0; probe < kProbeCount; ++probe) {
+        CachedTree* tree = slots_[(home + probe) & (slot_count_ - 1)].load(std::memory_order_seq_cst);
+        if (tree && tree->key == key) {
+            if (!tree->is_recent.load(std::memory_order_relaxed))
+                tree->is_recent.store(1, std::memory_order_relaxed);
+            ++context.counters.reused;
+            remember(context, *tree);
+            return tree;
+        }
+    }
+    return nullptr;
+}
+
+void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
+    context.recent.place(tree.key) = {tree.key, &tree, context.epoch.load(std::memory_order_relaxed)};
+}
+
+const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                       const TreeKey& key, BuildTreeFunction build) {
+    if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
+    throw_if_stopped();
+    const Timer timer;
+    const PatchLevels levels = unpack_levels(key.levels);
+    const int depth = std::max(0, int(levels.patch) - kTileLevel);
+    const int level = levels.patch - depth;
+    const size_t bytes = BottomTree::size_bytes(level);
+    void* memory = allocate(context, bytes);
+    BottomTree* tree = new (memory ? memory : context.tree_scratch.get()) BottomTree;
+    tree->key = key;
+    tree->byte_count = uint32_t(bytes);
+    tree->level = uint32_t(level);
+    tree->cell_x = (key.tile & ((1u << depth) - 1)) << kTileLevel;
+    tree->cell_y = (key.tile >> depth) << kTileLevel;
+    build(surface, levels, *tree);
+    ++context.counters.built;
+    ++context.counters.built_at_level[level];
+    if (memory) offer(context, tree);
+    context.counters.bottom_build_s += timer.seconds();
+    return *tree;
+}
+
+const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                          const TreeKey& key) {
+    if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
+    throw_if_stopped();
+    const Timer timer;
+    const PatchLevels levels = unpack_levels(key.levels);
+    const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
+    const size_t bytes = TileDirectory::size_bytes(depth);
+    void* memory = allocate(context, bytes);
+    if (!memory && context.directory_scratch_bytes < bytes) {
+        context.directory_scratch.reset(allocate_aligned(bytes));
+        context.directory_scratch_bytes = bytes;
+    }
+    TileDirectory* directory = new (memory ? memory : context.directory_scratch.get()) TileDirectory;
+    directory->key = key;
+    directory->byte_count = uint32_t(bytes);
+    directory->depth = depth;
+    build_tile_directory(surface, levels, *directory);
+    if (memory) offer(context, directory);
+    context.counters.bottom_build_s += timer.seconds();
+    return *directory;
+}
+
+void BottomCache::throw_if_stopped() const {
+    if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
+}
+
+void* BottomCache::allocate(TraceContext& context, size_t bytes) {
+    if (slot_count_ == 0) return nullptr;
+    const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
+    if (!has_room()) {
+        free_retired(context);
+        // What is unlinked already becomes free when the other workers move on; more would only empty the
+        // table.
+        if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_) evict(context, bytes);
+        if (!has_room()) return nullptr;
+    }
+    const size_t now = allocated_.fetch_add(bytes) + bytes;
+    if (now > cap_bytes_) { // another worker took the room in between
+        allocated_.fetch_sub(bytes);
+        return nullptr;
+    }
+    for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
+    }
+    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!memory) allocated_.fetch_sub(bytes);
+    return memory;
+}
+
+void BottomCache::offer(TraceContext& context, CachedTree* tree) {
+    const size_t home = hash_key(tree->key);
+    for (size_t probe = 0; probe < kProbeCount; ++probe) {
+        CachedTree* expected = nullptr;
+        if (slots_[(home + probe) & (slot_count_ - 1)].compare_exchange_strong(expected, tree)) return;
+    }
+    // Every slot of this key is taken: the first one makes way.
+    if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(tree)) retire(context, previous);
+}
+
+void BottomCache::retire(TraceContext& context, CachedTree* tree) {
+    retired_.fetch_add(tree->byte_count);
+    context.retired.push_back({tree, epoch_.fetch_add(1)});
+}
+
+void BottomCache::evict(TraceContext& context, size_t bytes) {
+    // A little more than asked for, so that the next builds find room without a search; and no endless
+    // search.
+    const size_t target = std::max(bytes, cap_bytes_ / 64);
+    const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
+    size_t unlinked = 0;
+    for (size_t step = 0; step < step_count && unlinked < target; ++step) {
+        std::atomic<CachedTree*>& slot = slots_[hand_.fetch_add(1) & (slot_count_ - 1)];
+        CachedTree* tree = slot.load();
+        if (!tree || tree->is_recent.exchange(0)) continue;
+        const size_t tree_bytes = tree->byte_count;
+        if (!slot.compare_exchange_strong(tree, nullptr)) continue;
+        retire(context, tree);
+        unlinked += tree_bytes;
+    }
+}
+
+void BottomCache::free_retired(TraceContext& context) {
+    uint64_t oldest = epoch_.load();
+    for (const TraceContext* other = contexts_.load(); other; other = other->next)
+        if (const uint64_t epoch = other->epoch.load()) oldest = std::min(oldest, epoch);
+    free_older(context, oldest);
+    // Idle workers cannot free what they retired last: whoever needs the room does it for them.
+    for (TraceContext* other = contexts_.load(); other; other = other->next) {
+        if (other->is_taken.load() || other->is_taken.exchange(true)) continue;
+        free_older(*other, oldest);
+        other->is_taken.store(false);
+    }
+}
+
+void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
+    const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
+    for (const TraceContext::Retired& retired : context.retired) {
+        if (!is_free(retired)) continue;
+        retired_.fetch_sub(retired.tree->byte_count);
+        free_tree(retired.tree);
+    }
+    std::erase_if(context.retired, is_free);
+}
+
+void BottomCache::free_tree(CachedTree* tree) {
+    allocated_.fetch_sub(tree->byte_count);
+    std::free(static_cast<void*>(tree));
+}
+
+TraceCounters BottomCache::sum_counters() const {
+    TraceCounters sum;
+    for (const TraceContext* context = contexts_.load(); context; context = context->next)
+        sum.add(context->counters);
+    return sum;
+}
+
+std::vector<CastCounters> BottomCache::sum_casts() const {
+    std::vector<CastCounters> sums;
+    for (const TraceContext* context = contexts_.load(); context; context = context->next) {
+        sums.resize(std::max(sums.size(), context->casts.size()));
+        for (size_t k = 0; k < context->casts.size(); ++k) sums[k].add(context->casts[k]);
+    }
+    return sums;
+}
+
+} // namespace relief::cpu

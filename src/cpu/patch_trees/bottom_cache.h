@@ -1,0 +1,174 @@
+// Bottom trees kept between rays, batches, samples and bounces, under a byte cap.
+//
+// No lock is taken inside a traversal: a look-up reads a few slots of a fixed table; a miss builds privately
+// and offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and
+// freed when no worker can hold it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom,
+// section 5.2.3). When the cap leaves no room, a tree lives in the worker's scratch memory for one visit. The
+// image never depends on any of this.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "cpu/patch_trees/bottom_tree.h"
+#include "relief/render.h"
+
+namespace relief::cpu {
+
+/// Counted per worker, summed for the statistics.
+struct TraceCounters {
+    uint64_t pairs_emitted = 0, pairs_with_hit = 0;
+    uint64_t built = 0, reused = 0;
+    uint64_t built_at_level[kMaxLevel + 1] = {};
+    uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0; ///< visited; see Statistics
+    double bottom_build_s = 0;
+    double sampled_bottom_s = 0; ///< in patches, of the batches that were timed patch by patch
+
+    void add(const TraceCounters& other);
+};
+
+/// The batches of one kind of rays at one depth of their paths.
+struct CastCounters {
+    uint64_t batches = 0, rays = 0, pairs = 0;
+    double bottom_build_s = 0, trace_s = 0;           ///< tracing: without building
+    double sampled_trace_s = 0, sampled_bottom_s = 0; ///< of the batches that were timed patch by patch
+
+    void add(const CastCounters& other);
+};
+
+/// What a worker found last, one place a hash of the key: most look-ups end here, without a look at the table
+/// or the tree. An entry serves while the epoch in which it was made lasts: nothing was taken out since.
+struct RecentTrees {
+    static constexpr size_t kCount = 2048;
+    struct Entry {
+        TreeKey key;
+        const CachedTree* tree = nullptr;
+        uint64_t epoch = 0; ///< 0: empty
+    };
+    std::vector<Entry> entries = std::vector<Entry>(kCount);
+
+    Entry& place(const TreeKey& key) {
+        const uint32_t mixed = (key.patch + key.tile * 0x9e3779b1u + key.surface * 0x85ebca6bu) * 0xc2b2ae35u;
+        return entries[((mixed ^ key.levels * 0x27d4eb2fu) >> 16) % kCount];
+    }
+};
+
+/// What one worker needs while it traces a batch. Taken with BottomCache::acquire, given back with release.
+struct TraceContext {
+    std::atomic<uint64_t> epoch{0}; ///< 0: holds no tree
+    std::atomic<bool> is_taken{false};
+    TraceContext* next = nullptr;
+
+    struct Retired {
+        CachedTree* tree;
+        uint64_t epoch;
+    };
+    std::vector<Retired> retired;
+    RecentTrees recent;
+    struct AlignedFree {
+        void operator()(void* memory) const;
+    };
+    std::unique_ptr<void, AlignedFree> tree_scratch, directory_scratch;
+    size_t directory_scratch_bytes = 0;
+    TraceCounters counters;
+    bool is_timed = false;           ///< this batch measures its bottom stage
+    std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1
+};
+
+/// Thrown where a tree would have to be made after an end was asked for.
+struct StopRequest : std::exception {
+    const char* what() const noexcept override { return "an end was asked for"; }
+};
+
+class BottomCache {
+  public:
+    /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept.
+    explicit BottomCache(size_t cap_bytes);
+    ~BottomCache();
+    BottomCache(const BottomCache&) = delete;
+    BottomCache& operator=(const BottomCache&) = delete;
+
+    TraceContext& acquire();
+    void release(TraceContext& context);
+
+    /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
+    /// StopRequest. Empty: never. Not while a context is taken.
+    void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
+
+    /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.
+    void remove(const std::function<bool(const TreeKey&)>& is_stale);
+
+    /// To be called between rays: trees returned before may be freed afterwards.
+    void refresh(TraceContext& context) const {
+        // Looked at again after the store: what is taken out from here on stays until the next refresh, and
+        // what was taken out before is not among the recent trees of this epoch.
+        for (uint64_t now = epoch_.load(); context.epoch.load(std::memory_order_relaxed) != now;
+             now = epoch_.load())
+            context.epoch.store(now);
+    }
+
+    /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
+    /// call.
+    const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
+                                         BuildTreeFunction build) {
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
+            return static_cast<const BottomTree&>(*recent);
+        }
+        return find_or_build_elsewhere(context, surface, key, build);
+    }
+    const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
+                                                 const TreeKey& key) {
+        if (const CachedTree* recent = find_recent(context, key)) {
+            ++context.counters.reused;
+            return static_cast<const TileDirectory&>(*recent);
+        }
+        return find_or_build_elsewhere(context, surface, key);
+    }
+    /// One that this worker met lately, or null.
+    const CachedTree* find_recent(TraceContext& context, const TreeKey& key) const {
+        const RecentTrees::Entry& entry = context.recent.place(key);
+        if (entry.epoch != context.epoch.load(std::memory_order_relaxed) || !(entry.key == key))
+            return nullptr;
+        return entry.tree;
+    }
+
+    /// Bytes held now and at most so far, table included.
+    size_t byte_count() const { return allocated_.load() + table_bytes(); }
+    size_t peak_byte_count() const { return peak_.load() + table_bytes(); }
+    TraceCounters sum_counters() const;
+    std::vector<CastCounters> sum_casts() const;
+
+  private:
+    const BottomTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                              const TreeKey& key, BuildTreeFunction build);
+    const TileDirectory& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                 const TreeKey& key);
+    CachedTree* find(TraceContext& context, const TreeKey& key) const;
+    static void remember(TraceContext& context, const CachedTree& tree);
+    void throw_if_stopped() const;
+    void* allocate(TraceContext& context, size_t bytes);
+    void offer(TraceContext& context, CachedTree* tree);
+    void evict(TraceContext& context, size_t bytes);
+    void retire(TraceContext& context, CachedTree* tree);
+    void free_retired(TraceContext& context);
+    void free_older(TraceContext& context, uint64_t epoch);
+    void free_tree(CachedTree* tree);
+    size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
+
+    size_t cap_bytes_;
+    size_t slot_count_ = 0; ///< power of two, or 0
+    std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
+    std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};
+    std::atomic<size_t> retired_{0}; ///< bytes unlinked and not freed yet; part of allocated_
+    mutable std::atomic<uint64_t> epoch_{1};
+    std::function<bool()> is_stop_asked_for_;
+    std::atomic<TraceContext*> contexts_{nullptr};
+};
+
+} // namespace relief::cpu

@@ -1,0 +1,186 @@
+// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over
+// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
+// stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
+//
+// A bottom tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
+// the same sixteen-wide nodes over the boxes of its tiles' quarters, so that only the tiles that rays enter
+// are ever evaluated.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "surface/patch/surface.h"
+
+namespace relief::cpu {
+
+inline constexpr int kTileLevel = 6;                    ///< a tile has at most 2^6 cells a side
+inline constexpr int kQuarterLevel = kTileLevel - 1;    ///< of what directories have boxes of
+inline constexpr uint32_t kDirectoryTile = 0xffffffffu; ///< in place of a tile index: the patch's directory
+
+/// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
+struct alignas(64) Node16 {
+    float bounds[6][16];
+};
+
+/// Boxes of eight leaf blocks.
+struct alignas(64) Node8 {
+    float bounds[6][8];
+};
+
+/// What a cached object is of; equal keys mean equal bits.
+struct TreeKey {
+    uint32_t surface = 0, patch = 0, tile = 0;
+    uint32_t levels = 0; ///< patch level and four edge levels, 5 x 4 bits
+
+    friend bool operator==(const TreeKey&, const TreeKey&) = default;
+};
+
+/// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock
+/// hand.
+struct alignas(64) CachedTree {
+    TreeKey key;
+    uint32_t byte_count = 0;
+    std::atomic<uint8_t> is_recent{0};
+};
+
+/// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Boxes and vertices
+/// follow the head:
+/// - level 6: root, 16 Node16, 512 blocks; child g of the root covers 16 x 16 cells, its child k 4 x 4 of
+///   them: blocks 2 (16 g + k) and the next;
+/// - level 5: root, 16 Node8, 128 blocks; child g of the root covers 8 x 8 cells, its block k 4 x 2 of them;
+/// - level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1;
+/// - level 3: one Node8, 8 blocks;
+/// - levels 2, 1, 0: no boxes; 2, 1, 1 blocks.
+struct BottomTree : CachedTree {
+    uint32_t level = 0;
+    uint32_t cell_x = 0, cell_y = 0; ///< first cell of the tile on the patch
+
+    static constexpr uint32_t block_count(int level) {
+        constexpr uint32_t kCounts[] = {1, 1, 2, 8, 32, 128, 512};
+        return kCounts[level];
+    }
+    static constexpr size_t node_bytes(int level) {
+        return level == 6   ? 17 * sizeof(Node16)
+               : level == 5 ? sizeof(Node16) + 16 * sizeof(Node8)
+               : level == 4 ? sizeof(Node16)
+               : level == 3 ? sizeof(Node8)
+                            : 0;
+    }
+    /// Vertices a row, and rows: those of a block at least. What a tile has less repeats its last column and
+    /// row, which makes triangles without area that no ray hits.
+    static constexpr uint32_t column_count(int level) { return level < 2 ? 5 : (1u << level) + 1; }
+    static constexpr uint32_t row_count(int level) { return level < 1 ? 3 : (1u << level) + 1; }
+    static constexpr uint32_t vertex_count(int level) { return column_count(level) * row_count(level); }
+    /// Loads of whole registers read one number past the last vertex.
+    static constexpr size_t vertex_bytes(int level) {
+        return (3 * size_t(vertex_count(level)) + 1) * sizeof(float);
+    }
+    static constexpr size_t size_bytes(int level);
+
+    const char* data() const;
+    char* data();
+    const Node16& root() const { return *reinterpret_cast<const Node16*>(data()); }
+    Node16& root() { return *reinterpret_cast<Node16*>(data()); }
+    /// Level 6: node of group g.
+    const Node16& wide_group(int g) const { return (&root())[1 + g]; }
+    Node16& wide_group(int g) { return (&root())[1 + g]; }
+    /// Level 5: node of group g; level 3: the only one (g = 0).
+    const Node8& group(int g) const {
+        return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
+    }
+    Node8& group(int g) { return const_cast<Node8&>(const_cast<const BottomTree*>(this)->group(g)); }
+    /// x of all vertices, row by row, then y, then z. `own_level` is the tree's.
+    const float* grid(int own_level) const {
+        return reinterpret_cast<const float*>(data() + node_bytes(own_level));
+    }
+    /// The vertices of one axis.
+    const float* vertices(int axis) const {
+        return grid(int(level)) + uint32_t(axis) * vertex_count(int(level));
+    }
+    float* vertices(int axis) {
+        return const_cast<float*>(const_cast<const BottomTree*>(this)->vertices(axis));
+    }
+    /// Number of a block's first vertex: of its lowest row and column.
+    static uint32_t find_first_vertex(int level, uint32_t block) {
+        uint32_t column = 0, row = 0;
+        block_cell(level, block, column, row);
+        return row * column_count(level) + column;
+    }
+
+    /// First cell (column, row) of a block within the tile.
+    static void block_cell(int level, uint32_t block, uint32_t& column, uint32_t& row) {
+        if (level == 6) {
+            const uint32_t g = block >> 5, k = block >> 1 & 15;
+            column = (g & 3) * 16 + (k & 3) * 4, row = (g >> 2) * 16 + (k >> 2) * 4 + (block & 1) * 2;
+        } else if (level == 5) {
+            const uint32_t g = block >> 3, k = block & 7;
+            column = (g & 3) * 8 + (k & 1) * 4, row = (g >> 2) * 8 + (k >> 1) * 2;
+        } else if (level == 4) {
+            const uint32_t g = block >> 1;
+            column = (g & 3) * 4, row = (g >> 2) * 4 + (block & 1) * 2;
+        } else if (level == 3) {
+            column = (block & 1) * 4, row = (block >> 1) * 2;
+        } else {
+            column = 0, row = block * 2;
+        }
+    }
+};
+
+constexpr size_t BottomTree::size_bytes(int level) {
+    return (sizeof(BottomTree) + 63) / 64 * 64 + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
+}
+inline const char* BottomTree::data() const {
+    return reinterpret_cast<const char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
+}
+inline char* BottomTree::data() {
+    return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
+}
+
+/// Tree over the quarters of the tiles of a patch above kTileLevel, 2^depth of them a side: their boxes come
+/// from the map, and those of whole tiles would be a good deal larger. Step s has step_side(s)^2 nodes, row
+/// by row; a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd); those
+/// of the last step are the quarters of four tiles.
+struct TileDirectory : CachedTree {
+    uint32_t depth = 0;
+
+    static constexpr uint32_t step_count(uint32_t depth) { return (depth + 1) / 2; }
+    /// Children a side of a node of step s.
+    static constexpr uint32_t fanout(uint32_t depth, uint32_t step) {
+        return step == 0 && depth % 2 == 1 ? 2 : 4;
+    }
+    /// Nodes a side of step s.
+    static constexpr uint32_t step_side(uint32_t depth, uint32_t step) {
+        return step == 0 ? 1 : (depth % 2 == 1 ? 2u : 4u) << (2 * (step - 1));
+    }
+    static constexpr uint32_t step_begin(uint32_t depth, uint32_t step) {
+        uint32_t begin = 0;
+        for (uint32_t s = 0; s < step; ++s) begin += step_side(depth, s) * step_side(depth, s);
+        return begin;
+    }
+    /// The tile that quarter (x, y) of the patch belongs to, and which of the four of its node it is.
+    static constexpr uint32_t find_tile(uint32_t depth, uint32_t x, uint32_t y) {
+        return (y / 2) << (depth - 1) | x / 2;
+    }
+    static constexpr uint32_t find_tile_of_node(uint32_t child) {
+        return (child >> 2 & 2) | (child >> 1 & 1);
+    }
+    static constexpr size_t size_bytes(uint32_t depth) {
+        return (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64 +
+               size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
+    }
+    const Node16* nodes() const {
+        return reinterpret_cast<const Node16*>(reinterpret_cast<const char*>(this) +
+                                               (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64);
+    }
+    Node16* nodes() { return const_cast<Node16*>(const_cast<const TileDirectory*>(this)->nodes()); }
+};
+
+/// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
+using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, BottomTree& tree);
+
+/// Builds `directory`, whose key and depth are set, from conservative boxes.
+void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory);
+
+} // namespace relief::cpu

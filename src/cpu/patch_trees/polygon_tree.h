@@ -1,0 +1,52 @@
+// What rays of the CPU engine walk through a surface without displacement: eight-wide nodes whose leaves are
+// blocks of eight triangles, corners and all, so that a ray needs nothing but the tree.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/huge_pages.h"
+#include "surface/patch/surface.h"
+
+namespace relief::cpu {
+
+/// Boxes of up to eight children: lower x y z, upper x y z. They fill the slots from 0; empty slots have
+/// lower +inf, upper -inf and kNoChild.
+struct alignas(64) PolygonNode {
+    static constexpr uint32_t kLeafFlag = 0x80000000u; ///< then bits 0..30 are the block
+    static constexpr uint32_t kNoChild = 0xffffffffu;
+
+    float bounds[6][8];
+    uint32_t child[8];
+
+    static bool is_leaf(uint32_t child) { return (child & kLeafFlag) != 0; }
+    static uint32_t leaf_block(uint32_t child) { return child & ~kLeafFlag; }
+};
+
+/// Up to eight triangles: a triangle or quad of the surface each, or half of a quad. Empty lanes are NaN,
+/// which no ray meets.
+struct alignas(64) TriangleBlock {
+    float corner[3][3][8]; ///< [corner][axis]
+    uint32_t triangle[8];  ///< 2 patch + is_upper
+
+    static constexpr uint32_t kWidth = 8;
+};
+
+struct PolygonTree {
+    std::vector<PolygonNode, HugePageAllocator<PolygonNode>>
+        nodes; ///< node 0 is the root; empty: no polygons
+    std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> blocks;
+    Box bounds; ///< exact union of the boxes of the polygons
+
+    size_t byte_count() const {
+        return nodes.size() * sizeof(PolygonNode) + blocks.size() * sizeof(TriangleBlock);
+    }
+};
+
+/// `surface` has no displacement and fewer than 2^28 patches. The same for any number of threads. Throws
+/// Error for more polygons than that.
+PolygonTree build_polygon_tree(const Surface& surface);
+
+} // namespace relief::cpu

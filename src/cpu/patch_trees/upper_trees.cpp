@@ -1,0 +1,97 @@
+#include "cpu/patch_trees/upper_trees.h"
+
+#include <new>
+
+#include "bvh/wide_refit.h"
+#include "prepare/scene_trees.h"
+
+namespace relief::cpu {
+
+namespace {
+
+/// A vertex takes some 10 ns, smaller boxes spare a ray some 40: it pays from a quarter of a ray a vertex.
+/// Eight times that, so that pictures of a sample or two do not pay for what they have little of.
+constexpr int64_t kRaysPerVertex = 2;
+
+} // namespace
+
+size_t UpperTrees::byte_count() const {
+    size_t count = instances.byte_count();
+    for (const WideBvh& tree : surfaces) count += tree.byte_count();
+    return count;
+}
+
+UpperTreeHolder::UpperTreeHolder(const PreparedScene& scene, const Kernels& kernels,
+                                 std::span<const PolygonTree> polygon_trees)
+    : scene_(scene),
+      kernels_(kernels),
+      polygon_trees_(polygon_trees),
+      rays_to_come_(kRaysPerVertex *
+                    int64_t(PatchBoxes(scene, kernels, BoxSource::vertices).count_vertices())),
+      is_improved_(rays_to_come_ == 0),
+      trees_(make_trees(BoxSource::bounds)) {}
+
+std::shared_ptr<const UpperTrees> UpperTreeHolder::current() const {
+    const std::lock_guard lock(mutex_);
+    return trees_;
+}
+
+void UpperTreeHolder::improve() {
+    if (rays_to_come_.load(std::memory_order_relaxed) > 0 || is_improved_.exchange(true)) return;
+    std::shared_ptr<UpperTrees> trees;
+    try {
+        trees = make_trees(BoxSource::vertices);
+    } catch (const std::bad_alloc&) {
+        return; // the trees that there are serve as well
+    }
+    const std::lock_guard lock(mutex_);
+    trees_.swap(trees);
+}
+
+void UpperTreeHolder::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+    const PatchBoxes boxes(scene_, kernels_, trees_->source);
+    for (const SurfaceChange& change : changes) {
+        WideBvh& tree = trees_->surfaces[change.surface];
+        add_places(change, tree, places);
+        refit_wide_bvh(tree, change.is_changed,
+                       [&](uint32_t patch) { return boxes.find(change.surface, patch); });
+        add_places(change, tree, places);
+    }
+    trees_->instances = make_instance_tree(trees_->surfaces);
+}
+
+std::shared_ptr<UpperTrees> UpperTreeHolder::make_trees(BoxSource source) const {
+    auto trees = std::make_shared<UpperTrees>();
+    trees->source = source;
+    const PatchBoxes boxes(scene_, kernels_, source);
+    for (uint32_t k = 0; k < scene_.surfaces.size(); ++k) {
+        const Surface& surface = scene_.surfaces[k];
+        trees->surfaces.push_back(surface.has_displacement
+                                      ? make_wide_bvh(build_surface_bvh(surface, boxes.find_all(k)))
+                                      : WideBvh{});
+    }
+    trees->instances = make_instance_tree(trees->surfaces);
+    return trees;
+}
+
+WideBvh UpperTreeHolder::make_instance_tree(std::span<const WideBvh> surfaces) const {
+    std::vector<Box> boxes;
+    for (size_t k = 0; k < scene_.surfaces.size(); ++k)
+        boxes.push_back(scene_.surfaces[k].has_displacement ? surfaces[k].bounds : polygon_trees_[k].bounds);
+    return make_wide_bvh(build_instance_bvh(scene_, boxes));
+}
+
+/// Boxes of what looks different, in all its instances.
+void UpperTreeHolder::add_places(const SurfaceChange& change, const WideBvh& tree,
+                                 std::vector<Box>& places) const {
+    for (const WideNode& node : tree.nodes)
+        for (int k = 0; k < node.child_count; ++k) {
+            if (!WideNode::is_leaf(node.child[k])) continue;
+            if (!change.looks_different[tree.primitive_at(WideNode::leaf_first(node.child[k]))]) continue;
+            for (const Instance& instance : scene_.instances)
+                if (instance.surface == change.surface)
+                    places.push_back(transform_box(instance.world_from_object, node.child_box(k)));
+        }
+}
+
+} // namespace relief::cpu

@@ -1,0 +1,59 @@
+// The two upper trees as rays of the CPU engine walk them. They are made twice: soon, from the bounds of
+// maps, and again, from the vertices, when so many rays have come that smaller boxes are worth it.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "bvh/wide_bvh.h"
+#include "cpu/patch_trees/patch_boxes.h"
+#include "engine/engine.h"
+
+namespace relief::cpu {
+
+struct UpperTrees {
+    BoxSource source = BoxSource::bounds; ///< of the boxes of displaced patches
+    std::vector<WideBvh> surfaces;        ///< one a surface, over its patches; empty without displacement
+    WideBvh instances;
+
+    size_t byte_count() const;
+};
+
+class UpperTreeHolder {
+  public:
+    /// All of what is given outlives this. `polygon_trees`: one a surface, empty with displacement.
+    UpperTreeHolder(const PreparedScene& scene, const Kernels& kernels,
+                    std::span<const PolygonTree> polygon_trees);
+
+    /// To be walked while the result lives. Thread safe.
+    std::shared_ptr<const UpperTrees> current() const;
+
+    /// After rays have been traced. Thread safe.
+    void count_rays(size_t rays) { rays_to_come_.fetch_sub(int64_t(rays), std::memory_order_relaxed); }
+
+    /// Makes the trees anew if that pays by now; once. Between batches, so that what is counted in them does
+    /// not depend on the order of threads. Thread safe.
+    void improve();
+
+    /// As Engine::follow: not while rays are traced. Boxes of what has changed, before and after, are added
+    /// to `places`, world space.
+    void follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+
+  private:
+    std::shared_ptr<UpperTrees> make_trees(BoxSource source) const;
+    WideBvh make_instance_tree(std::span<const WideBvh> surfaces) const;
+    void add_places(const SurfaceChange& change, const WideBvh& tree, std::vector<Box>& places) const;
+
+    const PreparedScene& scene_;
+    const Kernels& kernels_;
+    std::span<const PolygonTree> polygon_trees_;
+    std::atomic<int64_t> rays_to_come_; ///< until it pays; 0 or less: it does
+    std::atomic<bool> is_improved_;     ///< or there is nothing to be made smaller
+    mutable std::mutex mutex_;          ///< of the pointer
+    std::shared_ptr<UpperTrees> trees_;
+};
+
+} // namespace relief::cpu

@@ -1,0 +1,419 @@
+#include "cpu/path_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/timer.h"
+#include "cpu/shading/shading_kernels.h"
+#include "cpu/shading/textures.h"
+#include "formulas/camera.h"
+#include "formulas/light.h"
+#include "formulas/path.h"
+#include "formulas/sobol.h"
+#include "prepare/camera_frame.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kPacketEdge = 4;
+
+/// What a path brings from vertex to vertex; its ray and hit are in the wave.
+struct Path {
+    Vec3f throughput{1, 1, 1};
+    Vec3f previous{};   ///< the vertex that the ray left
+    float bsdf_pdf = 0; ///< with which the ray was drawn there
+    int x = 0, y = 0;
+    FilmSample result;
+};
+
+/// A material at one point, textures looked up.
+struct PointMaterial {
+    Vec3f base_color, emission;
+    float roughness, metallic, ior;
+};
+
+Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
+    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
+}
+
+struct ShadowRay {
+    uint32_t path;
+    Vec3f contribution;
+};
+
+/// The wavefront of one tile: all paths of one sample advance together, so that their rays go to the tracer
+/// in packets and their hits to the kernels of shading. Entry k of the wave's arrays belongs to the path
+/// active_[k].
+class TileTracer {
+  public:
+    TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report);
+    void trace_sample(int index);
+
+  private:
+    bool is_pinhole() const { return camera_.aperture_radius == 0; }
+    void start_paths();
+    void trace_paths();
+    void note_ray(const Path& path, const TraceRay& ray, float t_end);
+    void shade_paths();
+    void add_backgrounds();
+    void gather_lights();
+    void drop_misses();
+    void draw_random();
+    void draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
+    size_t shade_block(size_t first, size_t count, size_t next);
+    void draw_lights(size_t first, size_t count);
+    void reflect(size_t first, size_t count);
+    PointMaterial make_material(uint32_t instance, const Vec2f& uv) const;
+    void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
+    void add_emission(size_t k, const Vec3f& emission);
+    void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
+    bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
+    bool survives_roulette(Path& path, float u_roulette) const;
+    void trace_shadow_rays();
+    void finish_paths();
+
+    static constexpr size_t kBlock = 64; ///< vertices that are at work at once: as many as a cache holds
+
+    const Tracer& tracer_;
+    const LightSet& lights_;
+    const RenderSettings& settings_;
+    Film& film_;
+    TileCounters& counters_;
+    PictureFootprints* footprints_;
+    scalar::CameraFrame camera_;
+    uint32_t sample_index_ = 0;
+    int depth_ = 0;               ///< vertices behind the wave: 0 for camera rays
+    std::vector<Path> paths_;     ///< in packets of kPacketEdge squared pixels
+    std::vector<uint32_t> seeds_; ///< of the pixels of paths_
+
+    std::vector<uint32_t> active_; ///< paths still on their way, in order
+    std::vector<TraceRay> rays_;
+    std::vector<TraceHit> hits_;
+    std::vector<Vec2f> places_; ///< of camera rays in the picture, in pixels
+    std::vector<uint32_t> missed_;
+    std::vector<Vec3f> directions_; ///< of rays that missed
+    std::vector<EnvironmentLookup> backgrounds_;
+    std::vector<SurfacePoint> points_;
+    std::vector<uint32_t> wave_seeds_;
+    std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
+
+    std::array<VertexLanes, kBlock / 16> lanes_{};
+    std::array<Vec3f, kBlock> emissions_;
+    std::array<LightSet::Receiver, kBlock> receivers_;
+    std::array<LightSet::RandomNumbers, kBlock> light_random_;
+    std::array<LightSample, kBlock> lights_drawn_;
+
+    std::vector<TraceRay> shadow_rays_;
+    std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
+    std::vector<uint8_t> occluded_;
+    PointScratch scratch_;
+};
+
+TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report)
+    : tracer_(scene.tracer),
+      lights_(scene.lights),
+      settings_(scene.settings),
+      film_(film),
+      counters_(report.counters),
+      footprints_(report.footprints),
+      camera_(make_camera_frame(scene.tracer.scene())) {
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
+            for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
+                for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x) {
+                    Path path;
+                    path.x = x, path.y = y;
+                    paths_.push_back(path);
+                    seeds_.push_back(scalar::make_pixel_seed(settings_.seed, uint32_t(x), uint32_t(y)));
+                }
+}
+
+void TileTracer::trace_sample(int index) {
+    sample_index_ = uint32_t(index);
+    start_paths();
+    for (depth_ = 0; !active_.empty(); ++depth_) {
+        trace_paths();
+        shade_paths();
+        trace_shadow_rays();
+    }
+    finish_paths();
+}
+
+void TileTracer::start_paths() {
+    draw_pairs(seeds_, scalar::kPixelPair, places_);
+    active_.resize(paths_.size());
+    for (uint32_t i = 0; i < paths_.size(); ++i) {
+        Path& path = paths_[i];
+        places_[i] = Vec2f{float(path.x), float(path.y)} + places_[i];
+        path.throughput = {1, 1, 1};
+        path.result = {};
+        path.result.cost = 1;
+        active_[i] = i;
+    }
+    rays_.resize(paths_.size());
+    if (!is_pinhole())
+        for (size_t i = 0; i < paths_.size(); ++i) {
+            const scalar::CameraRay ray =
+                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
+            rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
+        }
+    counters_.camera_rays += paths_.size();
+}
+
+void TileTracer::trace_paths() {
+    hits_.resize(rays_.size());
+    if (depth_ == 0 && is_pinhole())
+        tracer_.camera_hits(camera_, places_, rays_, hits_);
+    else
+        tracer_.closest_hits(rays_, hits_, depth_);
+    if (!footprints_) return;
+    for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
+}
+
+void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
+    footprints_->at(path.x, path.y).add_ray(ray.origin, ray.direction, t_end);
+}
+
+void TileTracer::shade_paths() {
+    const Timer timer;
+    shadow_rays_.clear(), shadows_.clear();
+    add_backgrounds();
+    drop_misses();
+    points_.resize(hits_.size());
+    tracer_.make_surface_points(hits_, points_, scratch_);
+    draw_random();
+    size_t next = 0;
+    for (size_t first = 0; first < active_.size(); first += kBlock)
+        next = shade_block(first, std::min(kBlock, active_.size() - first), next);
+    active_.resize(next), rays_.resize(next);
+    counters_.bounce_rays += active_.size();
+    counters_.shade_s += timer.seconds();
+}
+
+/// Light of rays that leave the scene, and of lamps that are met on the way.
+void TileTracer::add_backgrounds() {
+    missed_.resize(active_.size()), directions_.resize(active_.size());
+    size_t count = 0;
+    for (uint32_t k = 0; k < active_.size(); ++k) {
+        missed_[count] = k, directions_[count] = rays_[k].direction;
+        count += hits_[k].is_hit() ? 0 : 1; // no branch: it could not be foreseen
+    }
+    missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
+    lights_.look_up_environment(directions_, backgrounds_);
+    if (depth_ > 0) return gather_lights();
+    for (size_t n = 0; n < count; ++n)
+        paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
+}
+
+/// What misses looks at places of the image far apart, hits at none; both meet lamps, which few scenes have.
+void TileTracer::gather_lights() {
+    const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
+        Path& path = paths_[active_[k]];
+        path.result.radiance +=
+            path.throughput *
+            lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, behind);
+    };
+    for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
+    if (!lights_.has_lamps()) return;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit()) gather(k, {});
+}
+
+void TileTracer::drop_misses() {
+    size_t kept = 0;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit())
+            active_[kept] = active_[k], rays_[kept] = rays_[k], hits_[kept] = hits_[k], ++kept;
+    active_.resize(kept), rays_.resize(kept), hits_.resize(kept);
+}
+
+void TileTracer::draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
+    drawn.resize(seeds.size());
+    tracer_.shading_kernels().draw_pairs(seeds.data(), seeds.size(), sample_index_, pair, drawn.data());
+}
+
+/// The roulette's pair only where it is needed.
+void TileTracer::draw_random() {
+    wave_seeds_.clear();
+    for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]);
+    const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.has_emitters();
+    for (const uint32_t kind :
+         {scalar::kPickPair, scalar::kLightPair, scalar::kBsdfPair, scalar::kRoulettePair}) {
+        if (kind == scalar::kRoulettePair && !needs_roulette)
+            random_[kind].assign(active_.size(), Vec2f{});
+        else
+            draw_pairs(wave_seeds_, scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
+    }
+}
+
+/// Vertices of the wave from `first` on. Paths that go on get the places from `next`; what lies before a
+/// block has been shaded, so that its place can be taken. Returns the next place.
+size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
+    draw_lights(first, count);
+    reflect(first, count);
+    std::array<uint32_t, kBlock> lit;
+    size_t lit_count = 0;
+    for (size_t n = 0; n < count; ++n) {
+        lit[lit_count] = uint32_t(n);
+        lit_count += lanes_[n / 16].is_lit >> n % 16 & 1;
+    }
+    lights_.weigh(lights_drawn_, {lit.data(), lit_count});
+    for (size_t n = 0; n < count; ++n) {
+        if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
+        if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
+    }
+    for (size_t n = 0; n < lit_count; ++n)
+        add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
+    for (size_t n = 0; n < count; ++n)
+        if (lanes_[n / 16].goes_on >> n % 16 & 1)
+            next += continue_path(first + n, lanes_[n / 16], n % 16, next) ? 1 : 0;
+    return next;
+}
+
+/// A light for each vertex of a block.
+void TileTracer::draw_lights(size_t first, size_t count) {
+    for (size_t n = 0; n < count; ++n) {
+        const size_t k = first + n;
+        receivers_[n] = {points_[k].position, hits_[k].bias};
+        light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
+                            random_[scalar::kLightPair][k]};
+    }
+    lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
+}
+
+/// Fills lanes_ for a block whose lights are drawn.
+void TileTracer::reflect(size_t first, size_t count) {
+    for (size_t n = 0; n < count; ++n) {
+        const PointMaterial m = make_material(hits_[first + n].instance, points_[first + n].uv);
+        VertexLanes& lanes = lanes_[n / 16];
+        const size_t lane = n % 16;
+        lanes.base_color[0][lane] = m.base_color.x, lanes.base_color[1][lane] = m.base_color.y;
+        lanes.base_color[2][lane] = m.base_color.z;
+        lanes.roughness[lane] = m.roughness, lanes.metallic[lane] = m.metallic, lanes.ior[lane] = m.ior;
+        emissions_[n] = m.emission;
+        const LightSample& light = lights_drawn_[n];
+        lanes.light_direction[0][lane] = light.direction.x;
+        lanes.light_direction[1][lane] = light.direction.y;
+        lanes.light_direction[2][lane] = light.direction.z;
+        lanes.light_pdf[lane] = light.pdf;
+    }
+    for (size_t n = count; n % 16 != 0; ++n)
+        lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
+    const bool goes_on = depth_ < settings_.bounces;
+    for (size_t n = 0; n < count; n += 16) {
+        const size_t k = first + n;
+        tracer_.shading_kernels().reflect({.count = std::min(size_t(16), count - n),
+                                           .points = &points_[k],
+                                           .rays = &rays_[k],
+                                           .pick_pairs = goes_on ? &random_[scalar::kPickPair][k] : nullptr,
+                                           .bsdf_pairs = goes_on ? &random_[scalar::kBsdfPair][k] : nullptr},
+                                          lanes_[n / 16]);
+    }
+}
+
+PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) const {
+    const PreparedScene& scene = tracer_.scene();
+    const Material& material = scene.materials[scene.instances[instance].material];
+    PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
+                    material.ior};
+    if (material.base_color_texture)
+        m.base_color = m.base_color * fetch_texture(*material.base_color_texture, uv);
+    if (material.roughness_texture) m.roughness *= fetch_texture(*material.roughness_texture, uv).x;
+    m.base_color = scalar::limit_color(m.base_color);
+    m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
+    return m;
+}
+
+void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
+    FilmSample& result = paths_[active_[k]].result;
+    result.alpha = 1;
+    result.depth = hits_[k].t;
+    result.shading_normal = get_lane(lanes.shading_normal, lane);
+    result.geometric_normal = get_lane(lanes.geometric_normal, lane);
+    result.position = points_[k].position;
+    result.albedo = get_lane(lanes.base_color, lane);
+    result.uv = points_[k].uv;
+    result.id = points_[k].instance + 1;
+}
+
+void TileTracer::add_emission(size_t k, const Vec3f& emission) {
+    Path& path = paths_[active_[k]];
+    const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, points_[k]) : 0.0f;
+    const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
+    path.result.radiance += path.throughput * emission * weight;
+}
+
+/// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
+/// there.
+void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
+    Path& path = paths_[active_[k]];
+    const bool is_last = depth_ == settings_.bounces;
+    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
+    const Vec3f contribution =
+        path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
+    if (contribution == Vec3f{} || !is_finite(contribution)) return;
+    TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].bias};
+    if (light.emitter) {
+        const Vec3f to = tracer_.offset_origin(*light.emitter, -light.direction) - ray.origin;
+        ray.t_max = length(to) * (1 - 1e-6f);
+        ray.direction = normalize(to);
+    }
+    shadow_rays_.push_back(ray);
+    shadows_.push_back({active_[k], contribution});
+    path.result.cost += 1;
+}
+
+bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
+    Path& path = paths_[active_[k]];
+    path.throughput = path.throughput * get_lane(lanes.bounce_weight, lane);
+    if (!is_finite(path.throughput) || !survives_roulette(path, random_[scalar::kRoulettePair][k].x))
+        return false;
+    path.previous = points_[k].position;
+    path.bsdf_pdf = lanes.bounce_pdf[lane];
+    path.result.cost += 1;
+    const uint32_t bias = hits_[k].bias;
+    active_[next] = active_[k];
+    rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
+                   bias};
+    return true;
+}
+
+bool TileTracer::survives_roulette(Path& path, float u_roulette) const {
+    const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
+    if (u_roulette >= probability) return false;
+    path.throughput *= 1 / probability;
+    return true;
+}
+
+void TileTracer::trace_shadow_rays() {
+    occluded_.assign(shadow_rays_.size(), 0);
+    tracer_.any_hits(shadow_rays_, occluded_, depth_);
+    if (footprints_)
+        for (size_t k = 0; k < shadows_.size(); ++k)
+            note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);
+    for (size_t k = 0; k < shadows_.size(); ++k)
+        if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
+    counters_.shadow_rays += shadow_rays_.size();
+}
+
+void TileTracer::finish_paths() {
+    const Timer timer;
+    for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
+    counters_.film_s += timer.seconds();
+}
+
+} // namespace
+
+void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
+                TileReport& report) {
+    TileTracer tracer(scene, film, tile, report);
+    for (int k = samples.first; k < samples.first + samples.count; ++k) tracer.trace_sample(k);
+}
+
+} // namespace relief::cpu

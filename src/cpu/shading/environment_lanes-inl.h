@@ -1,0 +1,236 @@
+// The environment as a light, sixteen directions at a time: the same operations in the same order as
+// EnvironmentLight for one, hence the same bits.
+#if defined(RELIEF_ENVIRONMENT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_ENVIRONMENT_LANES_INL_H
+#undef RELIEF_ENVIRONMENT_LANES_INL_H
+#else
+#define RELIEF_ENVIRONMENT_LANES_INL_H
+#endif
+
+#include <cstring>
+
+#include "cpu/shading/environment_light.h"
+#include "cpu/traversal/lane_arrays-inl.h"
+#include "formulas/environment_data.h"
+#include "formulas/wide-inl.h"
+#include "surface/map/texel_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+namespace wide {
+
+using scalar::EnvironmentData;
+#define RELIEF_LANES
+#include "formulas/environment.h"
+#undef RELIEF_LANES
+
+/// Interval of a cumulative distribution, and a place within it.
+struct Interval {
+    Uint index;
+    Float position; ///< [0, 1)
+    Float width;    ///< its probability
+};
+
+/// Number of the guide of a random number; its distribution's guides begin at `first`.
+HWY_INLINE Uint locate_guide(const Uint& first, const Float& u) {
+    const float count = float(cpu::EnvironmentTables::kGuides);
+    return first + Uint(min(u * Float(count), Float(count - 1)));
+}
+
+/// The distribution begins at cumulative[first].
+HWY_INLINE Interval find_interval(const float* cumulative, const Uint& first, const Uint& guide,
+                                  const Float& u) {
+    Uint index = first + (guide & Uint(0xffffu)), length = (guide >> 16) - (guide & Uint(0xffffu));
+    while (!length.is_zero()) {
+        const Uint half = (length + Uint(1u)) >> 1;
+        index = select(gather(cumulative, index + half) <= u, index + half, index);
+        length -= half;
+    }
+    const Float low = gather(cumulative, index), high = gather(cumulative, index + Uint(1u));
+    return {index - first, locate_in_interval(u, low, high), high - low};
+}
+
+/// Density per solid angle of directions in cells.
+HWY_INLINE Float find_cell_density(const cpu::EnvironmentTables& tables, const Uint& column, const Uint& row,
+                                   const Vec3& direction) {
+    const Uint cell = row * Uint(tables.data.cells_x + 1) + column;
+    const auto find_share = [](const float* cumulative, const Uint& index) HWY_ATTR {
+        return gather(cumulative, index + Uint(1u)) - gather(cumulative, index);
+    };
+    return environment_cell_density(
+        tables.data, find_share(tables.columns, cell) * find_share(tables.rows, row), direction);
+}
+
+/// The texels about sixteen places of an image.
+struct ImagePlaces {
+    alignas(64) uint32_t left[16], right[16], top[16], bottom[16]; ///< columns; rows times the width
+    alignas(64) float fx[16], fy[16];
+
+    HWY_INLINE void locate(const Texture& texture, const Vec2& position) {
+        const Float zero(0.0f), one(1.0f);
+        const Float width(float(texture.width)), height(float(texture.height));
+        const Vec2 at = locate_latlong(position, {width, height});
+        const Float x = floor(at.x), y = floor(at.y);
+        (at.x - x).store(fx), (at.y - y).store(fy);
+        const auto store = [](const Float& value, uint32_t count, uint32_t factor, uint32_t* target)
+                               HWY_ATTR {
+                                   // What is no number lies nowhere: any texel.
+                                   (min(Uint(value), Uint(count - 1)) * Uint(factor)).store(target);
+                               };
+        store(select(x < zero, x + width, x), texture.width, 1, left);
+        store(select(x + one < width, x + one, zero), texture.width, 1, right);
+        store(max(y, zero), texture.height, texture.width, top);
+        store(min(y + one, height - one), texture.height, texture.width, bottom);
+    }
+
+    HWY_INLINE void prefetch(const Texture& texture, LaneMask which) const {
+        for (; which != 0; which &= which - 1) {
+            const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
+            // Both texels of a row mostly share a line of the cache.
+            prefetch_texel(texture, size_t(top[lane]) + right[lane]);
+            prefetch_texel(texture, size_t(bottom[lane]) + right[lane]);
+        }
+    }
+
+    /// Bilinear colours; of the other lanes 0.
+    HWY_INLINE Vec3 fetch(const Texture& texture, LaneMask which) const {
+        LaneQuads colors;
+        if (which != 0xffffu) std::memset(&colors, 0, sizeof colors);
+        for (; which != 0; which &= which - 1) {
+            const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
+            const auto load = [&](uint32_t row, uint32_t column)
+                                  HWY_ATTR { return load_texel(texture, size_t(row) + column); };
+            texel::filter_texels(load(top[lane], left[lane]), load(top[lane], right[lane]),
+                                 load(bottom[lane], left[lane]), load(bottom[lane], right[lane]),
+                                 Lanes4(fx[lane]), Lanes4(fy[lane]))
+                .store_unaligned(colors.lane[lane]);
+        }
+        Float r, g, b, alpha;
+        colors.transpose(r, g, b, alpha);
+        return texture.channel_count < 3 ? Vec3{r, r, r} : Vec3{r, g, b};
+    }
+};
+
+/// Rounds of sixteen whose texels are asked for before the first is read.
+inline constexpr size_t kRounds = 4;
+
+/// EnvironmentLight::look_up of each direction.
+inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3f* directions, size_t count,
+                                cpu::EnvironmentLookup* found) {
+    static_assert(sizeof(cpu::EnvironmentLookup) == 16);
+    const scalar::EnvironmentData& data = tables.data;
+    const Float cells_x(float(data.cells_x)), cells_y(float(data.cells_y));
+    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
+        ImagePlaces places[kRounds];
+        alignas(64) float densities[kRounds][16];
+        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
+        for (size_t k = 0; k < rounds; ++k) {
+            const size_t first = begin + 16 * k;
+            const Vec3 direction = load_vectors(directions + first, count - first);
+            const Vec2 position = locate_in_environment(data, direction);
+            places[k].locate(*tables.texture, position);
+            places[k].prefetch(*tables.texture, first_lanes(count - first));
+            const auto find_cell = [](const Float& at, const Float& cells, uint32_t cell_count) HWY_ATTR {
+                return min(Uint(locate_environment_cell(at, cells)), Uint(cell_count - 1));
+            };
+            find_cell_density(tables, find_cell(position.x, cells_x, data.cells_x),
+                              find_cell(position.y, cells_y, data.cells_y), direction)
+                .store(densities[k]);
+        }
+        for (size_t k = 0; k < rounds; ++k) {
+            const size_t first = begin + 16 * k;
+            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
+            LaneQuads quads;
+            quads.set(color.x * Float(data.scale.x), color.y * Float(data.scale.y),
+                      color.z * Float(data.scale.z), Float::load(densities[k]));
+            std::memcpy(found + first, quads.lane, 16 * HWY_MIN(size_t(16), count - first));
+        }
+    }
+}
+
+/// EnvironmentLight::radiance of each place.
+inline void fetch_environment(const cpu::EnvironmentTables& tables, const Vec2f* positions, size_t count,
+                              Vec3f* radiances) {
+    const scalar::EnvironmentData& data = tables.data;
+    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
+        ImagePlaces places[kRounds];
+        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
+        for (size_t k = 0; k < rounds; ++k) {
+            const size_t first = begin + 16 * k;
+            places[k].locate(*tables.texture, load_pairs(positions + first, count - first));
+            places[k].prefetch(*tables.texture, first_lanes(count - first));
+        }
+        for (size_t k = 0; k < rounds; ++k) {
+            const size_t first = begin + 16 * k;
+            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
+            store_vectors(
+                {color.x * Float(data.scale.x), color.y * Float(data.scale.y), color.z * Float(data.scale.z)},
+                count - first, radiances + first);
+        }
+    }
+}
+
+template <class T> HWY_INLINE void prefetch(const T* base, const Uint& index) {
+    alignas(64) uint32_t stored[16];
+    index.store(stored);
+    for (const uint32_t k : stored) __builtin_prefetch(base + k);
+}
+
+/// Sixteen directions on their way.
+struct DrawLanes {
+    Vec2 u;
+    Interval row;
+    Uint guide, first; ///< of the cells of the row
+
+    HWY_INLINE void find_row(const cpu::EnvironmentTables& tables, const Vec2f* pairs, size_t count) {
+        const uint32_t guides = cpu::EnvironmentTables::kGuides;
+        u = load_pairs(pairs, count);
+        const Uint guide_of_rows = locate_guide(Uint(tables.data.cells_y * guides), u.y);
+        row = find_interval(tables.rows, Uint(0u), gather(tables.guides, guide_of_rows), u.y);
+        first = row.index * Uint(tables.data.cells_x + 1);
+        guide = locate_guide(row.index * Uint(guides), u.x);
+        prefetch(tables.guides, guide);
+    }
+    HWY_INLINE void find_guide(const cpu::EnvironmentTables& tables) {
+        guide = gather(tables.guides, guide);
+        prefetch(tables.columns, first + (guide & Uint(0xffffu)));
+    }
+    HWY_INLINE void finish(const cpu::EnvironmentTables& tables, size_t count,
+                           cpu::DirectionSample* drawn) const {
+        const EnvironmentData& data = tables.data;
+        const Interval column = find_interval(tables.columns, first, guide, u.x);
+        const Vec2 position{(Float(column.index) + column.position) / Float(float(data.cells_x)),
+                            (Float(row.index) + row.position) / Float(float(data.cells_y))};
+        const Vec3 direction = turn_out_of_environment(data, latlong_to_direction(position));
+        LaneQuads quads;
+        quads.set(direction.x, direction.y, direction.z,
+                  environment_cell_density(data, column.width * row.width, direction));
+        alignas(64) float x[16], y[16];
+        position.x.store(x), position.y.store(y);
+        for (size_t lane = 0; lane < HWY_MIN(size_t(16), count); ++lane) {
+            std::memcpy(&drawn[lane], quads.lane[lane], 16);
+            drawn[lane].position = {x[lane], y[lane]};
+        }
+    }
+};
+
+/// EnvironmentLight::draw_direction of each pair. Each step has loaded what the next one reads.
+inline void draw_directions(const cpu::EnvironmentTables& tables, const Vec2f* u, size_t count,
+                            cpu::DirectionSample* drawn) {
+    static_assert(offsetof(cpu::DirectionSample, pdf) == 12);
+    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
+        DrawLanes lanes[kRounds];
+        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
+        for (size_t k = 0; k < rounds; ++k)
+            lanes[k].find_row(tables, u + begin + 16 * k, count - begin - 16 * k);
+        for (size_t k = 0; k < rounds; ++k) lanes[k].find_guide(tables);
+        for (size_t k = 0; k < rounds; ++k)
+            lanes[k].finish(tables, count - begin - 16 * k, drawn + begin + 16 * k);
+    }
+}
+
+} // namespace wide
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

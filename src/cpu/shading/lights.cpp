@@ -1,0 +1,186 @@
+#include "cpu/shading/lights.h"
+#include "formulas/constants.h"
+#include "formulas/light.h"
+#include "formulas/light_source.h"
+#include "formulas/warp.h"
+
+#include <algorithm>
+#include <array>
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr size_t kBlock = 64; ///< points that lights are drawn for together
+
+} // namespace
+
+LightSet::LightSet(const Tracer& tracer) : tracer_(tracer) {
+    const PreparedScene& scene = tracer.scene();
+    if (scene.environment) environment_.emplace(*scene.environment);
+    find_sources();
+}
+
+void LightSet::follow_surfaces() {
+    if (has_emitters()) find_sources();
+}
+
+void LightSet::find_sources() {
+    emitters_ = make_emitter_table(tracer_.scene());
+    sources_ =
+        make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
+    has_lamps_ = std::any_of(sources_.begin(), sources_.end(), [](const scalar::LightSourceData& source) {
+        return source.kind == scalar::kSourcePoint && source.radius > 0;
+    });
+}
+
+float LightSet::total_irradiance(const Vec3f& position) const {
+    float total = 0;
+    for (const scalar::LightSourceData& source : sources_)
+        total += scalar::estimate_irradiance(source, position);
+    return total;
+}
+
+LightSet::Pick LightSet::pick_source(const Vec3f& position, float u_light) const {
+    const float total = total_irradiance(position);
+    if (!(total > 0)) return {nullptr, 0};
+    const float target = u_light * total;
+    size_t picked = 0;
+    float estimate = scalar::estimate_irradiance(sources_[0], position);
+    for (float running = estimate; running <= target && picked + 1 < sources_.size(); running += estimate)
+        estimate = scalar::estimate_irradiance(sources_[++picked], position);
+    return {&sources_[picked], estimate / total};
+}
+
+/// Not from the environment.
+void LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+                         LightSample& drawn) const {
+    if (pick.source->kind == scalar::kSourceSun)
+        static_cast<scalar::LightDraw&>(drawn) = scalar::draw_sun(*pick.source, random.u);
+    else if (pick.source->kind == scalar::kSourcePoint)
+        static_cast<scalar::LightDraw&>(drawn) =
+            scalar::draw_point_light(*pick.source, at.position, random.u);
+    else
+        draw_emitter(at, random.u_emitter, random.u, drawn);
+    drawn.pdf *= pick.probability;
+    drawn.weight *= 1 / pick.probability;
+}
+
+void LightSet::draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                    std::span<LightSample> drawn) const {
+    for (size_t first = 0; first < at.size(); first += kBlock) {
+        const size_t count = std::min(kBlock, at.size() - first);
+        draw_block(at.subspan(first, count), random.subspan(first, count), drawn.subspan(first, count));
+    }
+}
+
+void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                          std::span<LightSample> drawn) const {
+    std::array<uint32_t, kBlock> receivers; // of light from the environment
+    std::array<float, kBlock> probabilities;
+    std::array<Vec2f, kBlock> u;
+    std::array<DirectionSample, kBlock> directions;
+    size_t count = 0;
+    for (size_t k = 0; k < at.size(); ++k) {
+        const Pick pick = pick_source(at[k].position, random[k].u_light);
+        drawn[k].lacks_radiance = false;
+        drawn[k].emitter.reset();
+        if (!pick.source)
+            drawn[k].pdf = 0, drawn[k].direction = {};
+        else if (pick.source->kind == scalar::kSourceEnvironment)
+            receivers[count] = uint32_t(k), probabilities[count] = pick.probability, u[count++] = random[k].u;
+        else
+            draw_from(pick, at[k], random[k], drawn[k]);
+    }
+    if (count == 0) return;
+    environment_->draw_directions(tracer_.shading_kernels(), {u.data(), count}, directions);
+    for (size_t n = 0; n < count; ++n) {
+        const DirectionSample& found = directions[n];
+        const float density = found.pdf * probabilities[n], weight = density > 0 ? 1 / density : 0.0f;
+        LightSample& sample = drawn[receivers[n]];
+        sample.direction = found.direction, sample.distance = scalar::make_infinity();
+        sample.weight = {weight, weight, weight}, sample.pdf = density;
+        sample.place = found.position, sample.lacks_radiance = true;
+    }
+}
+
+void LightSet::weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const {
+    std::array<uint32_t, kBlock> samples;
+    std::array<Vec2f, kBlock> places;
+    std::array<Vec3f, kBlock> radiances;
+    for (size_t first = 0; first < which.size(); first += kBlock) {
+        size_t count = 0;
+        for (const uint32_t k : which.subspan(first, std::min(kBlock, which.size() - first)))
+            if (drawn[k].lacks_radiance) samples[count] = k, places[count++] = drawn[k].place;
+        if (count == 0) continue;
+        environment_->fetch_radiance(tracer_.shading_kernels(), {places.data(), count}, radiances);
+        for (size_t n = 0; n < count; ++n) {
+            LightSample& sample = drawn[samples[n]];
+            sample.weight = sample.weight * radiances[n];
+            sample.lacks_radiance = false;
+        }
+    }
+}
+
+void LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const {
+    const auto above =
+        std::upper_bound(emitters_.cumulative.begin() + 1, emitters_.cumulative.end() - 1, double(u_emitter));
+    const uint32_t emitter = uint32_t(above - emitters_.cumulative.begin()) - 1;
+    const auto after =
+        std::upper_bound(emitters_.ranges.begin(), emitters_.ranges.end(), emitter,
+                         [](uint32_t e, const EmitterTable::Range& range) { return e < range.first; });
+    const EmitterTable::Range& range = *(after - 1);
+    const PreparedScene& scene = tracer_.scene();
+    const Instance& instance = scene.instances[range.instance];
+    const uint32_t quad = emitter - range.first;
+    const bool is_triangle = scene.surfaces[instance.surface].quads[quad].is_triangle();
+    const Vec2f uv = is_triangle ? scalar::square_to_triangle(u) : u;
+    const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.bias);
+    const float pdf = emitter_density(emitter, at.position, point);
+    static_cast<scalar::LightDraw&>(drawn) =
+        scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf);
+    drawn.emitter = point;
+}
+
+float LightSet::emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const {
+    return scalar::emitter_density(emitters_.probability(emitter), point.area_per_uv, point.geometric_normal,
+                                   point.position - origin);
+}
+
+float LightSet::emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const {
+    const uint32_t first = emitters_.first_of_instance[point.instance];
+    if (first == kNoIndex || sources_.empty() || sources_.back().kind != scalar::kSourceEmitters) return 0;
+    const float probability = scalar::estimate_irradiance(sources_.back(), origin) / total_irradiance(origin);
+    return probability * emitter_density(first + point.patch, origin, point);
+}
+
+void LightSet::look_up_environment(std::span<const Vec3f> directions,
+                                   std::span<EnvironmentLookup> found) const {
+    if (environment_)
+        environment_->look_up(tracer_.shading_kernels(), directions, found);
+    else
+        std::fill_n(found.begin(), directions.size(), EnvironmentLookup{});
+}
+
+Vec3f LightSet::gather(const BounceRay& ray, const EnvironmentLookup& behind) const {
+    Vec3f sum{};
+    const float total = total_irradiance(ray.origin);
+    for (const scalar::LightSourceData& source : sources_) {
+        scalar::LightSeen seen = scalar::meet_light(source, ray.origin, ray.direction, ray.distance);
+        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
+            seen = {behind.radiance, behind.pdf};
+        if (seen.radiance == Vec3f{}) continue;
+        const float share = total > 0 ? scalar::estimate_irradiance(source, ray.origin) / total : 0.0f;
+        sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
+    }
+    return sum;
+}
+
+size_t LightSet::byte_count() const {
+    return (environment_ ? environment_->byte_count() : 0) +
+           sources_.size() * sizeof(scalar::LightSourceData) + emitters_.cumulative.size() * sizeof(double) +
+           emitters_.ranges.size() * sizeof(EmitterTable::Range) +
+           emitters_.first_of_instance.size() * sizeof(uint32_t);
+}
+
+} // namespace relief::cpu

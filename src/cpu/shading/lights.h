@@ -1,0 +1,103 @@
+// All that gives light, for next-event estimation and for the rays that find a light by themselves.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cpu/shading/environment_light.h"
+#include "cpu/tracer.h"
+#include "formulas/light_source.h"
+#include "prepare/light_sources.h"
+
+namespace relief::cpu {
+
+/// A direction towards a light; `pdf` and `weight` hold the probability of having picked the light.
+struct LightSample : scalar::LightDraw {
+    Vec2f place{}; ///< in the environment's image, where the light is from there
+    /// The radiance of `place` is not in `weight` yet: LightSet::weigh().
+    bool lacks_radiance = false;
+    /// Set when the light is a surface that the shadow ray must stop short of.
+    std::optional<SurfacePoint> emitter;
+};
+
+/// Suns and point lights are seen by bounce rays but not by camera rays, and they block nothing.
+class LightSet {
+  public:
+    /// The tracer must outlive the set.
+    explicit LightSet(const Tracer& tracer);
+
+    /// Surfaces that glow may have changed their shape. Not while lights are drawn.
+    void follow_surfaces();
+
+    /// What is lit.
+    struct Receiver {
+        Vec3f position;
+        uint32_t bias; ///< emitters are sampled on surface M_bias
+    };
+
+    /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
+    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 where nothing could be drawn: all is dark,
+    /// or a light is at the point itself or seen edge on. It may lie behind the surface.
+    struct RandomNumbers {
+        float u_light, u_emitter;
+        Vec2f u;
+    };
+    /// For many points; drawn[k] belongs to at[k].
+    void draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+              std::span<LightSample> drawn) const;
+    /// Completes the weights of drawn[which[...]], before they are used: those from the environment lack its
+    /// radiance. Many directions lead into the surface, and the image, too large for a cache, need not be
+    /// read for them.
+    void weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
+
+    /// False: `u_emitter` is never looked at.
+    bool has_emitters() const { return emitters_.size() > 0; }
+
+    /// The environment along many directions; black without one.
+    void look_up_environment(std::span<const Vec3f> directions, std::span<EnvironmentLookup> found) const;
+
+    /// Whether rays that hit a surface may have met a light on their way.
+    bool has_lamps() const { return has_lamps_; }
+
+    /// A bounce ray, and how far it came.
+    struct BounceRay {
+        Vec3f origin, direction;
+        float distance; ///< infinity: out of the scene
+        float bsdf_pdf; ///< the ray's own density
+    };
+    /// Light of the environment, suns and point lights that a bounce ray meets, each weighted against its
+    /// chance of being drawn from the origin. `behind`: the environment along the ray, where the distance is
+    /// infinite.
+    Vec3f gather(const BounceRay& ray, const EnvironmentLookup& behind) const;
+
+    /// Density with which draw() from `origin` would have found a point of an emissive surface.
+    float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
+
+    size_t byte_count() const;
+
+  private:
+    void find_sources();
+    float total_irradiance(const Vec3f& position) const;
+    /// One light, and the probability of having picked it.
+    struct Pick {
+        const scalar::LightSourceData* source; ///< null: all is dark
+        float probability;
+    };
+    Pick pick_source(const Vec3f& position, float u_light) const;
+    void draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+                   LightSample& drawn) const;
+    void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
+                    std::span<LightSample> drawn) const;
+    void draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const;
+    float emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const;
+
+    const Tracer& tracer_;
+    std::optional<EnvironmentLight> environment_;
+    EmitterTable emitters_;
+    std::vector<scalar::LightSourceData> sources_;
+    bool has_lamps_ = false;
+};
+
+} // namespace relief::cpu

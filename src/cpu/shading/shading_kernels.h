@@ -1,0 +1,72 @@
+// The door to the SIMD kernels of shading: one table of functions for each instruction set that they were
+// compiled for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cpu/shading/environment_light.h"
+#include "cpu/tracer.h"
+#include "formulas/camera.h"
+
+namespace relief::cpu {
+
+/// Hits on patches of one displaced surface whose first corners share a tile that has a map, or on polygons
+/// of one that is not displaced.
+struct PointBatch {
+    const PreparedScene& scene;
+    PatchSamplesCache& patches;
+    const TraceHit* hits;
+    const uint32_t* order; ///< numbers of the hits that are meant, and of their points
+    size_t count;
+    SurfacePoint* points;
+};
+
+/// Hits that paths of a wave have come to.
+struct VertexBatch {
+    size_t count; ///< 1 to 16
+    const SurfacePoint* points;
+    const TraceRay* rays;    ///< that came there
+    const Vec2f* pick_pairs; ///< random numbers, y picks the lobe; null: no path goes on
+    const Vec2f* bsdf_pairs;
+};
+
+/// Sixteen vertices, a lane each. Masks have a bit a lane.
+struct VertexLanes {
+    // Given. Lanes beyond the batch may hold anything; with metallic 0 and ior 1 they cost nothing.
+    alignas(64) float base_color[3][16], roughness[16], metallic[16], ior[16];
+    alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn, any direction
+    // Found. Normals are on the viewer's side; origins are moved off the surface.
+    alignas(64) float geometric_normal[3][16], shading_normal[3][16];
+    alignas(64) float light_reflected[3][16]; ///< BSDF times cosine
+    alignas(64) float light_bsdf_pdf[16];     ///< with which the BSDF would have drawn that direction
+    alignas(64) float shadow_origin[3][16];
+    alignas(64) float bounce_direction[3][16], bounce_origin[3][16];
+    alignas(64) float bounce_weight[3][16], bounce_pdf[16];
+    uint32_t is_lit;  ///< some of the light could arrive
+    uint32_t goes_on; ///< a ray leaves the surface
+};
+
+struct ShadingKernels {
+    const char* name;                               ///< as that of the Kernels for the same instruction set
+    void (*make_points)(const PointBatch&);         ///< as Tracer::make_surface_point, on a displaced surface
+    void (*make_polygon_points)(const PointBatch&); ///< the same on one that is not
+    /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
+    void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
+                       Vec2f* drawn);
+    /// What the vertices of a batch reflect (formulas/bsdf.h).
+    void (*reflect)(const VertexBatch&, VertexLanes&);
+    /// As the functions of EnvironmentLight for one direction, place or pair.
+    void (*look_up_environment)(const EnvironmentTables&, const Vec3f* directions, size_t count,
+                                EnvironmentLookup* found);
+    void (*fetch_environment)(const EnvironmentTables&, const Vec2f* positions, size_t count,
+                              Vec3f* radiances);
+    void (*draw_directions)(const EnvironmentTables&, const Vec2f* u, size_t count, DirectionSample* drawn);
+    /// rays[k] as scalar::make_pinhole_ray aims it through positions[k], in pixels.
+    void (*aim_rays)(const scalar::CameraFrame& camera, const Vec2f* positions, size_t count, TraceRay* rays);
+};
+
+/// `name`: of an instruction set that this machine has (Kernels::name).
+const ShadingKernels& find_shading_kernels(const char* name);
+
+} // namespace relief::cpu

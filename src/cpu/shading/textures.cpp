@@ -1,0 +1,60 @@
+#include "cpu/shading/textures.h"
+
+#include <cmath>
+
+#include "formulas/environment.h"
+#include "formulas/texture.h"
+#include "surface/map/texels.h"
+
+namespace relief::cpu {
+
+namespace {
+
+Vec3f make_color(const Texture& texture, const std::array<float, 4>& channels) {
+    return scalar::make_texture_color(texture.channel_count, {channels[0], channels[1], channels[2]});
+}
+
+Vec2f size_of(const Texture& texture) { return {float(texture.width), float(texture.height)}; }
+
+/// The four texels about a place in texels from the centre of texel (0, 0); repeated in x.
+struct Footprint {
+    uint32_t x0, x1, y0, y1;
+    float fx, fy;
+};
+
+Footprint find_footprint(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
+    const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
+    const auto column = [&](int64_t i) { return uint32_t(wrap_index(i, texture.width, WrapMode::repeat)); };
+    const auto row = [&](int64_t i) { return uint32_t(wrap_index(i, texture.height, wrap_y)); };
+    const int64_t x = int64_t(whole_x), y = int64_t(whole_y);
+    return {column(x), column(x + 1), row(y), row(y + 1), at.x - whole_x, at.y - whole_y};
+}
+
+Vec3f fetch_bilinear(const Texture& texture, const Footprint& at) {
+    return make_color(texture, filter_channels(read_channels(texture, at.x0, at.y0),
+                                               read_channels(texture, at.x1, at.y0),
+                                               read_channels(texture, at.x0, at.y1),
+                                               read_channels(texture, at.x1, at.y1), at.fx, at.fy));
+}
+
+Footprint find_latlong(const Texture& texture, const Vec2f& position) {
+    return find_footprint(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
+}
+
+} // namespace
+
+Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
+    return make_color(texture, read_channels(texture, x, y));
+}
+
+Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
+    return fetch_bilinear(
+        texture, find_footprint(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat));
+}
+
+Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
+    return fetch_bilinear(texture, find_latlong(texture, position));
+}
+
+} // namespace relief::cpu

@@ -1,0 +1,257 @@
+#include "cpu/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "cpu/patch_trees/upper_trees.h"
+#include "cpu/shading/surface_points.h"
+#include "cpu/traversal/kernels.h"
+#include "cpu/traversal/scene_walk.h"
+#include "formulas/camera.h"
+#include "formulas/surface_point.h"
+#include "relief/error.h"
+
+namespace relief::cpu {
+
+namespace {
+
+/// One batch of a kind in so many measures how much of its time goes into patches; the clock would cost too
+/// much in all of them.
+constexpr uint64_t kTimedBatchInterval = 32;
+
+} // namespace
+
+struct Tracer::Implementation {
+    const Kernels* kernels = nullptr;
+    const ShadingKernels* shading = nullptr;
+    std::unique_ptr<const SceneWalk> walk; ///< of a traversal chosen by name; null: the wide trees
+    std::vector<PolygonTree> polygon_trees;
+    std::unique_ptr<BottomCache> cache;
+    SceneView view;                         ///< but for the upper trees
+    std::unique_ptr<UpperTreeHolder> trees; ///< null: those of a walk asked for by name
+
+    void make_trees(const PreparedScene& scene) {
+        if (walk) return;
+        for (const Surface& surface : scene.surfaces)
+            polygon_trees.push_back(surface.has_displacement ? PolygonTree{} : build_polygon_tree(surface));
+        trees = std::make_unique<UpperTreeHolder>(scene, *kernels, polygon_trees);
+    }
+
+    /// trace(kernels' view, context), by the kernels' own trees.
+    template <class Trace> void trace_wide(size_t cast, size_t rays, const Trace& trace) const {
+        const std::shared_ptr<const UpperTrees> current = trees->current();
+        SceneView full = view;
+        full.surface_trees = current->surfaces.data();
+        full.instance_tree = &current->instances;
+        trace_batch(cast, rays, [&](TraceContext& context) { trace(full, context); });
+        trees->count_rays(rays);
+    }
+
+    /// `cast` is the place in TraceContext::casts.
+    template <class Trace> void trace_batch(size_t cast, size_t rays, const Trace& trace) const {
+        TraceContext& context = cache->acquire();
+        if (context.casts.size() <= cast) context.casts.resize(cast + 1);
+        context.is_timed = context.casts[cast].batches % kTimedBatchInterval == 0;
+        const Timer timer;
+        const TraceCounters before = context.counters;
+        try {
+            trace(context);
+        } catch (...) {
+            cache->release(context);
+            throw;
+        }
+        const double built = context.counters.bottom_build_s - before.bottom_build_s;
+        const double seconds = timer.seconds() - built;
+        context.casts[cast].add({1, rays, context.counters.pairs_emitted - before.pairs_emitted, built,
+                                 seconds, context.is_timed ? seconds : 0,
+                                 context.counters.sampled_bottom_s - before.sampled_bottom_s});
+        cache->release(context);
+    }
+
+    void add_casts(Statistics& statistics) const {
+        const std::vector<CastCounters> casts = cache->sum_casts();
+        for (size_t k = 0; k < casts.size(); ++k) {
+            const CastCounters& c = casts[k];
+            if (c.rays == 0) continue;
+            const double share = c.sampled_trace_s > 0 ? c.sampled_bottom_s / c.sampled_trace_s : 0;
+            const CastStatistics cast{
+                int(k / 2), k % 2 == 1,       c.rays,           c.pairs, c.trace_s * (1 - share),
+                0,          c.bottom_build_s, c.trace_s * share};
+            statistics.casts.push_back(cast);
+            statistics.top_traversal_s += cast.top_traversal_s;
+            statistics.bottom_build_s += cast.bottom_build_s;
+            statistics.bottom_traversal_s += cast.bottom_traversal_s;
+        }
+    }
+};
+
+Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
+    : Tracer(std::move(scene), settings, nullptr) {}
+
+Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings,
+               std::unique_ptr<const SceneWalk> walk)
+    : scene_(std::move(scene)), implementation_(std::make_unique<Implementation>()) {
+    Implementation& self = *implementation_;
+    self.kernels = find_kernels(settings.isa);
+    if (!self.kernels)
+        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
+                                                "", "`relief devices` lists those that work"});
+    self.shading = &find_shading_kernels(self.kernels->name);
+    self.walk = std::move(walk);
+    self.make_trees(*scene_);
+    self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
+    const float pixel =
+        float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
+    self.view.instances = scene_->instances.data();
+    self.view.surfaces = scene_->surfaces.data();
+    self.view.instance_count = uint32_t(scene_->instances.size());
+    self.view.polygon_trees = self.polygon_trees.data();
+    self.view.cache = self.cache.get();
+    self.view.leaf = settings.leaf, self.view.lod = settings.lod;
+    self.view.pixel_angle = settings.pixel_error * pixel;
+}
+
+Tracer::~Tracer() = default;
+
+void Tracer::improve_trees() const {
+    if (implementation_->trees) implementation_->trees->improve();
+}
+
+Tracer::StopScope::StopScope(const Tracer& tracer, std::function<bool()> is_asked_for) : tracer_(tracer) {
+    tracer_.implementation_->cache->set_stop(std::move(is_asked_for));
+}
+Tracer::StopScope::~StopScope() { tracer_.implementation_->cache->set_stop({}); }
+
+Box Tracer::displaced_bounds() const {
+    const Implementation& self = *implementation_;
+    Box bounds;
+    if (!self.trees) return bounds;
+    const std::shared_ptr<const UpperTrees> trees = self.trees->current();
+    for (const Instance& instance : scene_->instances)
+        if (scene_->surfaces[instance.surface].has_displacement)
+            bounds.extend(
+                transform_box(instance.world_from_object, trees->surfaces[instance.surface].bounds));
+    return bounds;
+}
+
+bool Tracer::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+    Implementation& self = *implementation_;
+    if (!self.trees) return false;
+    self.trees->follow(changes, places);
+    self.cache->remove([&](const TreeKey& key) {
+        return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
+            return key.surface == change.surface && change.is_changed[key.patch];
+        });
+    });
+    return true;
+}
+
+void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
+    const Implementation& self = *implementation_;
+    const size_t cast = 2 * size_t(depth);
+    if (self.trees)
+        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->closest_hits(view, context, rays.data(), hits.data(), rays.size());
+        });
+    else
+        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
+            self.walk->closest_hits(self.view, self.kernels->primitive, context, rays.data(), hits.data(),
+                                    rays.size());
+        });
+}
+
+void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
+                         std::span<TraceRay> rays, std::span<TraceHit> hits) const {
+    DCHECK(camera.aperture_radius == 0 && hits.size() == positions.size());
+    DCHECK(rays.empty() || rays.size() == positions.size());
+    const Implementation& self = *implementation_;
+    if (self.trees) {
+        self.trace_wide(0, positions.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->camera_hits(view, context, {camera, positions.data(), positions.size()},
+                                      rays.empty() ? nullptr : rays.data(), hits.data());
+        });
+        return;
+    }
+    std::vector<TraceRay> aimed(rays.empty() ? positions.size() : 0);
+    const std::span<TraceRay> all = rays.empty() ? std::span(aimed) : rays;
+    self.trace_batch(0, all.size(), [&](TraceContext& context) {
+        self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
+        self.walk->closest_hits(self.view, self.kernels->primitive, context, all.data(), hits.data(),
+                                all.size());
+    });
+}
+
+void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
+    const Implementation& self = *implementation_;
+    const size_t cast = 2 * size_t(depth) + 1;
+    if (self.trees)
+        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
+            self.kernels->any_hits(view, context, rays.data(), occluded.data(), rays.size());
+        });
+    else
+        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
+            self.walk->any_hits(self.view, self.kernels->primitive, context, rays.data(), occluded.data(),
+                                rays.size());
+        });
+}
+
+SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
+    const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
+    return make_shading_point(*scene_, hit, samples ? &*samples : nullptr);
+}
+
+SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
+    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
+    const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
+    return make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
+}
+
+void Tracer::make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                                 PointScratch& scratch) const {
+    make_points(*scene_, *implementation_->shading, hits, points, scratch);
+}
+
+const ShadingKernels& Tracer::shading_kernels() const { return *implementation_->shading; }
+
+Vec3f Tracer::offset_origin(const SurfacePoint& point, const Vec3f& direction) const {
+    return scalar::offset_origin(point.position, point.geometric_normal, point.position_error, direction);
+}
+
+void Tracer::add_statistics(Statistics& statistics) const {
+    const Implementation& self = *implementation_;
+    statistics.isa = self.kernels->name;
+    const TraceCounters counters = self.cache->sum_counters();
+    statistics.pairs_emitted += counters.pairs_emitted, statistics.pairs_with_hit += counters.pairs_with_hit;
+    statistics.upper_nodes += counters.upper_nodes, statistics.patch_nodes += counters.patch_nodes;
+    statistics.blocks += counters.blocks;
+    statistics.bottom_built += counters.built, statistics.bottom_reused += counters.reused;
+    statistics.bottom_levels.resize(kTileLevel + 1);
+    for (int level = 0; level <= kTileLevel; ++level)
+        statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
+    self.add_casts(statistics);
+    if (self.walk) statistics.structures_bytes += self.walk->byte_count();
+    if (self.trees) statistics.structures_bytes += self.trees->current()->byte_count();
+    for (const PolygonTree& tree : self.polygon_trees) statistics.structures_bytes += tree.byte_count();
+    statistics.bottom_cache_bytes += self.cache->peak_byte_count();
+    for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();
+    for (const Instance& instance : scene_->instances)
+        statistics.geometry_bytes += sizeof(Instance) + instance.levels->byte_count();
+}
+
+size_t Tracer::count_plain_bytes() const {
+    size_t bytes = 0;
+    for (const PolygonTree& tree : implementation_->polygon_trees) bytes += tree.byte_count();
+    for (const Surface& surface : scene_->surfaces)
+        if (!surface.has_displacement) bytes += surface.geometry_bytes();
+    for (const Instance& instance : scene_->instances)
+        if (!scene_->surfaces[instance.surface].has_displacement)
+            bytes += sizeof(Instance) + instance.levels->byte_count();
+    return bytes;
+}
+
+} // namespace relief::cpu

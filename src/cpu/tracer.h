@@ -1,0 +1,138 @@
+// Rays against the prepared scene on the CPU: the door between shading and the SIMD kernels.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/engine.h"
+#include "formulas/camera.h"
+#include "prepare/prepared_scene.h"
+#include "relief/render.h"
+#include "surface/patch/patch_samples.h"
+
+namespace relief::cpu {
+
+struct TraceRay {
+    Vec3f origin{};
+    float t_min = 0;
+    Vec3f direction{};
+    float t_max = std::numeric_limits<float>::infinity();
+    uint32_t bias = 0; ///< surface M_bias is seen: every level lowered by it
+};
+
+/// Where a ray met the surface. `i`, `j` is the cell at the patch's biased level, `is_upper` its second
+/// triangle (corners 00, 11, 01; the first is 00, 10, 11).
+struct TraceHit {
+    float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing
+    uint32_t instance = kNoIndex;
+    uint32_t patch = kNoIndex;
+    float u = 0, v = 0; ///< on the patch, [0, 1]^2; on a triangle primitive likewise, with v <= u
+    uint16_t i = 0, j = 0;
+    uint8_t is_upper = 0;
+    uint8_t bias = 0;
+    uint32_t levels = 0; ///< of the patch as this ray saw it: pack_levels (surface/patch/surface.h)
+    bool is_hit() const { return instance != kNoIndex; }
+};
+
+/// A point of a surface, world space.
+struct SurfacePoint {
+    Vec3f position{};
+    Vec3f geometric_normal{}; ///< of the micro-triangle, unit length, side of the winding (not of the ray)
+    Vec3f shading_normal{};   ///< unit length, same side as geometric_normal
+    Vec2f uv{};               ///< texture coordinates; (0, 0) without
+    float area_per_uv =
+        0; ///< world area of the micro-triangle over its share of the patch's (u, v), which sum to 1
+    float position_error = 0; ///< how far rounding may have moved the position, and a ray that starts there
+    uint32_t instance = kNoIndex;
+    uint32_t patch = kNoIndex;
+};
+
+struct ShadingKernels;
+class SceneWalk;
+
+/// What one thread needs for many points at once.
+struct PointScratch {
+    PatchSamplesCache patches;
+    std::vector<uint64_t> keys;
+    std::vector<uint32_t> order;
+};
+
+/// Immutable after construction apart from the bottom-tree cache and the upper trees, which take care of
+/// themselves, and from `follow`. Thread safe but for that.
+class Tracer {
+  public:
+    Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
+    /// `walk` takes the place of the wide trees, unless it is null.
+    Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings,
+           std::unique_ptr<const SceneWalk> walk);
+    ~Tracer();
+
+    /// As Engine::follow. Boxes of what has changed, before and after, are added to `places`, world space.
+    bool follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+
+    /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
+    void improve_trees() const;
+
+    /// While this lives, rays end with StopRequest (cpu/patch_trees/bottom_cache.h) before the next tree that
+    /// they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes its
+    /// time. Any worker asks. To be made and ended while nothing is traced.
+    class StopScope {
+      public:
+        StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);
+        ~StopScope();
+        StopScope(const StopScope&) = delete;
+        StopScope& operator=(const StopScope&) = delete;
+
+      private:
+        const Tracer& tracer_;
+    };
+
+    /// The box of all that has a displacement, world space; empty where follow() would be false. It may
+    /// become smaller with improve_trees().
+    Box displaced_bounds() const;
+
+    /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as
+    /// bundles of 256 or packets of 16: give neighbours in such runs. `depth` says where the statistics count
+    /// them: bounces behind the rays.
+    void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0) const;
+
+    /// Nearest hits of what a camera without an aperture sees at positions of the picture, in pixels:
+    /// closest_hits of the rays that scalar::make_pinhole_ray aims, bit for bit. Give neighbours in runs of
+    /// 256. The rays are written to `rays`, which has as many places as there are positions, or none.
+    void camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
+                     std::span<TraceRay> rays, std::span<TraceHit> hits) const;
+
+    /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0. Counted as shadow rays.
+    void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth = 0) const;
+
+    /// All that shading needs to know of a hit.
+    SurfacePoint make_surface_point(const TraceHit& hit) const;
+    /// The same of many, none of which is a miss; points[k] belongs to hits[k].
+    void make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
+                             PointScratch& scratch) const;
+
+    /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
+    SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
+
+    /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
+    /// along the geometric normal, to the side that the direction is on.
+    Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
+
+    void add_statistics(Statistics& statistics) const;
+    /// Of the bytes of geometry and structures, what serves surfaces without displacement alone.
+    size_t count_plain_bytes() const;
+
+    const PreparedScene& scene() const { return *scene_; }
+    const ShadingKernels& shading_kernels() const;
+
+  private:
+    struct Implementation;
+    std::shared_ptr<const PreparedScene> scene_;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace relief::cpu

@@ -1,0 +1,158 @@
+// Rays that travel together through all instances, up to 256: what they ask, and what they have met so far.
+#if defined(RELIEF_BUNDLE_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_BUNDLE_RAYS_INL_H
+#undef RELIEF_BUNDLE_RAYS_INL_H
+#else
+#define RELIEF_BUNDLE_RAYS_INL_H
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "cpu/traversal/camera_rays-inl.h"
+#include "cpu/traversal/ray_lanes-inl.h"
+#include "cpu/traversal/ray_state-inl.h"
+#include "formulas/camera.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+inline constexpr uint32_t kBundleSize = 256, kGroupSize = 16, kGroupCount = kBundleSize / kGroupSize;
+
+struct HitLog;
+
+/// What a ray may have found instead of a hit of the log: nothing, or what lies in its place already.
+inline constexpr uint32_t kWritten = 0xfffffffe, kNothing = 0xffffffff;
+
+/// What the spaces of all objects share: the rays, and what they met so far.
+struct BundleRays {
+    cpu::TraceHit* hits; ///< those of rays with kWritten are there
+    HitLog* log;
+    uint32_t count, bias;
+    bool has_one_origin;
+    Vec3f origin;                            ///< of all, or of the first
+    alignas(64) uint32_t found[kBundleSize]; ///< number in the log, kWritten or kNothing
+    alignas(64) float t[kBundleSize];        ///< of the nearest hit, or the ray's t_max
+    alignas(64) float t_min[kBundleSize];
+    alignas(64) float direction[3][kBundleSize];
+    alignas(64) float from[3][kBundleSize]; ///< origins, unless they are one
+
+    Vec3f direction_of(uint32_t k) const { return {direction[0][k], direction[1][k], direction[2][k]}; }
+    Vec3f origin_of(uint32_t k) const {
+        return has_one_origin ? origin : Vec3f{from[0][k], from[1][k], from[2][k]};
+    }
+    LaneMask group_mask(uint32_t group) const {
+        const uint32_t first = group * kGroupSize;
+        return count >= first + kGroupSize ? 0xffffu : count > first ? (1u << (count - first)) - 1 : 0u;
+    }
+};
+
+/// Writes what a bundle keeps of sixteen rays, repeated where there are fewer. Returns those that may be in
+/// one with others of the bias: can_hit.
+HWY_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& rays) {
+    for (int k = 0; k < 3; ++k) {
+        lanes.direction[k].store(rays.direction[k] + at);
+        if (!rays.has_one_origin) lanes.origin[k].store(rays.from[k] + at);
+    }
+    lanes.t_min.store(rays.t_min + at), lanes.t_max.store(rays.t + at);
+    return lanes.of_bias & lanes.can_hit();
+}
+
+/// Takes rays at the front, at most kBundleSize, while find_fitting(lanes) has them.
+template <class FindFitting>
+HWY_INLINE void load_front(const cpu::TraceRay* world, size_t count, BundleRays& rays,
+                           FindFitting find_fitting) {
+    rays.count = 0, rays.bias = world[0].bias, rays.origin = world[0].origin;
+    const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
+    while (rays.count < most) {
+        const uint32_t left = HWY_MIN(most - rays.count, kGroupSize);
+        const RayLanes lanes(world + rays.count, left, rays.bias);
+        const LaneMask fits = load_group(lanes, rays.count, rays) & find_fitting(lanes);
+        const uint32_t taken = hwy::Num0BitsBelowLS1Bit_Nonzero32(~fits);
+        rays.count += taken;
+        if (taken < kGroupSize) break;
+    }
+}
+
+/// Takes the rays at the front that leave one point together.
+inline void load_fan(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
+    const float origin[3] = {world[0].origin.x, world[0].origin.y, world[0].origin.z};
+    rays.has_one_origin = true;
+    load_front(world, count, rays, [&](const RayLanes& lanes) {
+        return equal(lanes.origin[0], Lanes16(origin[0])) & equal(lanes.origin[1], Lanes16(origin[1])) &
+               equal(lanes.origin[2], Lanes16(origin[2]));
+    });
+}
+
+/// Of the angle between a ray of a shaft and the first one: some ten degrees.
+inline constexpr float kLeastShaftSquaredCosine = 0.97f;
+
+/// Takes the rays at the front that go about the way of the first, and nothing before their origins.
+inline void load_shaft(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
+    const Vec3f first = normalize(world[0].direction);
+    const Lanes16 least(kLeastShaftSquaredCosine);
+    rays.has_one_origin = false;
+    load_front(world, count, rays, [&](const RayLanes& lanes) {
+        const Lanes16(&d)[3] = lanes.direction;
+        const Lanes16 projection = dot_lanes(d, first);
+        return less(Lanes16(0.0f), projection) & less_equal(Lanes16(0.0f), lanes.t_min) &
+               less(least * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), projection * projection);
+    });
+}
+
+/// Aims the rays of a pinhole camera through up to kBundleSize positions in the picture, and writes them to
+/// `written` unless it is null.
+inline void load_fan(const scalar::CameraFrame& camera, const Vec2f* positions, uint32_t count,
+                     cpu::TraceRay* written, BundleRays& rays) {
+    const WideCamera wide_camera(camera);
+    const Lanes16 start(0.0f), end(std::numeric_limits<float>::infinity());
+    rays.count = count, rays.bias = 0, rays.has_one_origin = true, rays.origin = camera.origin;
+    for (uint32_t at = 0; at < count; at += kGroupSize) {
+        const uint32_t size = HWY_MIN(count - at, kGroupSize);
+        const wide::Vec3 direction = wide_camera.aim(positions + at, size);
+        direction.x.store(rays.direction[0] + at), direction.y.store(rays.direction[1] + at);
+        direction.z.store(rays.direction[2] + at);
+        start.store(rays.t_min + at), end.store(rays.t + at);
+        if (written) store_rays(camera.origin, direction, size, written + at);
+    }
+}
+
+/// Places behind the last ray repeat it and reach nothing.
+inline void fill_rest(BundleRays& rays) {
+    for (uint32_t last = rays.count - 1, k = rays.count; k < kBundleSize; ++k) {
+        rays.t[k] = 0, rays.t_min[k] = rays.t_min[last];
+        for (float* direction : rays.direction) direction[k] = direction[last];
+        if (rays.has_one_origin) continue;
+        for (float* from : rays.from) from[k] = from[last];
+    }
+}
+
+/// Width of the box of the origins over the distance of neighbours; of a tile of 16 x 16 pixels some 16.
+inline constexpr float kWidestShaft = 64;
+
+/// False where rays begin on things that lie far apart: a shaft about them would hold all that is between.
+/// Also where most neighbours begin in one place. After fill_rest.
+inline bool are_neighbours_close(const BundleRays& rays) {
+    constexpr uint32_t kSamples = 15; // of the distances of neighbours, for their median
+    std::array<float, kSamples> distance;
+    for (uint32_t n = 0; n < kSamples; ++n) {
+        const uint32_t k = n * (rays.count - 1) / kSamples;
+        distance[n] = length(rays.origin_of(k + 1) - rays.origin_of(k));
+    }
+    std::nth_element(distance.begin(), distance.begin() + kSamples / 2, distance.end());
+    const float widest = kWidestShaft * distance[kSamples / 2];
+    for (const auto& from : rays.from) {
+        Lanes16 least = Lanes16::load(from), greatest = least;
+        for (uint32_t at = kGroupSize; at < rays.count; at += kGroupSize)
+            least = min(least, Lanes16::load(from + at)), greatest = max(greatest, Lanes16::load(from + at));
+        if (!(reduce_max(greatest) - reduce_min(least) <= widest)) return false;
+    }
+    return true;
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,73 @@
+// Camera rays of many pixels, sixteen at a time.
+#if defined(RELIEF_CAMERA_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_CAMERA_RAYS_INL_H
+#undef RELIEF_CAMERA_RAYS_INL_H
+#else
+#define RELIEF_CAMERA_RAYS_INL_H
+#endif
+
+#include <cstddef>
+#include <cstring>
+
+#include "cpu/tracer.h"
+#include "formulas/camera.h"
+#include "formulas/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// A pinhole camera, for many pixels.
+struct WideCamera {
+    wide::Vec3 corner, step_x, step_y;
+
+    HWY_INLINE explicit WideCamera(const scalar::CameraFrame& camera)
+        : corner(spread(camera.corner)), step_x(spread(camera.step_x)), step_y(spread(camera.step_y)) {}
+
+    /// Directions of scalar::make_pinhole_ray for sixteen positions in the picture, the last one again where
+    /// there are fewer.
+    HWY_INLINE wide::Vec3 aim(const Vec2f* positions, size_t count) const {
+        static_assert(sizeof(Vec2f) == 8);
+        alignas(64) Vec2f padded[16];
+        if (count < 16) {
+            for (size_t lane = 0; lane < 16; ++lane) padded[lane] = positions[HWY_MIN(lane, count - 1)];
+            positions = padded;
+        }
+        wide::Vec2 place;
+        Lanes16::load_pairs(&positions->x, place.x, place.y);
+        return wide::make_unit(wide::find_picture_point(corner, step_x, step_y, place));
+    }
+
+  private:
+    static HWY_INLINE wide::Vec3 spread(const Vec3f& v) { return {Lanes16(v.x), Lanes16(v.y), Lanes16(v.z)}; }
+};
+
+/// The rays of up to sixteen directions, into memory.
+HWY_INLINE void store_rays(const Vec3f& origin, const wide::Vec3& direction, size_t count,
+                           cpu::TraceRay* rays) {
+    static_assert(offsetof(cpu::TraceRay, direction) == 16 && offsetof(cpu::TraceRay, bias) == 32);
+    cpu::TraceRay start;
+    start.origin = origin;
+    LaneQuads quads;
+    quads.set(direction.x, direction.y, direction.z, Lanes16(start.t_max));
+    for (size_t lane = 0; lane < count; ++lane) {
+        char* const ray = reinterpret_cast<char*>(&rays[lane]);
+        std::memcpy(ray, &start, 16);
+        std::memcpy(ray + 16, quads.lane[lane], 16);
+        rays[lane].bias = 0;
+    }
+}
+
+/// scalar::make_pinhole_ray for each position in the picture.
+inline void aim_rays(const scalar::CameraFrame& camera, const Vec2f* positions, size_t count,
+                     cpu::TraceRay* rays) {
+    const WideCamera wide_camera(camera);
+    for (size_t first = 0; first < count; first += 16) {
+        const size_t size = HWY_MIN(size_t(16), count - first);
+        store_rays(camera.origin, wide_camera.aim(positions + first, size), size, rays + first);
+    }
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,73 @@
+// The door to the SIMD kernels: one table of functions for each instruction set that they were compiled for.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bvh/wide_bvh.h"
+#include "cpu/patch_trees/bottom_cache.h"
+#include "cpu/patch_trees/polygon_tree.h"
+#include "cpu/tracer.h"
+#include "formulas/camera.h"
+
+namespace relief::cpu {
+
+/// What the kernels read: borrowed views, constant while rays are traced.
+struct SceneView {
+    const Instance* instances = nullptr;
+    const Surface* surfaces = nullptr;
+    uint32_t instance_count = 0;
+    const WideBvh* surface_trees = nullptr; ///< these three are those of UpperTrees
+    const WideBvh* instance_tree = nullptr;
+    const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
+    BottomCache* cache = nullptr;
+    LeafKind leaf = LeafKind::exact;
+    LodRule lod = LodRule::field;
+    float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
+};
+
+/// One primitive of an instance: a polygon or a displaced patch. closest: a hit nearer than `best` takes its
+/// place. Both tell whether there was one.
+struct PrimitiveKernels {
+    using Function = bool (*)(const SceneView&, TraceContext&, const TraceRay& world, uint32_t instance,
+                              uint32_t patch, TraceHit& best);
+    Function closest, any;
+};
+
+/// Cells [cell_x, cell_x + cell_count) x [cell_y, cell_y + cell_count) of a patch at its levels, at most
+/// 2^kTileLevel a side.
+struct PatchCells {
+    uint32_t patch;
+    PatchLevels levels;
+    uint32_t cell_x, cell_y, cell_count;
+};
+
+/// Positions in the picture of a pinhole camera.
+struct CameraPixels {
+    const scalar::CameraFrame& camera;
+    const Vec2f* positions;
+    size_t count;
+};
+
+struct Kernels {
+    const char* name;
+    /// Nearest hits of `count` rays; neighbours in runs of 256 may be traced as a bundle, in runs of 16
+    /// as a packet.
+    void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
+    /// The same of the rays that scalar::make_pinhole_ray aims through each position; neighbours in runs of
+    /// 256. They are written to `rays` unless it is null.
+    void (*camera_hits)(const SceneView&, TraceContext&, const CameraPixels&, TraceRay* rays, TraceHit*);
+    void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
+    BuildTreeFunction build_tree;
+    /// Holds a displaced patch at `level`, at most kTileLevel, and below, whatever the levels of its edges.
+    Box (*find_box)(const Surface&, uint32_t patch, uint32_t level);
+    /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; a row starts `stride` after
+    /// the one before.
+    void (*evaluate_cells)(const Surface&, const PatchCells& cells, Vec3f* vertices, size_t stride);
+    PrimitiveKernels primitive; ///< for walks of any other tree
+};
+
+/// Kernels for an instruction set, or nullptr where it was not compiled in or this machine lacks it.
+const Kernels* find_kernels(Isa isa);
+
+} // namespace relief::cpu

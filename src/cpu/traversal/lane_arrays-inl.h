@@ -1,0 +1,50 @@
+// Sixteen members of an array, or what is left of it, in lanes and back.
+#if defined(RELIEF_LANE_ARRAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_LANE_ARRAYS_INL_H
+#undef RELIEF_LANE_ARRAYS_INL_H
+#else
+#define RELIEF_LANE_ARRAYS_INL_H
+#endif
+
+#include <cstring>
+
+#include "formulas/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE::wide {
+
+/// The lanes of `count` members, at most sixteen.
+HWY_INLINE LaneMask first_lanes(size_t count) { return count >= 16 ? 0xffffu : (1u << count) - 1; }
+
+/// Lanes beyond `count` are 0.
+HWY_INLINE Vec2 load_pairs(const Vec2f* source, size_t count) {
+    alignas(64) float pairs[32] = {};
+    std::memcpy(pairs, source, HWY_MIN(count, size_t(16)) * sizeof(Vec2f));
+    Vec2 result;
+    Float::load_pairs(pairs, result.x, result.y);
+    return result;
+}
+
+/// The same of vectors.
+HWY_INLINE Vec3 load_vectors(const Vec3f* source, size_t count) {
+    alignas(64) float packed[48] = {};
+    std::memcpy(packed, source, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
+    Vec3 result;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        hn::LoadInterleaved3(Float::D(), packed + 3 * p * Float::kLanes, result.x.part[p], result.y.part[p],
+                             result.z.part[p]);
+    return result;
+}
+
+HWY_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* target) {
+    alignas(64) float packed[48];
+    for (size_t p = 0; p < Float::kParts; ++p)
+        hn::StoreInterleaved3(vectors.x.part[p], vectors.y.part[p], vectors.z.part[p], Float::D(),
+                              packed + 3 * p * Float::kLanes);
+    std::memcpy(target, packed, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
+}
+
+} // namespace relief::HWY_NAMESPACE::wide
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,179 @@
+// What all rays that travel together have in the space of one object. They are seen on a plane, in whose
+// windows boxes and blocks are tested once for all of them, and each ray meets only the blocks whose window
+// it lies in. How a place on the plane is found depends on the kind: a fan (ray_fan-inl.h) or a shaft
+// (ray_shaft-inl.h).
+//
+// Windows are wider than rounding asks for; what decides a hit is the test of ray_state-inl.h, operation for
+// operation, so that a ray's hit does not depend on its company.
+#if defined(RELIEF_RAY_BUNDLE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_RAY_BUNDLE_INL_H
+#undef RELIEF_RAY_BUNDLE_INL_H
+#else
+#define RELIEF_RAY_BUNDLE_INL_H
+#endif
+
+#include "cpu/patch_trees/bottom_build-inl.h"
+#include "cpu/traversal/bundle_rays-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Some sixty roundings of a place on the plane, of how far it and its rays lie from the middle.
+inline constexpr float kWindowMargin = 4e-6f;
+/// The same for the place of a box beside a plane, of the greatest distance of the box along an axis.
+inline constexpr float kBoxMargin = 2e-6f;
+inline constexpr float kDepthSlack = 1 - 2e-5f;
+
+/// A part of the plane, and the depths between which it is seen.
+struct Window {
+    float lower_x, upper_x, lower_y, upper_y, depth, far;
+    float middle() const { return 0.5f * (depth + far); }
+};
+
+/// W of them.
+template <size_t W> struct Windows {
+    Lanes<W> lower_x, upper_x, lower_y, upper_y, depth, far;
+    Lanes<W> middle() const { return Lanes<W>(0.5f) * (depth + far); }
+};
+
+/// Those of the eight quads of a block, in the order of the lower triangles' lanes, or of eight triangles.
+using PartWindows = Windows<8>;
+
+/// Sixteen or eight points as they are seen.
+template <size_t W> struct Seen { Lanes<W> x, y, depth; };
+
+struct RayBundle {
+    BundleRays* rays;
+    Vec3f origin;             ///< what depths are measured from
+    Vec3f right, up, forward; ///< of the plane; orthonormal
+    int axis[3];              ///< as in RayState; one choice for all rays
+    float farthest;           ///< depth of the farthest nearest hit
+    uint32_t instance;
+    alignas(64) float x[kBundleSize],
+        y[kBundleSize];                   ///< where a ray meets the plane; of a shaft, at its pivot
+    alignas(64) float speed[kBundleSize]; ///< depth for a length of t
+    alignas(64) float shear[3][kBundleSize];
+    alignas(64) float lower_x[kGroupCount], upper_x[kGroupCount], lower_y[kGroupCount], upper_y[kGroupCount];
+    alignas(64) float group_farthest[kGroupCount];
+};
+
+HWY_INLINE void update_farthest(RayBundle& bundle) {
+    bundle.farthest = reduce_max(Lanes16::load(bundle.group_farthest));
+}
+
+/// Depths of groups after hits.
+template <class Bundle> HWY_INLINE void update_groups(Bundle& bundle, LaneMask dirty) {
+    if (!dirty) return;
+    for (; dirty; dirty &= dirty - 1) {
+        const uint32_t group = uint32_t(__builtin_ctz(dirty));
+        bundle.group_farthest[group] = find_farthest(bundle, group);
+    }
+    update_farthest(bundle);
+}
+
+/// Directions of sixteen rays in an object's space, by the operations of transform_vector.
+HWY_INLINE void transform_directions(const BundleRays& rays, const Affine& object_from_world, size_t at,
+                                     Lanes16 (&d)[3]) {
+    Lanes16 world[3];
+    for (int k = 0; k < 3; ++k) world[k] = Lanes16::load(rays.direction[k] + at);
+    for (size_t k = 0; k < 3; ++k) d[k] = dot_lanes(world, object_from_world.rows[k]);
+}
+
+/// Axes of a plane that faces `forward`, one of them about along `along`.
+HWY_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBundle& bundle) {
+    bundle.forward = forward;
+    Vec3f right = along - forward * dot(along, forward);
+    if (!(dot(right, right) > 1e-6f * dot(along, along)))
+        right =
+            std::fabs(forward.x) > 0.5f ? Vec3f{-forward.y, forward.x, 0} : Vec3f{0, -forward.z, forward.y};
+    bundle.right = normalize(right);
+    bundle.up = cross(forward, bundle.right);
+}
+
+/// Which lanes have |a| > |b|.
+HWY_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) {
+    const Lanes16 zero(0.0f);
+    return less(max(b, zero - b), max(a, zero - a));
+}
+
+/// The major axis of sixteen directions by the choice of enter_object; 3 if they differ.
+HWY_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
+    const LaneMask x_over_y = is_longer(d[0], d[1]), x_over_z = is_longer(d[0], d[2]),
+                   y_over_z = is_longer(d[1], d[2]);
+    if ((x_over_y & x_over_z) == 0xffff) return 0;
+    if (x_over_y == 0 && y_over_z == 0xffff) return 1;
+    return ((x_over_y & x_over_z) | (~x_over_y & y_over_z & 0xffff)) == 0 ? 2 : 3;
+}
+
+/// About the middle of the rays.
+HWY_INLINE Vec3f find_forward(const Affine& object_from_world, const BundleRays& rays) {
+    const auto direction = [&](uint32_t k) {
+        return normalize(transform_vector(object_from_world, rays.direction_of(k)));
+    };
+    const uint32_t last = rays.count - 1;
+    return normalize(direction(0) + direction(last / 3) + direction(last - last / 3) + direction(last));
+}
+
+/// Takes the major axis of the first sixteen rays for all; false where these have several.
+HWY_INLINE bool choose_major_axis(const Affine& object_from_world, RayBundle& bundle) {
+    static constexpr int kMinorAxes[4][2] = {{1, 2}, {2, 0}, {0, 1}, {0, 0}};
+    Lanes16 d[3];
+    transform_directions(*bundle.rays, object_from_world, 0, d);
+    const int major = find_major_axis(d);
+    bundle.axis[0] = kMinorAxes[major][0], bundle.axis[1] = kMinorAxes[major][1];
+    bundle.axis[2] = major;
+    return major != 3;
+}
+
+/// Of sixteen rays, what their tests against triangles ask, and their speed. False where they do not go
+/// forward, or along another axis than bundle.axis[2].
+HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& closeness) {
+    if (find_major_axis(d) != bundle.axis[2]) return false;
+    const Lanes16 speed = dot_lanes(d, bundle.forward);
+    const Lanes16 squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    // Squares of other speeds might vanish, or be infinite, and tell nothing.
+    if ((less(Lanes16(1e-15f), speed) & less(speed, Lanes16(1e15f)) &
+         less_equal(squared * Lanes16(0.25f), speed * speed)) != 0xffff)
+        return false;
+    closeness = Lanes16(1.0f) / speed;
+    const Lanes16 inverse = Lanes16(1.0f) / d[bundle.axis[2]];
+    speed.store(bundle.speed + at);
+    (d[bundle.axis[0]] * inverse).store(bundle.shear[0] + at);
+    (d[bundle.axis[1]] * inverse).store(bundle.shear[1] + at);
+    inverse.store(bundle.shear[2] + at);
+    return true;
+}
+
+/// The range of a group on the plane.
+HWY_INLINE void store_range(const Lanes16& x, const Lanes16& y, uint32_t group, RayBundle& bundle) {
+    const size_t at = group * kGroupSize;
+    x.store(bundle.x + at), y.store(bundle.y + at);
+    bundle.lower_x[group] = reduce_min(x), bundle.upper_x[group] = reduce_max(x);
+    bundle.lower_y[group] = reduce_min(y), bundle.upper_y[group] = reduce_max(y);
+}
+
+/// The greatest value of dot(p, n) over W boxes (lower x y z, upper x y z).
+template <size_t W> HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& n) {
+    const float factor[3] = {n.x, n.y, n.z};
+    Lanes<W> sum(0.0f);
+    for (int k = 0; k < 3; ++k) sum = sum + bound[factor[k] < 0 ? k : 3 + k] * Lanes<W>(factor[k]);
+    return sum;
+}
+
+/// W boxes as all kinds of rays see them.
+template <size_t W> struct RelativeBoxes {
+    Lanes<W> bound[6], reach; ///< from the bundle's origin; the greatest distance along an axis
+
+    HWY_INLINE RelativeBoxes(const Lanes<W> (&bounds)[6], const Vec3f& from) : reach(0.0f) {
+        const float origin[3] = {from.x, from.y, from.z};
+        for (int k = 0; k < 6; ++k) {
+            bound[k] = bounds[k] - Lanes<W>(origin[k % 3]);
+            reach = max(reach, max(bound[k], Lanes<W>(0.0f) - bound[k]));
+        }
+    }
+};
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

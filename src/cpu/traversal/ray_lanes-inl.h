@@ -1,0 +1,52 @@
+// Rays brought from memory into lanes.
+#if defined(RELIEF_RAY_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_RAY_LANES_INL_H
+#undef RELIEF_RAY_LANES_INL_H
+#else
+#define RELIEF_RAY_LANES_INL_H
+#endif
+
+#include <cstddef>
+#include <cstring>
+
+#include "cpu/tracer.h"
+#include "formulas/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const Vec3f& n) {
+    return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
+}
+
+/// Sixteen rays in world space, a ray a lane: the last one again where there are fewer.
+struct RayLanes {
+    Lanes16 origin[3], direction[3], t_min, t_max;
+    LaneMask of_bias; ///< rays that are there, not repeated, and have the bias asked for
+
+    HWY_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t bias) : of_bias(0) {
+        static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
+                      offsetof(cpu::TraceRay, t_max) == 28);
+        LaneQuads starts, ends;
+        for (uint32_t lane = 0; lane < 16; ++lane) {
+            const cpu::TraceRay& ray = rays[HWY_MIN(lane, count - 1)];
+            std::memcpy(starts.lane[lane], &ray.origin, 16);
+            std::memcpy(ends.lane[lane], &ray.direction, 16);
+            of_bias |= LaneMask(lane < count && ray.bias == bias) << lane;
+        }
+        starts.transpose(origin[0], origin[1], origin[2], t_min);
+        ends.transpose(direction[0], direction[1], direction[2], t_max);
+    }
+
+    /// relief::can_hit of each, repeated ones included.
+    HWY_INLINE LaneMask can_hit() const {
+        const Lanes16 all =
+            (origin[0] + direction[0]) + (origin[1] + direction[1]) + (origin[2] + direction[2]);
+        return equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);
+    }
+};
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,179 @@
+// One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest
+// first, for any-hit too: unordered, the cache of bottom trees would thrash.
+#if defined(RELIEF_SCENE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_SCENE_TRAVERSAL_INL_H
+#undef RELIEF_SCENE_TRAVERSAL_INL_H
+#else
+#define RELIEF_SCENE_TRAVERSAL_INL_H
+#endif
+
+#include "base/check.h"
+#include "base/timer.h"
+#include "cpu/traversal/patch_traversal-inl.h"
+#include "cpu/traversal/polygon_traversal-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// A walk through a wide tree that stops at every primitive and goes on when asked.
+struct TreeCursor {
+    uint32_t size;                           ///< of the stack
+    uint32_t leaf_first = 0, leaf_count = 0; ///< what is left of the leaf
+    uint32_t visited = 0;                    ///< nodes so far
+    StackEntry stack[kStackSize];
+
+    /// `root` is a child word; 0 is the whole tree.
+    HWY_INLINE TreeCursor(uint32_t root, const RayState& ray) : size(1) { stack[0] = {root, ray.t_min}; }
+
+    /// The next primitive of the tree whose box the ray enters before ray.t_max, or kNoIndex.
+    HWY_INLINE uint32_t next(const WideBvh& tree, const RayState& ray) {
+        while (leaf_count == 0) {
+            if (size == 0) return kNoIndex;
+            const StackEntry top = stack[--size];
+            if (top.entry <= ray.t_max * kBoxSlack) descend(tree, top.child, ray);
+        }
+        --leaf_count;
+        return tree.primitive_at(leaf_first++);
+    }
+
+  private:
+    /// To the nearest leaf below `child`; the rest goes on the stack.
+    HWY_INLINE void descend(const WideBvh& tree, uint32_t child, const RayState& ray) {
+        while (!WideNode::is_leaf(child)) {
+            const WideNode& node = tree.nodes[child];
+            Lanes8 entry;
+            ++visited;
+            const LaneMask mask = test_node(node, ray, entry);
+            if (mask == 0) return;
+            child = take_nearest(node, mask, entry, stack, size);
+        }
+        leaf_first = WideNode::leaf_first(child), leaf_count = WideNode::leaf_count(child);
+    }
+};
+
+/// Walks the subtree of `root` and calls visit(primitive) until it is true.
+template <class Visit>
+HWY_INLINE bool walk_tree(const WideBvh& tree, cpu::TraceContext& context, uint32_t root, const RayState& ray,
+                          Visit visit) {
+    if (tree.nodes.empty()) return false;
+    TreeCursor cursor(root, ray);
+    bool has_ended = false;
+    while (!has_ended) {
+        const uint32_t primitive = cursor.next(tree, ray);
+        if (primitive == kNoIndex) break;
+        has_ended = visit(primitive);
+    }
+    context.counters.upper_nodes += cursor.visited;
+    return has_ended;
+}
+
+/// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
+template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
+    const Quad quad = surface.quads[patch];
+    static constexpr uint8_t kCorner[3][2] = {{0, 0}, {1, 2}, {2, 3}};
+    Lanes4 x[3], y[3], z[3];
+    for (int corner = 0; corner < 3; ++corner) {
+        alignas(16) float coordinate[3][4];
+        for (int lane = 0; lane < 4; ++lane) {
+            const Vec3f& p = surface.position(quad.vertex[kCorner[corner][lane & 1]]);
+            coordinate[0][lane] = p.x, coordinate[1][lane] = p.y, coordinate[2][lane] = p.z;
+        }
+        const Lanes4 vertex[3] = {Lanes4::load(coordinate[0]), Lanes4::load(coordinate[1]),
+                                  Lanes4::load(coordinate[2])};
+        shear_vertices([&](int axis) { return vertex[axis]; }, ray, x[corner], y[corner], z[corner]);
+    }
+    TriangleTest<4> test;
+    if (!(test_edges(x, y, test) & 3)) return false;
+    test_distances(z, ray, test);
+    test.mask &= quad.is_triangle() ? 1 : 3;
+    if (!test.mask) return false;
+    if constexpr (kQuery == Query::closest)
+        offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+            hit.patch = patch;
+            locate_on_polygon(lane != 0, weight_b, weight_c, hit);
+        });
+    return true;
+}
+
+/// A displaced patch, timed where the batch is.
+template <Query kQuery> HWY_INLINE bool visit_patch(const PatchVisit& visit, RayState& ray) {
+    cpu::TraceContext& context = *visit.context;
+    if (!context.is_timed) return trace_patch<kQuery>(visit, ray);
+    const Timer timer;
+    const double built_before = context.counters.bottom_build_s;
+    const bool has_hit = trace_patch<kQuery>(visit, ray);
+    context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
+    return has_hit;
+}
+
+template <Query kQuery>
+HWY_INLINE bool trace_displaced(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+    PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
+    if (scene.lod == LodRule::ray) choose_ray_level(visit, scene.instances[ray.instance], world);
+    return visit_patch<kQuery>(visit, ray);
+}
+
+/// One primitive of an instance: a polygon or a displaced patch.
+template <Query kQuery>
+HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+    const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
+    return surface.has_displacement ? trace_displaced<kQuery>(scene, context, world, patch, ray)
+                                    : trace_polygon<kQuery>(surface, patch, ray);
+}
+
+/// The subtree of `root` of one instance's surface. `ray` is in the object's space.
+template <Query kQuery>
+bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                    uint32_t root, RayState& ray) {
+    const uint32_t surface = scene.instances[ray.instance].surface;
+    if (!scene.surfaces[surface].has_displacement)
+        return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
+    const WideBvh& tree = scene.surface_trees[surface];
+    const auto visit = [&](uint32_t patch) {
+        const bool has_hit = trace_displaced<kQuery>(scene, context, world, patch, ray);
+        return kQuery == Query::any && has_hit;
+    };
+    return walk_tree(tree, context, root, ray, visit);
+}
+
+/// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
+/// the hit.
+template <Query kQuery>
+bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                 uint32_t root, RayState& best) {
+    return walk_tree(*scene.instance_tree, context, root, best, [&](uint32_t instance) {
+        const Instance& placed = scene.instances[instance];
+        if (placed.is_in_place) {
+            best.instance = instance;
+            return trace_instance<kQuery>(scene, context, world, 0, best);
+        }
+        RayState ray = best;
+        ray.instance = instance;
+        enter_object(world, placed.object_from_world, ray);
+        const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
+        best.t_max = ray.t_max;
+        best.hit = ray.hit;
+        return is_hit;
+    });
+}
+
+/// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
+template <Query kQuery>
+HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
+                          RayState& ray) {
+    ray.t_min = world.t_min, ray.t_max = world.t_max;
+    if (scene.instance_count != 1) {
+        enter_object(world, Affine{}, ray);
+        return trace_scene<kQuery>(scene, context, world, 0, ray);
+    }
+    ray.instance = 0;
+    enter_object(world, scene.instances[0].object_from_world, ray);
+    return trace_instance<kQuery>(scene, context, world, 0, ray);
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

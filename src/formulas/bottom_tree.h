@@ -1,0 +1,64 @@
+// Complete quad tree over the cells of a patch or tile: no links, because the way to the next node follows
+// from the number of this one (Harada 2015 keeps a table of them). Nodes stand level by level, in Morton
+// order within one; a node is three words, one an axis: lower code, upper code. Vertices follow, row by row.
+#ifndef RELIEF_BOTTOM_TREE_H
+#define RELIEF_BOTTOM_TREE_H
+#include "formulas/exact.h"
+#include "formulas/levels.h"
+
+#include "formulas/begin.h"
+
+const uint kTreeLevels = 5u;       ///< of a tile, at most
+const uint kTreeHeaderWords = 16u; ///< origin, scale, level, reversed edges; then nothing up to a whole unit
+const uint kTreeNodeWords = 3u;
+const uint kPoolUnitWords = 16u; ///< trees start at multiples of it
+const uint kCellBits = 25u;      ///< of make_cell_rank
+
+// Words of a tree's header.
+const uint kTreeOrigin = 0u;
+const uint kTreeScale = 3u;
+const uint kTreeLevel = 6u;
+const uint kTreeReversed = 7u; ///< a bit an edge: its line runs against the patch's direction
+
+/// Nodes of the levels above `level`.
+FN uint count_nodes_above(uint level) { return ((1u << (2u * level)) - 1u) / 3u; }
+
+FN uint first_vertex_word(uint level) {
+    return kTreeHeaderWords + kTreeNodeWords * count_nodes_above(level + 1u);
+}
+
+FN uint count_tree_units(uint level) {
+    uint side = (1u << level) + 1u;
+    return (first_vertex_word(level) + 3u * side * side + kPoolUnitWords - 1u) / kPoolUnitWords;
+}
+
+/// Every second bit of a Morton number of at most ten bits, starting with the lowest: its column.
+FN uint morton_column(uint m) {
+    uint x = m & 0x155u;
+    x = (x | (x >> 1u)) & 0x133u;
+    x = (x | (x >> 2u)) & 0x10fu;
+    return (x | (x >> 4u)) & 0x01fu;
+}
+FN uint morton_row(uint m) { return morton_column(m >> 1u); }
+
+/// Bits of column and row 2^bits - 1 that walk a level backwards in either direction: number xor mask.
+FN uint make_order_mask(bool is_u_backward, bool is_v_backward) {
+    return (is_u_backward ? 0x155u : 0u) | (is_v_backward ? 0x2aau : 0u);
+}
+
+// What rays want of a tree, ORed together: bits 0..5 the levels, then for each edge five bits, one for each
+// number of levels that it is coarser than the patch.
+FN uint make_need(uint level, uint field_levels) {
+    uint own = packed_patch_level(field_levels);
+    uint need = 1u << level;
+    for (uint edge = 0u; edge < 4u; ++edge) {
+        uint shift = min_uint(own - packed_edge_level(field_levels, edge), kTreeLevels);
+        if (shift > 0u) need |= 1u << (5u + 5u * edge + shift);
+    }
+    return need;
+}
+
+FN uint need_moves(uint need, uint edge) { return (need >> (5u + 5u * edge)) & 0x3eu; }
+
+#include "formulas/end.h"
+#endif

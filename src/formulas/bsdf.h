@@ -1,0 +1,247 @@
+// Metallic-roughness surface in the local frame (shading normal = z): a GGX lobe over a diffuse base, both
+// energy conserving. Microfacets: Walter et al. 2007 with height-correlated Smith shadowing (Heitz 2014,
+// Understanding the Masking-Shadowing Function). Energy lost between microfacets and the coupling of coat and
+// base: Kulla and Conty 2017, Revisiting Physically Based Shading; both are reciprocal, and a white surface
+// returns all light.
+#if !defined(RELIEF_BSDF_H) || defined(RELIEF_LANES)
+#ifndef RELIEF_LANES
+#define RELIEF_BSDF_H
+#include "formulas/constants.h"
+#include "formulas/ggx_albedo.h"
+#include "formulas/trig.h"
+#include "formulas/warp.h"
+#endif
+#include "formulas/begin.h"
+
+struct BsdfParameters {
+    Vec3 base_color; ///< reflectance of the diffuse base; of the metal at normal incidence
+    Float roughness; ///< [0, 1]; alpha is its square, at least kMinAlpha
+    Float metallic;  ///< [0, 1]
+    Float ior;       ///< of the dielectric coat, >= 1; 1: no coat
+};
+
+/// Made for one outgoing direction.
+struct Bsdf {
+    Vec3 f0;   ///< Schlick's Fresnel at normal incidence
+    Float f90; ///< and at grazing incidence
+    Float alpha, roughness;
+    Vec3 multiple; ///< of light scattered more than once: times (1 - E(o)) (1 - E(i))
+    Vec3 diffuse;  ///< of the base: times (1 - C(o)) (1 - C(i)), C the albedo of the dielectric coat
+    Float coat_f0, coat_f90, coat_multiple;
+    Float escape_multiple;      ///< 1 - E(o)
+    Float escape_coat;          ///< 1 - C(o)
+    Float specular_probability; ///< of sampling the microfacet lobe
+};
+
+/// Density is per solid angle.
+struct BsdfValue {
+    Vec3 value; ///< BSDF times the cosine of the incoming direction
+    Float pdf;
+};
+
+struct BsdfSample {
+    Vec3 direction;
+    Vec3 weight; ///< value / pdf; zero for a direction below the surface
+    Float pdf;
+};
+
+const float kMinAlpha = 1e-3f;
+
+FN Vec3 make_grey(Float value) {
+    Vec3 grey = {value, value, value};
+    return grey;
+}
+
+FN Float luminance(Vec3 c) { return Float(0.2126f) * c.x + Float(0.7152f) * c.y + Float(0.0722f) * c.z; }
+
+/// Part of the light that leaves after several bounces between microfacets, of Fresnel average f (Hill 2018,
+/// A Multi-Faceted Exploration, part 2): f^2 E / (1 - f (1 - E)).
+FN Float multiple_scattering(Float f, Float average_albedo) {
+    return f * f * average_albedo / (Float(1.0f) - f * (Float(1.0f) - average_albedo));
+}
+
+/// Mean of Schlick's Fresnel over the cosine-weighted hemisphere.
+FN Float average_fresnel(Float f0, Float f90) { return f0 + (f90 - f0) * Float(1.0f / 21.0f); }
+
+/// Albedo of the dielectric coat, light scattered several times included.
+FN Float coat_albedo(Bsdf b, GgxAlbedo e) {
+    return b.coat_f0 * e.scale + b.coat_f90 * e.bias + b.coat_multiple * (Float(1.0f) - e.scale - e.bias);
+}
+
+/// That of a material without coat or metal, whatever the outgoing direction: what make_general_bsdf gives.
+FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
+    Float zero = Float(0.0f);
+    Bsdf b;
+    b.f0 = make_grey(zero);
+    b.f90 = zero;
+    b.roughness = p.roughness;
+    b.alpha = max(p.roughness * p.roughness, Float(kMinAlpha));
+    b.multiple = make_grey(zero);
+    b.diffuse = p.base_color * Float(1.0f / kPi);
+    b.coat_f0 = zero;
+    b.coat_f90 = zero;
+    b.coat_multiple = zero;
+    b.escape_multiple = zero;
+    b.escape_coat = Float(1.0f);
+    b.specular_probability = zero;
+    return b;
+}
+
+/// No light but that of the diffuse base, unattenuated.
+FN Bool is_diffuse(Bsdf b) { return b.f90 == Float(0.0f); }
+
+FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
+    Float one = Float(1.0f);
+    Float dielectric = one - p.metallic;
+    Float root = (p.ior - one) / (p.ior + one);
+    Float coat_f0 = root * root;
+    // Below 2 % at normal incidence the coat fades as a whole, to nothing at ior 1.
+    Float coat_f90 = min(one, Float(50.0f) * coat_f0);
+    GgxAlbedo average = lookup_ggx_average(p.roughness);
+    GgxAlbedo at_o = lookup_ggx_albedo(p.roughness, cos_o);
+    Float e_average = average.scale + average.bias;
+    Float e_o = at_o.scale + at_o.bias;
+    Bsdf b;
+    b.f0 = p.base_color * p.metallic + make_grey(dielectric * coat_f0);
+    b.f90 = p.metallic + dielectric * coat_f90;
+    b.roughness = p.roughness;
+    b.alpha = max(p.roughness * p.roughness, Float(kMinAlpha));
+    b.coat_f0 = coat_f0;
+    b.coat_f90 = coat_f90;
+    b.coat_multiple = multiple_scattering(average_fresnel(coat_f0, coat_f90), e_average);
+    Float from_coat = dielectric * b.coat_multiple;
+    Vec3 f_multiple = {
+        p.metallic * multiple_scattering(average_fresnel(p.base_color.x, one), e_average) + from_coat,
+        p.metallic * multiple_scattering(average_fresnel(p.base_color.y, one), e_average) + from_coat,
+        p.metallic * multiple_scattering(average_fresnel(p.base_color.z, one), e_average) + from_coat};
+    b.escape_multiple = max(Float(0.0f), one - e_o);
+    b.escape_coat = max(Float(0.0f), one - coat_albedo(b, at_o));
+    b.multiple = f_multiple * (one / (Float(kPi) * max(one - e_average, Float(1e-6f))));
+    b.diffuse = p.base_color * (dielectric / (Float(kPi) * max(one - coat_albedo(b, average), Float(1e-6f))));
+    Float specular = luminance(b.f0) * at_o.scale + b.f90 * at_o.bias;
+    Float cosine =
+        luminance(f_multiple) * b.escape_multiple + dielectric * luminance(p.base_color) * b.escape_coat;
+    // At least a fifth for the sharp lobe: its Fresnel factor can be far above its mean.
+    Float share = clamp(specular / (specular + cosine), Float(0.2f), one);
+    b.specular_probability = select(specular > Float(0.0f), share, Float(0.0f));
+    return b;
+}
+
+FN Bsdf select_bsdf(Bool condition, Bsdf a, Bsdf b) {
+    Bsdf result;
+    result.f0 = select(condition, a.f0, b.f0);
+    result.f90 = select(condition, a.f90, b.f90);
+    result.alpha = select(condition, a.alpha, b.alpha);
+    result.roughness = select(condition, a.roughness, b.roughness);
+    result.multiple = select(condition, a.multiple, b.multiple);
+    result.diffuse = select(condition, a.diffuse, b.diffuse);
+    result.coat_f0 = select(condition, a.coat_f0, b.coat_f0);
+    result.coat_f90 = select(condition, a.coat_f90, b.coat_f90);
+    result.coat_multiple = select(condition, a.coat_multiple, b.coat_multiple);
+    result.escape_multiple = select(condition, a.escape_multiple, b.escape_multiple);
+    result.escape_coat = select(condition, a.escape_coat, b.escape_coat);
+    result.specular_probability = select(condition, a.specular_probability, b.specular_probability);
+    return result;
+}
+
+/// `cos_o`: cosine of the outgoing direction, > 0.
+FN Bsdf make_bsdf(BsdfParameters p, Float cos_o) {
+    Bool is_general = p.metallic > Float(0.0f) || p.ior > Float(1.0f);
+    Bsdf b = make_diffuse_bsdf(p);
+    if (is_any(is_general)) b = select_bsdf(is_general, make_general_bsdf(p, cos_o), b);
+    return b;
+}
+
+/// Smith's lambda of GGX; cos_theta > 0.
+FN Float ggx_lambda(Float alpha, Float cos_theta) {
+    Float cos2 = cos_theta * cos_theta;
+    Float tan2 = max(Float(0.0f), Float(1.0f) - cos2) / cos2;
+    return Float(0.5f) * (sqrt(Float(1.0f) + alpha * alpha * tan2) - Float(1.0f));
+}
+
+/// Normal distribution; h a unit vector. Written without 1 - h.z^2, which cancels for smooth surfaces.
+FN Float ggx_distribution(Float alpha, Vec3 h) {
+    Float x = h.x / alpha;
+    Float y = h.y / alpha;
+    Float k = x * x + y * y + h.z * h.z;
+    return Float(1.0f) / (Float(kPi) * alpha * alpha * k * k);
+}
+
+FN Vec3 schlick_fresnel(Vec3 f0, Float f90, Float cos_h) {
+    Float m = clamp(Float(1.0f) - cos_h, Float(0.0f), Float(1.0f));
+    Float m5 = m * m * m * m * m;
+    Vec3 result = {f0.x + (f90 - f0.x) * m5, f0.y + (f90 - f0.y) * m5, f0.z + (f90 - f0.z) * m5};
+    return result;
+}
+
+/// Both directions above the surface.
+FN BsdfValue evaluate_general_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
+    Float one = Float(1.0f);
+    Vec3 h = normalize(wo + wi);
+    Float lambda_o = ggx_lambda(b.alpha, wo.z);
+    Float lambda_i = ggx_lambda(b.alpha, wi.z);
+    Float lobe = ggx_distribution(b.alpha, h) / (Float(4.0f) * wo.z);
+    Vec3 specular = schlick_fresnel(b.f0, b.f90, dot(wo, h)) * (lobe / (one + lambda_o + lambda_i));
+    GgxAlbedo at_i = lookup_ggx_albedo(b.roughness, wi.z);
+    Float multiple = b.escape_multiple * max(Float(0.0f), one - at_i.scale - at_i.bias) * wi.z;
+    Float diffuse = b.escape_coat * max(Float(0.0f), one - coat_albedo(b, at_i)) * wi.z;
+    BsdfValue result;
+    result.value = specular + b.multiple * multiple + b.diffuse * diffuse;
+    result.pdf = b.specular_probability * lobe / (one + lambda_o) +
+                 (one - b.specular_probability) * cosine_hemisphere_pdf(wi.z);
+    return result;
+}
+
+/// Value and density of `wi` for light that leaves along `wo`; zero when either is below the surface. Unit
+/// vectors.
+FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
+    Float zero = Float(0.0f);
+    Bool is_above = wo.z > zero && wi.z > zero;
+    BsdfValue result;
+    // All that there is where no light comes from a coat or a metal.
+    result.value = select(is_above, b.diffuse * wi.z, make_grey(zero));
+    result.pdf = select(is_above, cosine_hemisphere_pdf(wi.z), zero);
+    Bool is_general = is_above && !is_diffuse(b);
+    if (is_any(is_general)) {
+        BsdfValue general = evaluate_general_bsdf(b, wo, wi);
+        result.value = select(is_general, general.value, result.value);
+        result.pdf = select(is_general, general.pdf, result.pdf);
+    }
+    return result;
+}
+
+/// Direction that `wo` is mirrored to by a microfacet normal drawn from those visible (Dupuy and Benyoub
+/// 2023, Sampling Visible GGX Normals with Spherical Caps).
+FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
+    Vec3 stretched = {alpha * wo.x, alpha * wo.y, wo.z};
+    Vec3 o = normalize(stretched);
+    SinCos phi = find_sin_cos(Float(2.0f * kPi) * u.x);
+    Float z = (Float(1.0f) - u.y) * (Float(1.0f) + o.z) - o.z;
+    Float sin_theta = sqrt(max(Float(0.0f), Float(1.0f) - z * z));
+    Vec3 unstretched = {alpha * (sin_theta * phi.cosine + o.x), alpha * (sin_theta * phi.sine + o.y),
+                        z + o.z};
+    Vec3 h = normalize(unstretched);
+    return h * (Float(2.0f) * dot(wo, h)) - wo;
+}
+
+/// Draws an incoming direction for `wo`: `u_lobe` in [0, 1) picks the lobe, `u` the direction within it.
+FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
+    Vec3 wi = square_to_cosine_hemisphere(u);
+    Bool is_specular = u_lobe < b.specular_probability;
+    if (is_any(is_specular)) wi = select(is_specular, sample_ggx_reflection(b.alpha, wo, u), wi);
+    wi = normalize(wi);
+    BsdfValue v = evaluate_bsdf(b, wo, wi);
+    Bool is_possible = v.pdf > Float(0.0f);
+    Float share = select(is_possible, Float(1.0f) / select(is_possible, v.pdf, Float(1.0f)), Float(0.0f));
+    BsdfSample result = {wi, v.value * share, v.pdf};
+    return result;
+}
+
+/// Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
+FN Vec3 lift_viewer(Vec3 wo_local) {
+    Vec3 lifted = {wo_local.x, wo_local.y, max(wo_local.z, Float(1e-4f))};
+    return normalize(lifted);
+}
+
+#include "formulas/end.h"
+#endif

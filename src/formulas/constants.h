@@ -1,0 +1,12 @@
+// Numbers that several formulas need.
+#ifndef RELIEF_CONSTANTS_H
+#define RELIEF_CONSTANTS_H
+#include "formulas/begin.h"
+
+const uint kNone = 0xffffffffu; ///< of indices: nothing there
+const float kPi = 3.14159265358979f;
+
+FN float make_infinity() { return uintBitsToFloat(0x7f800000u); }
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,73 @@
+// What a displaced surface is: the exact float operations of one vertex, in the one order that every engine
+// keeps. Shared edges are closed because both of their patches run these lines on the same numbers.
+#if !defined(RELIEF_DISPLACE_H) || defined(RELIEF_LANES)
+#ifndef RELIEF_LANES
+#define RELIEF_DISPLACE_H
+#endif
+#include "formulas/begin.h"
+
+/// Point at parameter s between a and b; exact at s = 0 and s = 1 for finite a, b.
+FN Float blend(Float a, Float b, Float s) {
+    EXACT Float r = a * (Float(1.0f) - s) + b * s;
+    return r;
+}
+
+/// Bilinear value at (u, v) of corners c00 c10 c11 c01 (counter-clockwise): along u first, then along v.
+FN Float blend_quad(Float c00, Float c10, Float c11, Float c01, Float u, Float v) {
+    EXACT Float r = blend(blend(c00, c10, u), blend(c01, c11, u), v);
+    return r;
+}
+
+/// Weights of the four control points of a cubic curve (Bernstein 1912).
+struct CubicWeights {
+    Float first, second, third, fourth;
+};
+
+/// At parameter s. Exactly one weight is not 0 at s = 0 and s = 1; those of 1 - s, where it is exact, are the
+/// same in turned order.
+FN CubicWeights weigh_cubic(Float s) {
+    EXACT Float r = Float(1.0f) - s;
+    EXACT Float both = Float(3.0f) * (s * r);
+    EXACT Float first = r * r * r;
+    EXACT Float second = both * r;
+    EXACT Float third = both * s;
+    EXACT Float fourth = s * s * s;
+    CubicWeights weights = {first, second, third, fourth};
+    return weights;
+}
+
+/// Point of the cubic curve with control points p0 p1 p2 p3 (Bezier form), the same from either end. A
+/// bicubic patch is blended along v first, column by column, then along u.
+FN Float blend_cubic(Float p0, Float p1, Float p2, Float p3, CubicWeights weights) {
+    EXACT Float ends = p0 * weights.first + p3 * weights.fourth;
+    EXACT Float inner = p1 * weights.second + p2 * weights.third;
+    EXACT Float r = ends + inner;
+    return r;
+}
+
+/// Derivative at s of the cubic curve whose neighbouring control points differ by d0 d1 d2.
+FN Float blend_slope(Float d0, Float d1, Float d2, Float s) {
+    Float r = Float(1.0f) - s;
+    return Float(3.0f) * (d0 * r * r + Float(2.0f) * d1 * s * r + d2 * s * s);
+}
+
+/// Displacement channel of four texels: along x first, then along y (Heckbert 1989, bilinear filter).
+FN Float filter_texels(Float t00, Float t10, Float t01, Float t11, Float fx, Float fy) {
+    EXACT Float r = blend(blend(t00, t10, fx), blend(t01, t11, fx), fy);
+    return r;
+}
+
+/// One row of the decode matrix applied to (value - midlevel).
+FN Float decode_row(Float r, Float g, Float b, Float m0, Float m1, Float m2) {
+    EXACT Float d = r * m0 + g * m1 + b * m2;
+    return d;
+}
+
+/// One world coordinate of the displacement (t, b, n) carried through the frame's coordinates of T, B and N.
+FN Float carry_through_frame(Float t, Float b, Float n, Float frame_t, Float frame_b, Float frame_n) {
+    EXACT Float d = t * frame_t + b * frame_b + n * frame_n;
+    return d;
+}
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,8 @@
+// Closes what formulas/begin.h opened.
+#ifdef __cplusplus
+#undef FN
+#undef EXACT
+#ifndef RELIEF_LANES
+} // namespace relief::scalar
+#endif
+#endif

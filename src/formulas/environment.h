@@ -1,0 +1,77 @@
+// The environment as a light: a latitude-longitude image, directions drawn by brightness from a piecewise
+// constant density over cells of latitude and longitude (Pharr, Jakob and Humphreys 2023, Physically Based
+// Rendering, section 12.5.2).
+#if !defined(RELIEF_ENVIRONMENT_H) || defined(RELIEF_LANES)
+#ifndef RELIEF_LANES
+#define RELIEF_ENVIRONMENT_H
+#include "formulas/constants.h"
+#include "formulas/environment_data.h"
+#include "formulas/trig.h"
+#endif
+#include "formulas/begin.h"
+
+/// Point of a latitude-longitude image, (0, 0) its top left corner, that is seen along a unit vector: the
+/// middle looks along -z, up is +y, right is +x. Not turned.
+FN Vec2 direction_to_latlong(Vec3 d) {
+    Vec2 result = {Float(0.5f) + find_angle(d.x, Float(0.0f) - d.z) * Float(0.5f / kPi),
+                   find_arc_cosine(clamp(d.y, Float(-1.0f), Float(1.0f))) * Float(1.0f / kPi)};
+    return result;
+}
+
+FN Vec3 latlong_to_direction(Vec2 p) {
+    SinCos phi = find_sin_cos((p.x - Float(0.5f)) * Float(2.0f * kPi));
+    SinCos theta = find_sin_cos(p.y * Float(kPi));
+    Vec3 result = {theta.sine * phi.sine, theta.cosine, Float(0.0f) - theta.sine * phi.cosine};
+    return result;
+}
+
+FN Vec3 turn_into_environment(EnvironmentData e, Vec3 d) {
+    Float s = Float(e.sin_turn);
+    Float c = Float(e.cos_turn);
+    Vec3 result = {d.x * c - d.z * s, d.y, d.x * s + d.z * c};
+    return result;
+}
+
+FN Vec3 turn_out_of_environment(EnvironmentData e, Vec3 d) {
+    Float s = Float(e.sin_turn);
+    Float c = Float(e.cos_turn);
+    Vec3 result = {d.x * c + d.z * s, d.y, d.z * c - d.x * s};
+    return result;
+}
+
+/// Point of the image that is seen along a world direction.
+FN Vec2 locate_in_environment(EnvironmentData e, Vec3 direction) {
+    return direction_to_latlong(turn_into_environment(e, direction));
+}
+
+/// Position in [0, 1]^2 from the top left corner of the image, in texels from the centre of texel (0, 0).
+FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
+    Vec2 result = {position.x * size.x - Float(0.5f), position.y * size.y - Float(0.5f)};
+    return result;
+}
+
+/// Cell of `count` along one axis that holds a position in [0, 1], as a whole number; the first one for what
+/// is no number.
+FN Float locate_environment_cell(Float position, Float count) {
+    Float cell = floor(position * count);
+    return select(cell > Float(0.0f), min(cell, count - Float(1.0f)), Float(0.0f));
+}
+
+/// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, which have no
+/// measure.
+FN Float environment_cell_density(EnvironmentData e, Float probability, Vec3 direction) {
+    Float sine = sqrt(direction.x * direction.x + direction.z * direction.z);
+    Bool is_pole = sine == Float(0.0f);
+    float cells = float(e.cells_x * e.cells_y) * (0.5f / (kPi * kPi));
+    return select(is_pole, Float(0.0f), probability * Float(cells) / select(is_pole, Float(1.0f), sine));
+}
+
+/// Position of u within the interval [low, high) of a cumulative distribution, in [0, 1).
+FN Float locate_in_interval(Float u, Float low, Float high) {
+    Float width = high - low;
+    Float position = (u - low) / max(width, Float(1e-37f));
+    return select(width > Float(0.0f), min(position, Float(0.999999940395355224609375f)), Float(0.5f));
+}
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,41 @@
+// Vector arithmetic whose every operation rounds once, in one order, in C++ and GLSL alike: what decides
+// where surfaces are goes through here.
+#ifndef RELIEF_EXACT_H
+#define RELIEF_EXACT_H
+#include "formulas/begin.h"
+
+FN Vec3 add_exact(Vec3 a, Vec3 b) {
+    EXACT Vec3 r = a + b;
+    return r;
+}
+
+FN Vec3 subtract_exact(Vec3 a, Vec3 b) {
+    EXACT Vec3 r = a - b;
+    return r;
+}
+
+FN Vec3 scale_exact(Vec3 a, float s) {
+    EXACT Vec3 r = a * s;
+    return r;
+}
+
+FN float dot_exact(Vec3 a, Vec3 b) {
+    EXACT float r = a.x * b.x + a.y * b.y + a.z * b.z;
+    return r;
+}
+
+FN Vec3 cross_exact(Vec3 a, Vec3 b) {
+    EXACT float x = a.y * b.z - a.z * b.y;
+    EXACT float y = a.z * b.x - a.x * b.z;
+    EXACT float z = a.x * b.y - a.y * b.x;
+    Vec3 r = {x, y, z};
+    return r;
+}
+
+FN uint min_uint(uint a, uint b) { return a < b ? a : b; }
+
+/// Component 0, 1 or 2.
+FN float select_axis(Vec3 v, uint axis) { return axis == 0u ? v.x : axis == 1u ? v.y : v.z; }
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,325 @@
+// Sixteen (or eight, or four) floats as one value on every instruction set: one register on AVX-512, two on
+// AVX2, four on SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside
+// HWY_NAMESPACE only. Every operation rounds once and nothing is fused, so that results are the same bits on
+// every target.
+#if defined(RELIEF_MATH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_MATH_LANES_INL_H
+#undef RELIEF_MATH_LANES_INL_H
+#else
+#define RELIEF_MATH_LANES_INL_H
+#endif
+
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include "math/vec.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One bit a lane.
+using LaneMask = uint32_t;
+
+template <size_t kWidth> struct Lanes {
+    using D = hn::CappedTag<float, kWidth>;
+    using V = hn::Vec<D>;
+    static constexpr size_t kLanes = hn::MaxLanes(D());
+    static constexpr size_t kParts = kWidth / kLanes;
+
+    V part[kParts];
+
+    Lanes() = default;
+    HWY_INLINE explicit Lanes(float value) {
+        for (size_t p = 0; p < kParts; ++p) part[p] = hn::Set(D(), value);
+    }
+    static HWY_INLINE Lanes load(const float* aligned) {
+        Lanes r;
+        for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * kLanes);
+        return r;
+    }
+    static HWY_INLINE Lanes load_unaligned(const float* source) {
+        Lanes r;
+        for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::LoadU(D(), source + p * kLanes);
+        return r;
+    }
+    /// Sixteen (or eight...) pairs of numbers, firsts and seconds apart.
+    static HWY_INLINE void load_pairs(const float* source, Lanes& first, Lanes& second) {
+        for (size_t p = 0; p < kParts; ++p)
+            hn::LoadInterleaved2(D(), source + 2 * p * kLanes, first.part[p], second.part[p]);
+    }
+    /// origin + code * scale of the codes of a quantised box. The scale is a power of two, so products are
+    /// exact, and the sum has the same bits whether it is fused with them or not.
+    static HWY_INLINE Lanes decode(const uint8_t* codes, float origin, float scale) {
+        const hn::Rebind<uint8_t, D> d8;
+        const hn::Rebind<int32_t, D> d32;
+        Lanes r;
+        for (size_t p = 0; p < kParts; ++p) {
+            const V code = hn::ConvertTo(D(), hn::PromoteTo(d32, hn::LoadU(d8, codes + p * kLanes)));
+            r.part[p] = hn::MulAdd(code, hn::Set(D(), scale), hn::Set(D(), origin));
+        }
+        return r;
+    }
+    HWY_INLINE void store(float* aligned) const {
+        for (size_t p = 0; p < kParts; ++p) hn::Store(part[p], D(), aligned + p * kLanes);
+    }
+    HWY_INLINE void store_unaligned(float* target) const {
+        for (size_t p = 0; p < kParts; ++p) hn::StoreU(part[p], D(), target + p * kLanes);
+    }
+    /// floor, as 32-bit integers in memory.
+    HWY_INLINE void store_as_integers(int32_t* aligned) const {
+        const hn::Rebind<int32_t, D> d32;
+        for (size_t p = 0; p < kParts; ++p) hn::Store(hn::ConvertTo(d32, part[p]), d32, aligned + p * kLanes);
+    }
+};
+
+#define RELIEF_LANES_BINARY(name, function)                                                                  \
+    template <size_t W> HWY_INLINE Lanes<W> name(const Lanes<W>& a, const Lanes<W>& b) {                     \
+        Lanes<W> r;                                                                                          \
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);        \
+        return r;                                                                                            \
+    }
+RELIEF_LANES_BINARY(operator+, Add)
+RELIEF_LANES_BINARY(operator-, Sub)
+RELIEF_LANES_BINARY(operator*, Mul)
+RELIEF_LANES_BINARY(operator/, Div)
+RELIEF_LANES_BINARY(min, Min)
+RELIEF_LANES_BINARY(max, Max)
+#undef RELIEF_LANES_BINARY
+
+template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
+    Lanes<W> r;
+    for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::Floor(a.part[p]);
+    return r;
+}
+
+/// In one piece from the mask to the number and back: a word that is stored by bytes, or the other way round,
+/// has to wait for its stores.
+static_assert(std::endian::native == std::endian::little);
+template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
+    alignas(8) uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    std::conditional_t<(hn::MaxLanes(D()) > 8), uint16_t, uint8_t> bits;
+    std::memcpy(&bits, bytes, sizeof(bits));
+    return bits;
+}
+
+/// Stores the lanes of `mask` one after another. A whole register is written: what follows them is undefined.
+template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, hn::TFromD<D>* target) {
+    const uint64_t bits = mask;
+    hn::StoreU(hn::CompressBits(v, reinterpret_cast<const uint8_t*>(&bits)), d, target);
+}
+
+#define RELIEF_LANES_COMPARE(name, function)                                                                 \
+    template <size_t W> HWY_INLINE LaneMask name(const Lanes<W>& a, const Lanes<W>& b) {                     \
+        LaneMask bits = 0;                                                                                   \
+        for (size_t p = 0; p < Lanes<W>::kParts; ++p)                                                        \
+            bits |= to_bits(typename Lanes<W>::D(), hn::function(a.part[p], b.part[p]))                      \
+                    << (p * Lanes<W>::kLanes);                                                               \
+        return bits;                                                                                         \
+    }
+RELIEF_LANES_COMPARE(less_equal, Le)
+RELIEF_LANES_COMPARE(less, Lt)
+RELIEF_LANES_COMPARE(equal, Eq)
+RELIEF_LANES_COMPARE(not_equal, Ne) // of a NaN: true or false, by instruction set
+#undef RELIEF_LANES_COMPARE
+
+/// a where x < y, else b.
+template <size_t W>
+HWY_INLINE Lanes<W> select_less(const Lanes<W>& x, const Lanes<W>& y, const Lanes<W>& a, const Lanes<W>& b) {
+    Lanes<W> r;
+    for (size_t p = 0; p < Lanes<W>::kParts; ++p)
+        r.part[p] = hn::IfThenElse(hn::Lt(x.part[p], y.part[p]), a.part[p], b.part[p]);
+    return r;
+}
+
+template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
+    auto least = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
+    return hn::GetLane(hn::MinOfLanes(typename Lanes<W>::D(), least));
+}
+
+template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
+    auto greatest = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) greatest = hn::Max(greatest, a.part[p]);
+    return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
+}
+
+/// In no order that is promised.
+template <size_t W> HWY_INLINE float reduce_sum(const Lanes<W>& a) {
+    auto sum = a.part[0];
+    for (size_t p = 1; p < Lanes<W>::kParts; ++p) sum = hn::Add(sum, a.part[p]);
+    return hn::GetLane(hn::SumOfLanes(typename Lanes<W>::D(), sum));
+}
+
+/// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
+/// triangle.
+template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {
+    const Lanes<W> zero(0.0f);
+    return less_equal(zero, min(min(u, v), w)) | less_equal(max(max(u, v), w), zero);
+}
+
+using Lanes16 = Lanes<16>;
+
+/// Sixteen whole numbers: places that lanes come from, which are not negative, or words to be stored.
+struct LaneIndices {
+    using D = hn::Rebind<int32_t, Lanes16::D>;
+    hn::Vec<D> part[Lanes16::kParts];
+
+    LaneIndices() = default;
+    HWY_INLINE explicit LaneIndices(int32_t value) {
+        for (auto& p : part) p = hn::Set(D(), value);
+    }
+    static HWY_INLINE LaneIndices load(const uint32_t* source) {
+        LaneIndices r;
+        const hn::RebindToUnsigned<D> d;
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            r.part[p] = hn::BitCast(D(), hn::LoadU(d, source + p * Lanes16::kLanes));
+        return r;
+    }
+    HWY_INLINE void store(int32_t* aligned) const {
+        for (size_t p = 0; p < Lanes16::kParts; ++p) hn::Store(part[p], D(), aligned + p * Lanes16::kLanes);
+    }
+    HWY_INLINE LaneIndices operator+(const LaneIndices& other) const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::Add(part[p], other.part[p]);
+        return r;
+    }
+    /// The bits of floats.
+    HWY_INLINE explicit LaneIndices(const Lanes16& bits) {
+        for (size_t p = 0; p < Lanes16::kParts; ++p) part[p] = hn::BitCast(D(), bits.part[p]);
+    }
+    /// Of floats that are whole numbers.
+    static HWY_INLINE LaneIndices convert(const Lanes16& whole) {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(D(), whole.part[p]);
+        return r;
+    }
+    HWY_INLINE Lanes16 bits() const {
+        Lanes16 r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::BitCast(Lanes16::D(), part[p]);
+        return r;
+    }
+    HWY_INLINE Lanes16 to_floats() const {
+        Lanes16 r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(Lanes16::D(), part[p]);
+        return r;
+    }
+    template <int kBits> HWY_INLINE LaneIndices shifted_up() const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftLeft<kBits>(part[p]);
+        return r;
+    }
+    template <int kBits> HWY_INLINE LaneIndices shifted_down() const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftRight<kBits>(part[p]);
+        return r;
+    }
+    HWY_INLINE LaneIndices masked(int32_t bits) const {
+        LaneIndices r;
+        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::And(part[p], hn::Set(D(), bits));
+        return r;
+    }
+};
+
+/// Lanes of `a` where a number is negative, else of `b`.
+HWY_INLINE Lanes16 select_negative(const LaneIndices& number, const Lanes16& a, const Lanes16& b) {
+    Lanes16 r;
+    for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        const auto is_negative = hn::Lt(number.part[p], hn::Zero(LaneIndices::D()));
+        r.part[p] = hn::IfThenElse(hn::RebindMask(Lanes16::D(), is_negative), a.part[p], b.part[p]);
+    }
+    return r;
+}
+
+/// base[index] in every lane.
+HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
+    Lanes16 r;
+    for (size_t p = 0; p < Lanes16::kParts; ++p)
+        r.part[p] = hn::GatherIndex(Lanes16::D(), base, index.part[p]);
+    return r;
+}
+
+/// kCount floats, eight or sixteen, that lanes pick from by indices below kCount: out of registers where two
+/// hold all, else out of memory, which is slower.
+template <size_t kCount> struct LaneTable {
+    using Values = Lanes<kCount>;
+    static constexpr bool kIsInRegisters = Lanes16::kLanes >= 8;
+    Values lanes;
+    alignas(64) float stored[kIsInRegisters ? 1 : kCount];
+
+    HWY_INLINE explicit LaneTable(const Values& values) : lanes(values) {
+        if constexpr (!kIsInRegisters) values.store(stored);
+    }
+    HWY_INLINE Lanes16 pick(const LaneIndices& index) const {
+        if constexpr (kIsInRegisters) {
+            Lanes16 r;
+            for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = look_up(*this, index.part[p]);
+            return r;
+        } else {
+            return gather(stored, index);
+        }
+    }
+
+  private:
+    /// `table` is this one: a template, so that each instruction set compiles its own way only.
+    template <class Table, class Index> static HWY_INLINE auto look_up(const Table& table, Index index) {
+        const Lanes16::D d;
+        const hn::Rebind<int32_t, Lanes16::D> d32;
+        if constexpr (Table::Values::kLanes < Lanes16::kLanes) {
+            const auto values = hn::Combine(d, table.lanes.part[0], table.lanes.part[0]);
+            return hn::TableLookupLanes(values, hn::IndicesFromVec(d, index));
+        } else if constexpr (Table::Values::kParts == 1) {
+            return hn::TableLookupLanes(table.lanes.part[0], hn::IndicesFromVec(d, index));
+        } else if constexpr (Table::Values::kParts == 2) {
+            const auto last = hn::Set(d32, int32_t(Lanes16::kLanes - 1));
+            const auto within = hn::IndicesFromVec(d, hn::And(index, last));
+            return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, last)),
+                                  hn::TableLookupLanes(table.lanes.part[1], within),
+                                  hn::TableLookupLanes(table.lanes.part[0], within));
+        }
+    }
+};
+
+using Lanes8 = Lanes<8>;
+using Lanes4 = Lanes<4>;
+
+/// Four floats of each lane, one lane after another.
+struct LaneQuads {
+    alignas(64) float lane[16][4];
+
+    HWY_INLINE void transpose(Lanes16& a, Lanes16& b, Lanes16& c, Lanes16& d) const {
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            hn::LoadInterleaved4(Lanes16::D(), lane[p * Lanes16::kLanes], a.part[p], b.part[p], c.part[p],
+                                 d.part[p]);
+    }
+    HWY_INLINE void set(const Lanes16& a, const Lanes16& b, const Lanes16& c, const Lanes16& d) {
+        for (size_t p = 0; p < Lanes16::kParts; ++p)
+            hn::StoreInterleaved4(a.part[p], b.part[p], c.part[p], d.part[p], Lanes16::D(),
+                                  lane[p * Lanes16::kLanes]);
+    }
+};
+
+/// The shared formulas over sixteen lanes.
+namespace wide {
+using Float = Lanes16;
+#define RELIEF_LANES
+#include "formulas/displace.h"
+#undef RELIEF_LANES
+} // namespace wide
+
+/// The same over the four channels of a texel.
+namespace texel {
+using Float = Lanes4;
+#define RELIEF_LANES
+#include "formulas/displace.h"
+#undef RELIEF_LANES
+} // namespace texel
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

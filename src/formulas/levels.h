@@ -1,0 +1,62 @@
+// Levels of a patch and of its edges, and what they do to samples on the boundary.
+#ifndef RELIEF_LEVELS_H
+#define RELIEF_LEVELS_H
+#include "formulas/begin.h"
+
+/// Level of surface M_bias.
+FN uint lower_level(uint level, uint bias) { return level > bias ? level - bias : 0u; }
+
+/// Packed levels: 5 x 4 bits, the patch's own, then those of its edges.
+FN uint packed_patch_level(uint packed) { return packed & 15u; }
+FN uint packed_edge_level(uint packed, uint edge) { return (packed >> (4u + 4u * edge)) & 15u; }
+
+FN uint lower_packed_levels(uint packed, uint bias) {
+    uint result = 0u;
+    for (uint k = 0u; k < 20u; k += 4u) result |= lower_level((packed >> k) & 15u, bias) << k;
+    return result;
+}
+
+/// The same level for a patch and its edges.
+FN uint pack_uniform_level(uint level) { return level * 0x11111u; }
+
+/// Sample of an edge, counted from the start of its line, after its move onto the nearest sample of the
+/// edge's level, which is `shift` below the patch's (half way: the later one).
+FN uint move_line_sample(uint k, uint shift) { return (k + ((1u << shift) >> 1u)) >> shift << shift; }
+
+/// Edge that sample (i, j) of 2^level a side lies on, 0 to 3; 4 inside and at corners.
+FN uint find_sample_edge(uint i, uint j, uint level) {
+    uint n = 1u << level;
+    bool is_on_u_edge = j == 0u || j == n;
+    bool is_on_v_edge = i == 0u || i == n;
+    if (is_on_u_edge == is_on_v_edge) return 4u;
+    return j == 0u ? 0u : i == n ? 1u : j == n ? 2u : 3u;
+}
+
+/// Number of sample (i, j) of edge `edge`, counted from the start of its line.
+FN uint find_line_sample(uint i, uint j, uint level, uint edge, bool is_reversed) {
+    uint n = 1u << level;
+    uint k = edge == 0u ? i : edge == 1u ? j : edge == 2u ? n - i : n - j;
+    return is_reversed ? n - k : k;
+}
+
+struct GridSample {
+    uint i, j;
+};
+
+/// Where sample (i, j) of edge `edge` moves to when the edge is `shift` levels coarser than the patch;
+/// `reversed` has a bit for each edge whose line runs against the patch's own direction.
+FN GridSample move_boundary_sample(uint i, uint j, uint level, uint edge, uint shift, uint reversed) {
+    uint n = 1u << level;
+    bool is_reversed = ((reversed >> edge) & 1u) != 0u;
+    uint k = move_line_sample(find_line_sample(i, j, level, edge, is_reversed), shift);
+    if (is_reversed) k = n - k;
+    GridSample result = {i, j};
+    if (edge == 0u) result.i = k;
+    if (edge == 1u) result.j = k;
+    if (edge == 2u) result.i = n - k;
+    if (edge == 3u) result.j = n - k;
+    return result;
+}
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,39 @@
+// The order in which a device takes the pixels of a window: squares of neighbours.
+#ifndef RELIEF_PIXEL_ORDER_H
+#define RELIEF_PIXEL_ORDER_H
+#include "formulas/exact.h"
+
+#include "formulas/begin.h"
+
+/// Edge of the squares that neighbouring paths come from, so that their rays go the same way.
+const uint kPixelSquare = 8u;
+
+struct PixelPlace {
+    uint x, y;
+};
+
+/// Pixel `index` of a window in the order of squares: bands of rows, squares in a band, rows in a square;
+/// those at the right and lower edge are cut.
+FN PixelPlace place_pixel(uint index, uint width, uint height) {
+    uint band = index / (kPixelSquare * width);
+    uint in_band = index - band * kPixelSquare * width;
+    uint rows = min_uint(kPixelSquare, height - band * kPixelSquare);
+    uint square = in_band / (kPixelSquare * rows);
+    uint in_square = in_band - square * kPixelSquare * rows;
+    uint columns = min_uint(kPixelSquare, width - square * kPixelSquare);
+    PixelPlace result = {square * kPixelSquare + in_square % columns,
+                         band * kPixelSquare + in_square / columns};
+    return result;
+}
+
+/// The number that place_pixel takes to a pixel.
+FN uint find_pixel_number(uint x, uint y, uint width, uint height) {
+    uint band = y / kPixelSquare;
+    uint square = x / kPixelSquare;
+    uint rows = min_uint(kPixelSquare, height - band * kPixelSquare);
+    uint columns = min_uint(kPixelSquare, width - square * kPixelSquare);
+    return kPixelSquare * (band * width + square * rows) + y % kPixelSquare * columns + x % kPixelSquare;
+}
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,83 @@
+// From a place on a patch to the point of the surface that shading sees, in any number of lanes.
+#if !defined(RELIEF_SURFACE_POINT_H) || defined(RELIEF_LANES)
+#ifndef RELIEF_LANES
+#define RELIEF_SURFACE_POINT_H
+#endif
+#include "formulas/begin.h"
+
+/// Barycentric weights of corners 1 and 2 of a micro-triangle.
+struct CornerWeights {
+    Float b, c;
+};
+
+/// Point of a micro-triangle, world space.
+struct TrianglePoint {
+    Vec3 position;
+    Vec3 normal;       ///< unit length, side of the winding; zero for a triangle that has vanished
+    Float area_per_uv; ///< world area over its share of the patch's (u, v)
+};
+
+/// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`:
+/// (i, j); `side`: cells along the patch.
+FN CornerWeights weigh_cell_corners(Vec2 at, Vec2 cell, Bool is_upper, Float side) {
+    Float x = clamp(at.x * side - cell.x, Float(0.0f), Float(1.0f));
+    Float y = clamp(at.y * side - cell.y, Float(0.0f), Float(1.0f));
+    CornerWeights weights = {select(is_upper, x, max(x - y, Float(0.0f))),
+                             select(is_upper, max(y - x, Float(0.0f)), y)};
+    return weights;
+}
+
+FN Vec3 blend_corners(Vec3 a, Vec3 b, Vec3 c, CornerWeights weights) {
+    return a * (Float(1.0f) - weights.b - weights.c) + b * weights.b + c * weights.c;
+}
+
+/// `edge_b`, `edge_c`: from corner 0 to corners 1 and 2, world space; `turn`: -1 where the instance mirrors,
+/// else 1.
+FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, Float turn, Float uv_area) {
+    Vec3 area = cross(edge_b, edge_c) * turn;
+    TrianglePoint point = {position, make_unit(area), Float(0.5f) * length(area) / uv_area};
+    return point;
+}
+
+FN Float largest_coordinate(Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+FN Float sum_magnitudes(Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+
+/// A point is interpolated between corners and transformed, and the ray that leaves it is transformed back:
+/// each step errs by a few units in the last place of the largest number that it adds up. `corner`: largest
+/// coordinate of the corners in object space; `row`: largest sum_magnitudes of the linear part's rows;
+/// `translation` and `position`: their largest coordinates.
+FN Float bound_position_error(Float corner, Float row, Float translation, Float position) {
+    const float units = 32.0f * 5.9604644775390625e-8f;
+    return Float(units) * (row * corner + translation + position);
+}
+
+/// uv in a displaced patch; corners in their order.
+FN Vec2 blend_patch_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
+    return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) +
+           (c3 * (Float(1.0f) - at.x) + c2 * at.x) * at.y;
+}
+
+/// uv in a plain polygon: linear on each of its two triangles, as their positions are.
+FN Vec2 blend_polygon_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
+    Vec2 lower = c0 * (Float(1.0f) - at.x) + c1 * (at.x - at.y) + c2 * at.y;
+    Vec2 upper = c0 * (Float(1.0f) - at.y) + c2 * at.x + c3 * (at.y - at.x);
+    return select(at.y <= at.x, lower, upper);
+}
+
+/// World-space shading normal from that of the surface, `interpolated`, made unit length and put on the side
+/// of `geometric_normal`.
+FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 geometric_normal) {
+    Vec3 normal = make_unit(interpolated);
+    normal = select(dot(normal, normal) == Float(0.0f), geometric_normal, normal);
+    return select(dot(normal, geometric_normal) < Float(0.0f), -normal, normal);
+}
+
+/// Origin for a ray that leaves a point into `direction`: moved off the surface by the point's error, along
+/// the geometric normal, to the side that the direction is on.
+FN Vec3 offset_origin(Vec3 position, Vec3 normal, Float position_error, Vec3 direction) {
+    Float side = select(dot(direction, normal) < Float(0.0f), Float(-1.0f), Float(1.0f));
+    return position + normal * (side * position_error);
+}
+
+#include "formulas/end.h"
+#endif

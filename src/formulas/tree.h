@@ -1,0 +1,233 @@
+// Layouts of the trees that traverse_*.h walk, and what those expect of their includer.
+//
+// traverse_*.h are no formulas but loops: GLSL includes them after the hooks below are declared, C++ includes
+// them in the body of a class that has the hooks as members (lab/walks/walk_members-inl.h). Hence they are
+// not in all.h. Each has a state of a few words, in a global variable or member: start_x(root) makes it,
+// walk_x() goes on from it. They move the state on before they visit a leaf; so a leaf that is an instance
+// saves the state and puts that of another tree in its place, and resume_walk() brings the old one back.
+//
+// Hooks of all walks:
+// - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the walk.
+// - bool resume_walk(): the tree is done; true: the state is another's now.
+// - float get_limit(): t_max of the ray, shortened by hits.
+// - void count_box_test(), count_restart(), count_bytes(uint): empty where nobody counts. Bytes are those
+//   of nodes, links and directories; primitives are counted by visit_leaf.
+//
+// Of walks over boxes:
+// - TreeNode load_node(uint node): 32 bytes.
+// - float enter_box(TreeNode node): entry into the box, infinity: missed or beyond the limit. See cross_node.
+// - float enter_whole_box(TreeNode node): the same for t_max before any hit. Restart trail only.
+// - bool is_axis_backward(uint axis): is the direction below zero? For the order of trail and parent links.
+// - Key: a type, uint or HeapKey, for trees of kTrailLevels32 or 64 levels. Trails and restart trail.
+// - uint find_slot(Key key): where the node of a key lies; siblings follow one another. Trail, pair trail.
+// - HeapForm get_heap_form(), HeapBlock load_heap_block(uint), HeapBrick load_heap_brick(uint), for
+//   succinct_heap.h.
+// - uint load_parent(uint node): 4 bytes. Parent links.
+// - uint load_skip(uint node): 4 bytes; kNoNode behind the last. Skip links.
+//
+// Of kd-trees: KdNode load_kd_node(uint node), 8 bytes; KdBox load_kd_box(uint node), 32 bytes, backtrack
+// only. There `word` of visit_leaf is the count alone.
+#ifndef RELIEF_TREE_H
+#define RELIEF_TREE_H
+#include "formulas/constants.h"
+#include "formulas/exact.h"
+#include "formulas/object_ray.h"
+
+#include "formulas/begin.h"
+
+const uint kNoNode = 0xffffffffu;
+
+/// Rounds of one walk; a device may end its loops earlier, and then walk_x() returns false.
+const uint kMostRounds = 0xffffffffu;
+
+/// Entries of the full stack, and of the short one (a power of two).
+const uint kTreeStackSize = 128u;
+const uint kShortStackSize = 4u;
+
+/// Where a walk by parent links comes from.
+const uint kFromParent = 0u;
+const uint kFromSibling = 1u;
+const uint kFromChild = 2u;
+
+/// 32 bytes, the bits of relief::BvhNode. Children of an inner node are first and first + 1, the lower one
+/// along the axis first. A leaf's `first` and count are the includer's own, as are the highest four bits of
+/// its word.
+struct TreeNode {
+    Vec3 lower;
+    uint first;
+    Vec3 upper;
+    uint word; ///< bits 0 to 25: primitives, 26 and 27: axis of an inner node, 28 to 31: kind of a leaf
+};
+const uint kNodeBytes = 32u;
+const uint kNodeCountMask = 0x03ffffffu;
+const uint kNodeAxisShift = 26u;
+const uint kNodeAxisMask = 0x0c000000u;
+const uint kEmptySlot = 0xf3ffffffu; ///< word of a heap slot without a node: no walk comes there
+
+FN bool is_leaf_word(uint word) { return (word & ~kNodeAxisMask) != 0u; }
+FN uint get_word_count(uint word) { return word & kNodeCountMask; }
+FN uint get_word_axis(uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
+FN uint make_inner_word(uint axis) { return axis << kNodeAxisShift; }
+
+/// What enter_box returns for a ray's interval.
+FN float cross_node(ObjectRay ray, TreeNode node, float t_min, float t_max) {
+    BoxInterval interval = cross_box(ray, node.lower, node.upper, t_min, t_max);
+    return is_box_met(interval) ? interval.entry : make_infinity();
+}
+
+// Heap: slot k of the array is the node of key k (slot 0 is empty). Both children of a node are one 64-byte
+// line.
+//
+// Succinct heap: no empty slots. The root is slot 1; the pairs of children follow from slot 2 on, in the
+// order of their parents' keys as far as the flat part of the directory goes. A bit says that a key is an
+// inner node. The flat part has a bit for each key below 2^(flat_levels + 1): below 2^flat_levels its rank is
+// the number of its pair; for the keys on the level of `flat_levels` it is the number of a brick, after the
+// pairs. A brick stands for six levels: bit i of `inner` is its inner node of local key i (1 to 63), ranked
+// from first_pair; bit i of `deeper` says that the node of local key 64 + i has a brick, ranked from
+// first_brick.
+
+/// 64 keys of the flat part.
+struct HeapBlock {
+    uint inner_low, inner_high;
+    uint rank; ///< bits set in the blocks before
+};
+
+struct HeapBrick {
+    uint inner_low, inner_high, first_pair;
+    uint deeper_low, deeper_high, first_brick;
+};
+
+struct HeapForm {
+    uint flat_levels;
+    uint flat_pairs; ///< pairs before those of the first brick
+};
+const uint kHeapBlockBytes = 12u;
+const uint kHeapBrickBytes = 24u;
+const uint kBrickLevels = 6u;
+
+/// Bits set below bit `place` (0 to 63).
+FN uint rank_bits(uint low, uint high, uint place) {
+    if (place < 32u) return uint(bitCount(low & ((1u << place) - 1u)));
+    return uint(bitCount(low)) + uint(bitCount(high & ((1u << (place - 32u)) - 1u)));
+}
+
+/// Kd-tree, 8 bytes: inner: `bits` is the plane as a float, the left child follows its parent, word = right
+/// child << 2 | axis; leaf: `bits` is the first entry of the ids, word = count << 2 | 3; a leaf may be empty.
+struct KdNode {
+    uint bits;
+    uint word;
+};
+const uint kKdNodeBytes = 8u;
+const uint kKdLeaf = 3u;
+
+/// Cell of a node, for the way back, open where the root ends; kNoNode above the root.
+struct KdBox {
+    Vec3 lower;
+    uint parent;
+    Vec3 upper;
+    uint unused; ///< 0; keeps records to 32 bytes
+};
+const uint kKdBoxBytes = 32u;
+
+/// Part of a ray inside the root's cell. The origin is moved to where the ray enters, and t counts from
+/// there: planes far from the origin would fall together. t of the ray = t + offset.
+struct KdRay {
+    Vec3 origin;
+    Vec3 direction;
+    float offset;
+    float end; ///< below 0: the cell is missed
+};
+
+/// origin + speed t, rounded as if at once, so that a ray from far away is not shifted: what the product
+/// loses is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
+FN float move_origin(float origin, float speed, float t) {
+    EXACT float product = speed * t;
+    EXACT float sum = origin + product;
+    if (!(abs(t) < 1e34f)) return sum;
+    EXACT float speed_shifted = speed * 4097.0f;
+    EXACT float speed_high = speed_shifted - (speed_shifted - speed);
+    EXACT float speed_low = speed - speed_high;
+    EXACT float t_shifted = t * 4097.0f;
+    EXACT float t_high = t_shifted - (t_shifted - t);
+    EXACT float t_low = t - t_high;
+    EXACT float lost =
+        ((speed_high * t_high - product) + speed_high * t_low + speed_low * t_high) + speed_low * t_low;
+    EXACT float result = sum + lost;
+    return result;
+}
+
+/// 2 - kBoxSlack. A number by itself: a compiler of shaders works out constants in double precision.
+const float kCellSlack = 0.99999845f;
+
+FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t_max) {
+    BoxInterval interval = cross_box(ray, lower, upper, t_min, t_max);
+    // Not behind the face: far away, the steps between floats are longer than the cell's margin.
+    EXACT float offset = interval.entry * kCellSlack;
+    EXACT float end = interval.exit * kBoxSlack - offset;
+    Vec3 origin = {move_origin(ray.origin.x, ray.direction.x, offset),
+                   move_origin(ray.origin.y, ray.direction.y, offset),
+                   move_origin(ray.origin.z, ray.direction.z, offset)};
+    KdRay result;
+    result.direction = ray.direction;
+    result.origin = offset > 0.0f ? origin : ray.origin;
+    result.offset = offset;
+    result.end = is_box_met(interval) ? max(end, 0.0f) : -1.0f;
+    return result;
+}
+
+/// Where the ray crosses the plane; only for a direction that is not zero along the axis.
+FN float cross_plane(KdRay ray, uint axis, float plane) {
+    EXACT float t = (plane - select_axis(ray.origin, axis)) / select_axis(ray.direction, axis);
+    return t;
+}
+
+/// One step down: the side to go to, and where on the ray that side ends.
+struct KdStep {
+    uint node;
+    float far;
+    uint is_split; ///< 1: the other side follows
+};
+
+/// Inner node `node`, which the ray is inside of from `near` to `far`. At near == plane the ray is past it:
+/// that is what lets a walk that starts again at a plane get on.
+FN KdStep step_down(KdRay ray, uint node, KdNode data, float near, float far) {
+    uint axis = data.word & 3u;
+    float plane = uintBitsToFloat(data.bits);
+    uint left = node + 1u;
+    uint right = data.word >> 2u;
+    float speed = select_axis(ray.direction, axis);
+    KdStep step = {left, far, 0u};
+    if (speed == 0.0f) {
+        step.node = select_axis(ray.origin, axis) <= plane ? left : right;
+        return step;
+    }
+    float t = cross_plane(ray, axis, plane);
+    uint first = speed > 0.0f ? left : right;
+    step.node = t <= near ? left + right - first : first;
+    if (t > near && t < far) {
+        step.far = t;
+        step.is_split = 1u;
+    }
+    return step;
+}
+
+/// Where the ray leaves a cell, by the same operations as cross_plane of its planes.
+FN float leave_cell(KdRay ray, Vec3 lower, Vec3 upper, float far) {
+    if (ray.direction.x != 0.0f)
+        far = min(far, cross_plane(ray, 0u, ray.direction.x > 0.0f ? upper.x : lower.x));
+    if (ray.direction.y != 0.0f)
+        far = min(far, cross_plane(ray, 1u, ray.direction.y > 0.0f ? upper.y : lower.y));
+    if (ray.direction.z != 0.0f)
+        far = min(far, cross_plane(ray, 2u, ray.direction.z > 0.0f ? upper.z : lower.z));
+    return far;
+}
+
+/// Whether a walk that has come to `near` lies behind the nearest hit, with room for the rounding of both.
+FN bool is_kd_walk_over(KdRay ray, float near, float t_max) {
+    EXACT float reach = t_max * kBoxSlack;
+    EXACT float place = near + ray.offset;
+    return place > reach;
+}
+
+#include "formulas/end.h"
+#endif

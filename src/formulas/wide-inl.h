@@ -1,0 +1,261 @@
+// Sixteen-lane C++ door to the formulas in src/shared: vectors, comparisons and selections over the lanes of
+// lanes-inl.h. Every lane goes through the operations of the one-lane door in their order, hence the same
+// bits. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
+#if defined(RELIEF_MATH_WIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_MATH_WIDE_INL_H
+#undef RELIEF_MATH_WIDE_INL_H
+#else
+#define RELIEF_MATH_WIDE_INL_H
+#endif
+
+#include <limits>
+
+#include "formulas/constants.h"
+#include "formulas/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE::wide {
+
+/// One truth value a lane.
+struct Bool {
+    hn::Mask<Float::D> part[Float::kParts];
+};
+
+#define RELIEF_WIDE_COMPARE(name, function)                                                                  \
+    HWY_INLINE Bool name(const Float& a, const Float& b) {                                                   \
+        Bool r;                                                                                              \
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
+        return r;                                                                                            \
+    }
+RELIEF_WIDE_COMPARE(operator<, Lt)
+RELIEF_WIDE_COMPARE(operator<=, Le)
+RELIEF_WIDE_COMPARE(operator>, Gt)
+RELIEF_WIDE_COMPARE(operator>=, Ge)
+RELIEF_WIDE_COMPARE(operator==, Eq)
+#undef RELIEF_WIDE_COMPARE
+
+/// Lanes whose number is not 0.
+HWY_INLINE Bool is_set(const float* aligned) {
+    Bool r;
+    const Float value = Float::load(aligned), zero(0.0f);
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Ne(value.part[p], zero.part[p]);
+    return r;
+}
+
+#define RELIEF_WIDE_LOGIC(name, function)                                                                    \
+    HWY_INLINE Bool name(const Bool& a, const Bool& b) {                                                     \
+        Bool r;                                                                                              \
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
+        return r;                                                                                            \
+    }
+RELIEF_WIDE_LOGIC(operator&&, And)
+RELIEF_WIDE_LOGIC(operator||, Or)
+#undef RELIEF_WIDE_LOGIC
+
+HWY_INLINE Bool operator!(const Bool& a) {
+    Bool r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Not(a.part[p]);
+    return r;
+}
+
+HWY_INLINE LaneMask to_mask(const Bool& b) {
+    LaneMask bits = 0;
+    for (size_t p = 0; p < Float::kParts; ++p) bits |= to_bits(Float::D(), b.part[p]) << (p * Float::kLanes);
+    return bits;
+}
+
+HWY_INLINE bool is_any(const Bool& b) {
+    bool any = false;
+    for (size_t p = 0; p < Float::kParts; ++p) any = any || !hn::AllFalse(Float::D(), b.part[p]);
+    return any;
+}
+
+HWY_INLINE Float select(const Bool& condition, const Float& a, const Float& b) {
+    Float r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] = hn::IfThenElse(condition.part[p], a.part[p], b.part[p]);
+    return r;
+}
+
+#define RELIEF_WIDE_UNARY(name, function)                                                                    \
+    HWY_INLINE Float name(const Float& a) {                                                                  \
+        Float r;                                                                                             \
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p]);                      \
+        return r;                                                                                            \
+    }
+RELIEF_WIDE_UNARY(operator-, Neg)
+RELIEF_WIDE_UNARY(abs, Abs)
+RELIEF_WIDE_UNARY(sqrt, Sqrt)
+#undef RELIEF_WIDE_UNARY
+
+HWY_INLINE Float copy_sign(const Float& size, const Float& sign) {
+    Float r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::CopySign(size.part[p], sign.part[p]);
+    return r;
+}
+
+// As in the one-lane door: the first operand where neither is less, nan included.
+HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a); }
+HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
+HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) { return min(max(a, low), high); }
+
+/// One 32-bit number a lane; arithmetic wraps around.
+struct Uint {
+    using D = hn::RebindToUnsigned<Float::D>;
+    hn::Vec<D> part[Float::kParts];
+
+    Uint() = default;
+    HWY_INLINE Uint(uint32_t value) {
+        for (auto& p : part) p = hn::Set(D(), value);
+    }
+    static HWY_INLINE Uint load(const uint32_t* aligned) {
+        Uint r;
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * Float::kLanes);
+        return r;
+    }
+    HWY_INLINE void store(uint32_t* aligned) const {
+        for (size_t p = 0; p < Float::kParts; ++p) hn::Store(part[p], D(), aligned + p * Float::kLanes);
+    }
+    /// The whole part of numbers in [0, 2^31); of others any number.
+    HWY_INLINE explicit Uint(const Float& value) {
+        for (size_t p = 0; p < Float::kParts; ++p)
+            part[p] = hn::BitCast(D(), hn::ConvertTo(hn::RebindToSigned<D>(), value.part[p]));
+    }
+    HWY_INLINE bool is_zero() const {
+        bool all = true;
+        for (const auto& p : part) all = all && hn::AllTrue(D(), hn::Eq(p, hn::Zero(D())));
+        return all;
+    }
+    /// Of numbers below 2^31.
+    HWY_INLINE explicit operator Float() const {
+        Float r;
+        for (size_t p = 0; p < Float::kParts; ++p)
+            r.part[p] = hn::ConvertTo(Float::D(), hn::BitCast(hn::RebindToSigned<D>(), part[p]));
+        return r;
+    }
+};
+using uint = Uint;
+
+#define RELIEF_WIDE_UINT(name, assignment, function)                                                         \
+    HWY_INLINE Uint name(const Uint& a, const Uint& b) {                                                     \
+        Uint r;                                                                                              \
+        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
+        return r;                                                                                            \
+    }                                                                                                        \
+    HWY_INLINE Uint& assignment(Uint& a, const Uint& b) { return a = name(a, b); }
+RELIEF_WIDE_UINT(operator+, operator+=, Add)
+RELIEF_WIDE_UINT(operator-, operator-=, Sub)
+RELIEF_WIDE_UINT(operator*, operator*=, Mul)
+RELIEF_WIDE_UINT(operator^, operator^=, Xor)
+RELIEF_WIDE_UINT(operator&, operator&=, And)
+RELIEF_WIDE_UINT(operator|, operator|=, Or)
+#undef RELIEF_WIDE_UINT
+
+HWY_INLINE Uint operator<<(const Uint& a, uint32_t count) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftLeftSame(a.part[p], int(count));
+    return r;
+}
+HWY_INLINE Uint operator>>(const Uint& a, uint32_t count) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftRightSame(a.part[p], int(count));
+    return r;
+}
+
+HWY_INLINE Uint min(const Uint& a, const Uint& b) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Min(a.part[p], b.part[p]);
+    return r;
+}
+HWY_INLINE Uint select(const Bool& condition, const Uint& a, const Uint& b) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] = hn::IfThenElse(hn::RebindMask(Uint::D(), condition.part[p]), a.part[p], b.part[p]);
+    return r;
+}
+
+/// base[index] in every lane; indices below 2^31.
+HWY_INLINE Float gather(const float* base, const Uint& index) {
+    Float r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] =
+            hn::GatherIndex(Float::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
+    return r;
+}
+HWY_INLINE Uint gather(const uint32_t* base, const Uint& index) {
+    Uint r;
+    for (size_t p = 0; p < Float::kParts; ++p)
+        r.part[p] =
+            hn::GatherIndex(Uint::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
+    return r;
+}
+
+struct Vec2 {
+    Float x, y;
+};
+
+struct Vec3 {
+    Float x, y, z;
+};
+
+HWY_INLINE Vec2 select(const Bool& condition, const Vec2& a, const Vec2& b) {
+    return {select(condition, a.x, b.x), select(condition, a.y, b.y)};
+}
+HWY_INLINE Vec2 operator+(const Vec2& a, const Vec2& b) { return {a.x + b.x, a.y + b.y}; }
+HWY_INLINE Vec2 operator*(const Vec2& a, const Float& s) { return {a.x * s, a.y * s}; }
+HWY_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+HWY_INLINE Vec3 operator*(const Vec3& a, const Float& s) { return {a.x * s, a.y * s, a.z * s}; }
+HWY_INLINE Vec3 operator/(const Vec3& a, const Float& s) { return {a.x / s, a.y / s, a.z / s}; }
+HWY_INLINE Bool operator==(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+HWY_INLINE Float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+HWY_INLINE Float length(const Vec3& a) { return sqrt(dot(a, a)); }
+HWY_INLINE Vec3 select(const Bool& condition, const Vec3& a, const Vec3& b) {
+    return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
+}
+
+/// normalize of math/vec.h for the lanes in `which`, one by one.
+HWY_INLINE void normalize_extreme(const Vec3& a, LaneMask which, Vec3& unit) {
+    alignas(64) float in[3][16], out[3][16];
+    a.x.store(in[0]), a.y.store(in[1]), a.z.store(in[2]);
+    unit.x.store(out[0]), unit.y.store(out[1]), unit.z.store(out[2]);
+    for (; which != 0; which &= which - 1) {
+        const int lane = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(which));
+        const Vec3f fixed = normalize(Vec3f{in[0][lane], in[1][lane], in[2][lane]});
+        out[0][lane] = fixed.x, out[1][lane] = fixed.y, out[2][lane] = fixed.z;
+    }
+    unit = {Float::load(out[0]), Float::load(out[1]), Float::load(out[2])};
+}
+
+/// Unit vectors; (0, 0, 0) for a zero or non-finite vector.
+HWY_INLINE Vec3 make_unit(const Vec3& a) {
+    const Float squared = dot(a, a);
+    Vec3 unit = a / sqrt(squared);
+    const LaneMask usual =
+        to_mask(squared > Float(1e-37f) && squared <= Float(std::numeric_limits<float>::max()));
+    if (usual != 0xffffu) normalize_extreme(a, ~usual & 0xffffu, unit);
+    return unit;
+}
+
+HWY_INLINE Vec3 normalize(const Vec3& a) { return make_unit(a); }
+
+using scalar::kPi;
+#define RELIEF_LANES
+#include "formulas/basis.h"
+#include "formulas/octahedron.h"
+#include "formulas/picture_plane.h"
+#include "formulas/shading_normal.h"
+#include "formulas/sobol.h"
+#include "formulas/surface_point.h"
+#include "formulas/trig.h"
+#include "formulas/warp.h"
+#undef RELIEF_LANES
+
+} // namespace relief::HWY_NAMESPACE::wide
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,173 @@
+// make_check_picture: base, displaced, displacement as colours, folds.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cpu/cpu_engine.h"
+#include "formulas/camera.h"
+#include "inspect/picture_lines.h"
+#include "math/affine.h"
+#include "prepare/camera_frame.h"
+#include "prepare/validate_settings.h"
+#include "relief/error.h"
+#include "relief/inspect.h"
+#include "surface/patch/patch_samples.h"
+
+namespace relief {
+
+namespace {
+
+constexpr Vec3f kPaper{0.18f, 0.18f, 0.2f};
+
+Image make_sheet(const RenderSettings& settings) {
+    Image sheet;
+    sheet.width = sheet.full_width = 2 * settings.width;
+    sheet.height = sheet.full_height = 2 * settings.height;
+    sheet.channels = {"R", "G", "B", "A"};
+    sheet.pixels.assign(size_t(sheet.width) * size_t(sheet.height) * 4, 1.0f);
+    return sheet;
+}
+
+void set_pixel(Image& image, int x, int y, const Vec3f& colour) {
+    image.at(x, y, 0) = colour.x, image.at(x, y, 1) = colour.y, image.at(x, y, 2) = colour.z;
+}
+
+void copy_picture(const Image& picture, int x0, int y0, Image& sheet) {
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            set_pixel(sheet, x0 + x, y0 + y, {picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)});
+}
+
+Scene make_base(const Scene& scene) {
+    Scene base = scene;
+    for (Object& object : base.objects) object.displacement = kNoIndex;
+    return base;
+}
+
+std::vector<Ray> make_rays(const scalar::CameraFrame& camera, const RenderSettings& settings) {
+    std::vector<Ray> rays;
+    for (int y = 0; y < settings.height; ++y)
+        for (int x = 0; x < settings.width; ++x) {
+            const scalar::CameraRay ray =
+                scalar::make_pinhole_ray(camera, Vec2f{float(x) + 0.5f, float(y) + 0.5f});
+            rays.push_back({ray.origin, 0, ray.direction, std::numeric_limits<float>::infinity()});
+        }
+    return rays;
+}
+
+/// What a hit shows of its patch, in object space.
+struct Place {
+    VertexData base;
+    Vec3f displacement; ///< along t, b, n or x, y, z
+};
+
+Place find_place(const Surface& surface, uint32_t patch, const Vec2f& uv) {
+    const PatchSamples samples(surface, patch);
+    Place place;
+    place.base = blend_corners(samples.corners(), uv.x, uv.y);
+    if (place.base.tile != Surface::kNoTile)
+        place.displacement = fetch_displacement(surface.map, place.base.tile, place.base.uv);
+    return place;
+}
+
+/// Longest component of the displacement at the hits, by which colours are scaled; 1 where there is none.
+float find_longest(const PreparedScene& scene, const std::vector<RayHit>& hits) {
+    float longest = 0;
+    for (const RayHit& hit : hits) {
+        if (hit.object == kNoIndex) continue;
+        const Surface& surface = scene.surfaces[scene.instances[hit.object].surface];
+        if (!surface.has_displacement) continue;
+        const Vec3f d = find_place(surface, hit.patch, hit.uv).displacement;
+        longest = std::max({longest, std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    }
+    return longest > 0 ? longest : 1;
+}
+
+/// Form by a light at the eye.
+float shade(const Vec3f& normal, const Vec3f& direction) {
+    return 0.35f + 0.65f * std::fabs(dot(normal, normalize(direction)));
+}
+
+struct PointColours {
+    Vec3f axes = kPaper, folds = kPaper;
+};
+
+PointColours colour_point(const PreparedScene& scene, const Ray& ray, const RayHit& hit, float longest) {
+    PointColours colours;
+    if (hit.object == kNoIndex) return colours;
+    const Instance& instance = scene.instances[hit.object];
+    const Surface& surface = scene.surfaces[instance.surface];
+    const float light = shade(hit.normal, ray.direction);
+    colours.axes = colours.folds = Vec3f{0.5f, 0.5f, 0.5f} * light;
+    if (!surface.has_displacement) return colours;
+    const Place place = find_place(surface, hit.patch, hit.uv);
+    const Vec3f half{0.5f, 0.5f, 0.5f};
+    colours.axes = (half + place.displacement * (0.5f / longest)) * light;
+    const Vec3f base_normal = transform_normal(instance.object_from_world, place.base.frame.n);
+    const float facing = dot(hit.normal, base_normal) * (instance.is_mirrored ? -1.0f : 1.0f);
+    if (facing < 0) colours.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
+    return colours;
+}
+
+/// Frames of some patches as arrows on the base: t or x red, b or y green, n or z blue.
+void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
+                 const RenderSettings& settings, Image& sheet) {
+    constexpr uint32_t kMostFrames = 48;
+    constexpr std::array<Vec3f, 3> kColours{{{0.9f, 0.05f, 0.05f}, {0.05f, 0.7f, 0.05f}, {0.1f, 0.2f, 1.0f}}};
+    for (const Instance& instance : scene.instances) {
+        const Surface& surface = scene.surfaces[instance.surface];
+        if (!surface.has_displacement) continue;
+        const uint32_t step = std::max(1u, surface.patch_count() / kMostFrames);
+        for (uint32_t patch = 0; patch < surface.patch_count(); patch += step) {
+            const PatchSamples samples(surface, patch);
+            const VertexData base = blend_corners(samples.corners(), 0.5f, 0.5f);
+            const std::array<Vec3f, 3> axes =
+                surface.map.is_tangent ? std::array{base.frame.t, base.frame.b, base.frame.n}
+                                       : std::array{Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}};
+            const Vec3f from = transform_point(instance.world_from_object, base.position);
+            const scalar::CameraProjection start = scalar::project_point(camera, from);
+            const Vec3f normal = transform_normal(instance.object_from_world, base.frame.n);
+            if (!(start.distance > 0) || dot(normal, camera.origin - from) < 0) continue;
+            // A sixteenth of the height of the picture long, wherever the patch is.
+            const float size = start.distance * length(camera.step_y) * float(settings.height) / 16;
+            for (size_t k = 0; k < 3; ++k) {
+                const Vec3f along = normalize(transform_vector(instance.world_from_object, axes[k])) * size;
+                const scalar::CameraProjection end = scalar::project_point(camera, from + along);
+                if (end.distance > 0)
+                    draw_line(sheet, {settings.width, settings.height}, {start.x, start.y}, {end.x, end.y},
+                              kColours[k]);
+            }
+        }
+    }
+}
+
+} // namespace
+
+Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
+    validate_settings(settings);
+    RenderSettings plain = settings;
+    plain.engine = EngineKind::cpu;
+    plain.crop = {}, plain.layers = {}, plain.surface = SurfaceMode::direct;
+    Image sheet = make_sheet(plain);
+    copy_picture(render(make_base(scene), plain).image, 0, 0, sheet);
+    copy_picture(render(scene, plain).image, plain.width, 0, sheet);
+
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, plain);
+    const scalar::CameraFrame camera = make_camera_frame(*prepared);
+    const std::vector<Ray> rays = make_rays(camera, plain);
+    std::vector<RayHit> hits(rays.size());
+    make_cpu_engine(prepared, plain)->closest_hits(rays, hits);
+    const float longest = find_longest(*prepared, hits);
+    for (size_t k = 0; k < rays.size(); ++k) {
+        const int x = int(k % size_t(plain.width)), y = int(k / size_t(plain.width));
+        const PointColours colours = colour_point(*prepared, rays[k], hits[k], longest);
+        set_pixel(sheet, x, plain.height + y, colours.axes);
+        set_pixel(sheet, plain.width + x, plain.height + y, colours.folds);
+    }
+    draw_frames(*prepared, camera, plain, sheet);
+    return sheet;
+}
+
+} // namespace relief

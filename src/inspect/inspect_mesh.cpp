@@ -1,0 +1,217 @@
+// What a mesh is and what stands in the way of displacing it.
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "analysis/mesh_survey.h"
+#include "math/box.h"
+#include "relief/inspect.h"
+
+namespace relief {
+
+namespace {
+
+void add(std::vector<Finding>& findings, Severity severity, const char* code, std::string text) {
+    findings.push_back({severity, code, std::move(text)});
+}
+
+void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
+    if (faults.has_bad_counts)
+        add(findings, Severity::error, "E-INDEX",
+            "faces with fewer than three corners, or lists of different lengths; export the mesh again");
+    if (faults.bad_indices > 0)
+        add(findings, Severity::error, "E-INDEX",
+            fmt::format("{} indices are out of range; export the mesh again", faults.bad_indices));
+    if (faults.bad_position)
+        add(findings, Severity::error, "E-NAN",
+            fmt::format("vertex {} is not finite; export the mesh again", *faults.bad_position));
+    if (faults.bad_uv)
+        add(findings, Severity::error, "E-NAN",
+            fmt::format("uv {} is not finite; unwrap the mesh again", *faults.bad_uv));
+}
+
+void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+    if (shape.triangles > shape.faces() / 2)
+        add(findings, Severity::warning, "W-TRI",
+            fmt::format("{} of {} faces are triangles: probably a triangulated export, whose diagonals a "
+                        "subdivision keeps; export quads (Blender: untick Triangulated Mesh)",
+                        shape.triangles, shape.faces()));
+    if (shape.others > 0)
+        add(findings, Severity::warning, "W-NGON",
+            fmt::format("{} of {} faces have more than four corners: displaced, they are split into quads, "
+                        "which a baker may have split otherwise; make them quads",
+                        shape.others, shape.faces()));
+    if (shape.triangles + shape.others > 0)
+        add(findings, Severity::note, "I-REFINE",
+            fmt::format("{} of {} faces are not quads: displaced, the whole mesh is refined once to "
+                        "quads; plain, n-gons are cut into triangles",
+                        shape.triangles + shape.others, shape.faces()));
+}
+
+void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+    if (shape.crowded_edges > 0)
+        add(findings, Severity::warning, "W-NONMANIF",
+            fmt::format("{} edges have more than two faces (one is of face {}): the surface has no two sides "
+                        "there; remove inner or doubled faces",
+                        shape.crowded_edges, *shape.crowded_face));
+    if (shape.turned_edges > 0)
+        add(findings, Severity::warning, "W-NONMANIF",
+            fmt::format("{} edges are run the same way by both faces (one is face {}): normals point apart "
+                        "there; make normals consistent",
+                        shape.turned_edges, *shape.turned_face));
+}
+
+std::string list_valences(const MeshShape& shape) {
+    std::string text;
+    for (size_t valence = 1; valence < shape.valences.size(); ++valence)
+        if (shape.valences[valence] > 0)
+            text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", shape.valences[valence], valence);
+    return text;
+}
+
+void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result) {
+    Box box;
+    for (const Vec3f& position : mesh.positions) box.extend(position);
+    result.facts.insert(
+        result.facts.end(),
+        {{"vertices", fmt::format("{}", mesh.positions.size())},
+         {"faces", fmt::format("{}: {} quads, {} triangles, {} with more corners", shape.faces(), shape.quads,
+                               shape.triangles, shape.others)},
+         {"points", "by number of edges: " + list_valences(shape)},
+         {"open_edges", fmt::format("{}", shape.open_edges)},
+         {"bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x,
+                                box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z)},
+         {"base", describe_base(mesh)},
+         {"normals", mesh.normal_indices.empty() ? "none" : "in the file"},
+         {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file"}});
+}
+
+void add_frame(const Mesh& mesh, const Displacement& map, Inspection& result) {
+    if (std::string frame = describe_frame(map, &mesh); !frame.empty())
+        result.facts.push_back({"frame", std::move(frame)});
+    const bool uses_frames = map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
+    if (map.frame != FrameKind::file || !uses_frames) return;
+    if (mesh.normal_indices.empty())
+        add(result.findings, Severity::error, "E-NONORM",
+            "no normals, and the frame of its map is that of the file; export the mesh with normals, or say "
+            "frame mikk");
+    if (mesh.subdivision.scheme != SubdivisionScheme::none)
+        add(result.findings, Severity::error, "E-NONORM",
+            "subdivided, which leaves the normals of the file behind; say frame mikk, or scheme none");
+}
+
+/// Tiles in runs: "1001-1004, 1011".
+std::string list_tiles(const std::set<int>& tiles) {
+    std::string text;
+    for (auto it = tiles.begin(); it != tiles.end();) {
+        const int first = *it;
+        int last = first;
+        for (++it; it != tiles.end() && *it == last + 1; ++it) ++last;
+        if (!text.empty()) text += ", ";
+        text += first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last);
+    }
+    return text;
+}
+
+void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& result) {
+    result.facts.push_back({"uv_range", fmt::format("u {:.6g} to {:.6g}, v {:.6g} to {:.6g}", uvs.low.x,
+                                                    uvs.high.x, uvs.low.y, uvs.high.y)});
+    result.facts.push_back(
+        {"uv_islands", fmt::format("{}, {} of them mirrored", uvs.islands, uvs.mirrored_islands)});
+    result.facts.push_back({"uv_overlap", fmt::format("{:.2f} % of the covered area", 100 * uvs.overlap)});
+    result.facts.push_back({"uv_tiles", uvs.tiles.empty() ? "none" : list_tiles(uvs.tiles)});
+    if (!map || !map->is_udim) return;
+    std::set<int> found;
+    for (const MapTile& tile : map->tiles) found.insert(tile.udim);
+    result.facts.push_back({"map_tiles", list_tiles(found)});
+}
+
+void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector<Finding>& findings) {
+    std::set<int> missing = uvs.tiles;
+    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
+    if (missing.empty()) return;
+    std::set<int> found;
+    for (const MapTile& tile : map.tiles) found.insert(tile.udim);
+    add(findings, Severity::error, "E-TILE",
+        fmt::format("no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export "
+                    "the missing ones, or look at their names",
+                    list_tiles(missing), list_tiles(found)));
+}
+
+/// Uvs outside of the unit square need tiles or a map that repeats.
+void find_range_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
+    const bool has_tiles = map && map->is_udim;
+    const bool is_repeated = map && (map->wrap == WrapMode::repeat || map->wrap == WrapMode::mirror);
+    const bool is_outside = uvs.low.x < 0 || uvs.low.y < 0 || uvs.high.x > 1 || uvs.high.y > 1;
+    if (has_tiles && uvs.crossing_faces + uvs.outside_faces > 0)
+        add(findings, Severity::warning, "W-UVRANGE",
+            fmt::format(
+                "{} faces lie across two tiles and {} outside of all tiles (u in [0, 10), v >= 0): each "
+                "face takes the tile of its middle; move its uvs into one tile",
+                uvs.crossing_faces, uvs.outside_faces));
+    if (has_tiles || is_repeated || !is_outside) return;
+    if (!map && uvs.crossing_faces == 0 && uvs.outside_faces == 0) {
+        add(findings, Severity::note, "I-UDIM",
+            fmt::format("uvs fill the tiles {}: name the map with <UDIM>", list_tiles(uvs.tiles)));
+        return;
+    }
+    add(findings, Severity::warning, "W-UVRANGE",
+        "uvs leave the unit square: the map needs <UDIM> tiles or wrap repeat");
+}
+
+void find_uv_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
+    constexpr double kOverlap = 0.01;
+    find_range_mistakes(uvs, map, findings);
+    if (map && map->is_udim) find_missing_tiles(uvs, *map, findings);
+    if (uvs.overlap > kOverlap)
+        add(findings, Severity::warning, "W-UVOVER",
+            fmt::format("faces share {:.1f} % of the uv area: what is sculpted on one shows on the others; "
+                        "lay the islands apart unless this is meant",
+                        100 * uvs.overlap));
+    const bool uses_frames =
+        !map || map->type == DisplacementType::height || map->space == DisplacementSpace::tangent;
+    if (uvs.mirrored_islands > 0 && uses_frames)
+        add(findings, Severity::warning, "W-MIRROR",
+            fmt::format("{} of {} uv islands are mirrored ({} faces): their bitangent is turned, so that a "
+                        "tangent-space map is mirrored there; bake and render with the same tangents, or use "
+                        "object space",
+                        uvs.mirrored_islands, uvs.islands, uvs.mirrored_faces));
+    if (uvs.flat_faces > 0)
+        add(findings, Severity::note, "I-UVFLAT",
+            fmt::format("{} faces have no area in uv: one texel displaces all of each", uvs.flat_faces));
+}
+
+} // namespace
+
+Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
+    Inspection result;
+    const MeshFaults faults = find_mesh_faults(mesh);
+    find_faults(faults, result.findings);
+    if (!faults.is_sound()) {
+        result.facts = {{"vertices", fmt::format("{}", mesh.positions.size())},
+                        {"faces", fmt::format("{}", mesh.face_sizes.size())}};
+        return result;
+    }
+    const MeshShape shape = survey_shape(mesh);
+    describe_shape(mesh, shape, result);
+    if (displacement) add_frame(mesh, *displacement, result);
+    if (mesh.uv_indices.empty()) {
+        if (displacement)
+            add(result.findings, Severity::error, "E-NOUV",
+                "no uvs, which its map needs; unwrap the mesh, or export it with uvs (many exporters leave "
+                "them out unless told)");
+        else
+            add(result.findings, Severity::warning, "W-NOUV",
+                "no uvs: the mesh cannot be displaced by a map; export it with uvs");
+    } else {
+        const MeshUvs uvs = survey_uvs(mesh);
+        describe_uvs(uvs, displacement, result);
+        find_uv_mistakes(uvs, displacement, result.findings);
+    }
+    find_face_mistakes(shape, result.findings);
+    find_edge_mistakes(shape, result.findings);
+    return result;
+}
+
+} // namespace relief

@@ -1,0 +1,265 @@
+#include "inspect/map_mistakes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "math/box.h"
+#include "math/vec.h"
+
+namespace relief {
+
+namespace {
+
+constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
+
+double get_largest_scale(const Displacement& map) {
+    return std::max({std::fabs(map.scale.x), std::fabs(map.scale.y), std::fabs(map.scale.z)});
+}
+
+bool is_height(const Displacement& map, MapMeaning meaning) {
+    return meaning == MapMeaning::declared && map.type == DisplacementType::height;
+}
+
+void find_bad_texels(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
+    if (!survey.bad) return;
+    findings.push_back(
+        {Severity::error, "E-NAN",
+         fmt::format("NaN or infinity in {} texel(s), the first at {}; paint over it or bake the "
+                     "map again: a render refuses it",
+                     survey.bad_count, describe_place(*survey.bad, map))});
+}
+
+double find_low(const MapSurvey& survey) {
+    double low = survey.channels[0].low;
+    for (size_t c = 1; c < survey.used_channels(); ++c) low = std::min(low, survey.channels[c].low);
+    return low;
+}
+
+double find_high(const MapSurvey& survey) {
+    double high = survey.channels[0].high;
+    for (size_t c = 1; c < survey.used_channels(); ++c) high = std::max(high, survey.channels[c].high);
+    return high;
+}
+
+/// Whoever says that 0 is meant may know better than the values.
+void find_unsigned(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                   std::vector<Finding>& findings) {
+    const bool is_known = knows_midlevel(map, meaning);
+    if (!survey.is_centred_at_half || is_height(map, meaning) || (is_known && map.midlevel != Vec3f{}))
+        return;
+    const std::string means = fmt::format("({:.3f}, {:.3f}, {:.3f})", survey.channels[0].mean,
+                                          survey.channels[1].mean, survey.channels[2].mean);
+    if (is_known)
+        findings.push_back(
+            {Severity::note, "I-NONEG",
+             fmt::format(
+                 "floats, none negative, around {}, which move the whole surface with the midlevel of 0 "
+                 "that was said; if 0.5 stands for zero, say encoding signed, or midlevel 0.5",
+                 means)});
+    else
+        findings.push_back(
+            {Severity::error, "E-NONEG",
+             fmt::format(
+                 "floats, none negative, around {}: 0.5 probably stands for zero here, and read as they "
+                 "are they would move the whole surface by that; say encoding signed, or midlevel 0.5 "
+                 "(midlevel 0 if they are meant as they are)",
+                 means)});
+}
+
+void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                        std::vector<Finding>& findings) {
+    if (survey.type == SampleType::uint8)
+        findings.push_back(
+            {Severity::warning, "W-8BIT",
+             fmt::format("8-bit map: one step is {:.3g} scene units at scale {:g}, which shows as "
+                         "stairs; export 16 or 32 bit float EXR",
+                         get_largest_scale(map) / 255, get_largest_scale(map))});
+    const bool is_wide = survey.type == SampleType::uint16 || survey.type == SampleType::uint32;
+    if (is_wide && !knows_midlevel(map, meaning))
+        findings.push_back(
+            {Severity::warning, "W-INT16",
+             fmt::format("integer map without a midlevel, which cannot hold negative values: 0.5 "
+                         "is assumed, values are in [{:.4g}, {:.4g}]; say midlevel and scale, or "
+                         "export float",
+                         find_low(survey), find_high(survey))});
+    find_unsigned(map, meaning, survey, findings);
+    if (!survey.colour_tag.empty())
+        findings.push_back({Severity::warning, "W-SRGB",
+                            fmt::format("the file calls its values colours ({}); they are read raw, but the "
+                                        "program that wrote it may have converted them: export as data "
+                                        "(Non-Color, Raw, linear)",
+                                        survey.colour_tag)});
+}
+
+void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                           std::vector<Finding>& findings) {
+    constexpr double kNormalShare = 0.9;
+    const auto is_flat = [](const ChannelSurvey& channel) { return channel.low == channel.high; };
+    const auto* first = survey.channels.data();
+    if (survey.bad_count == 0 && std::all_of(first, first + survey.used_channels(), is_flat)) {
+        findings.push_back(
+            {Severity::warning, "W-EMPTY",
+             fmt::format(
+                 "every texel holds the same value ({:g} in R): the map has no detail; bake or export "
+                 "it again",
+                 survey.channels[0].mean)});
+        return;
+    }
+    if (is_height(map, meaning)) return;
+    if (survey.channel_count < 3)
+        findings.push_back(
+            {Severity::warning, "W-1CH",
+             fmt::format("{} channel(s): a height map, not vectors; use type height", survey.channel_count)});
+    else if (survey.is_gray && survey.bad_count < survey.texel_count)
+        findings.push_back(
+            {Severity::warning, "W-GRAY",
+             "R = G = B everywhere: a height map saved as colours, not vectors; use type height "
+             "(as vectors it would move along (1, 1, 1))"});
+    else if (survey.normal_share > kNormalShare && survey.channels[2].mean > 0.5)
+        findings.push_back(
+            {Severity::warning, "W-NORMALMAP",
+             "unit vectors with B up: a normal map, not displacement; bake vector displacement"});
+}
+
+void find_outlier(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
+    constexpr double kFarOut = 4;
+    if (!(survey.usual_largest > 0) || survey.largest <= kFarOut * survey.usual_largest) return;
+    findings.push_back(
+        {Severity::warning, "W-OUTLIER",
+         fmt::format("the texel at {} is {:.3g} long, {:.1f} x as long as all but a few others: "
+                     "probably a fault of the baker; paint over it",
+                     describe_place(survey.largest_place, map), survey.largest,
+                     survey.largest / survey.usual_largest)});
+}
+
+void find_background(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                     std::vector<Finding>& findings) {
+    constexpr double kTolerance = 0.01;
+    if (!survey.has_background || survey.channel_count < 3 || survey.is_gray || is_height(map, meaning))
+        return;
+    if (survey.is_centred_at_half && knows_midlevel(map, meaning) && map.midlevel == Vec3f{})
+        return; // find_unsigned tells of that offset
+    const double step = survey.type == SampleType::uint8    ? 1.0 / 255
+                        : survey.type == SampleType::uint16 ? 1.0 / 65535
+                                                            : 0;
+    double offset = 0;
+    std::array<double, 3> offsets{};
+    for (size_t c = 0; c < 3; ++c) {
+        offsets[c] = survey.background[c] - survey.midlevel[c];
+        offset = std::max(offset, std::fabs(offsets[c]));
+    }
+    // A map that is nothing but its background has no other length to be compared with.
+    if (offset <= std::max(kTolerance * survey.largest, step)) return;
+    const auto most = std::max_element(offsets.begin(), offsets.end(),
+                                       [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    findings.push_back(
+        {Severity::warning, "W-BORDER",
+         fmt::format(
+             "constant offset: the edges of the map hold ({:.4g}, {:.4g}, {:.4g}) in place of {:g}, most "
+             "in {}; say this as midlevel, or clear the background in the sculpting tool",
+             survey.background[0], survey.background[1], survey.background[2], survey.midlevel[0],
+             kChannelNames[size_t(most - offsets.begin())])});
+}
+
+/// Median number of texels that a face has, of the first tile's size; 0 without uvs.
+double measure_texels_a_face(const Displacement& map, const Mesh& mesh) {
+    std::vector<double> areas;
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        double area = 0;
+        for (uint32_t k = 0; k < size; ++k) {
+            const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
+            const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];
+            area += (double(a.x) * b.y - double(a.y) * b.x) / 2;
+        }
+        areas.push_back(std::fabs(area));
+        first += size;
+    }
+    if (areas.empty()) return 0;
+    const auto middle = areas.begin() + ptrdiff_t(areas.size() / 2);
+    std::nth_element(areas.begin(), middle, areas.end());
+    const Texture& texture = *map.tiles.front().texture;
+    return *middle * double(texture.width) * double(texture.height);
+}
+
+ptrdiff_t find_normal_channel(const AxisMap& axes) {
+    return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
+}
+
+} // namespace
+
+bool knows_midlevel(const Displacement& map, MapMeaning meaning) {
+    return meaning == MapMeaning::declared && (map.has_midlevel || map.midlevel != Vec3f{});
+}
+
+std::string describe_place(const TexelPlace& place, const Displacement& map) {
+    return fmt::format("column {}, row {}{}", place.x, place.y,
+                       map.is_udim ? fmt::format(", tile {}", place.udim) : std::string());
+}
+
+void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                       std::vector<Finding>& findings) {
+    find_bad_texels(map, survey, findings);
+    find_type_mistakes(map, meaning, survey, findings);
+    find_channel_mistakes(map, meaning, survey, findings);
+    find_outlier(map, survey, findings);
+    find_background(map, meaning, survey, findings);
+}
+
+void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+                  std::vector<Finding>& findings) {
+    constexpr double kTooLong = 2, kTooShort = 1e-5, kFinestSide = 1 << kMaxLevel;
+    Box box;
+    for (const Vec3f& position : mesh.positions) box.extend(position);
+    const double diagonal = mesh.positions.empty() ? 0 : double(length(box.extent()));
+    const double longest = survey.largest * get_largest_scale(map);
+    const bool is_relative = map.lengths == FrameLengths::relative && map.type == DisplacementType::vector &&
+                             map.space == DisplacementSpace::tangent;
+    if (!is_relative && diagonal > 0 && longest > 0 &&
+        (longest > kTooLong * diagonal || longest < kTooShort * diagonal))
+        findings.push_back(
+            {Severity::warning, "W-SCALE",
+             fmt::format("the longest displacement is {:.3g} scene units, {:.3g} x the diagonal of "
+                         "the mesh ({:.3g}): probably another unit (cm, m) or a factor of the "
+                         "sculpting program; say --vdm-scale",
+                         longest, longest / diagonal, diagonal)});
+    const double texels = measure_texels_a_face(map, mesh);
+    if (texels > 0 && texels < 1)
+        findings.push_back(
+            {Severity::warning, "W-LEVEL",
+             fmt::format("a face of the mesh has {:.2g} texels: the mesh is finer than its map; "
+                         "use the level that the map was baked against, or a larger map",
+                         texels)});
+    if (texels > kFinestSide * kFinestSide)
+        findings.push_back(
+            {Severity::warning, "W-LEVEL",
+             fmt::format("a face of the mesh has {:.3g} texels, more than the finest level can "
+                         "show ({} a side); subdivide the mesh or use a smaller map",
+                         texels, kFinestSide)});
+}
+
+void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,
+                     std::vector<Finding>& findings) {
+    if (meaning != MapMeaning::declared || is_height(map, meaning)) return;
+    const bool is_other_space = convention.space.is_clear && convention.space.value != map.space &&
+                                map.space != DisplacementSpace::world;
+    if (is_other_space)
+        findings.push_back({Severity::note, "I-SPACE",
+                            fmt::format("declared as {} space, but looks like {} space: {}",
+                                        map.space == DisplacementSpace::tangent ? "tangent" : "object",
+                                        map.space == DisplacementSpace::tangent ? "object" : "tangent",
+                                        convention.space.reason)});
+    if (is_other_space || !convention.axes.is_clear || map.space == DisplacementSpace::world) return;
+    const bool is_other = convention.is_order_clear
+                              ? convention.axes.value != map.axes
+                              : find_normal_channel(convention.axes.value) != find_normal_channel(map.axes);
+    if (is_other)
+        findings.push_back(
+            {Severity::note, "I-AXES",
+             fmt::format("the declared axes are not what the values look like: {}", convention.axes.reason)});
+}
+
+} // namespace relief

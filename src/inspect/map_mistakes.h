@@ -1,0 +1,32 @@
+// The usual mistakes in displacement maps, each with its remedy. docs/inspect.md lists the codes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/map_convention.h"
+#include "analysis/map_survey.h"
+#include "relief/inspect.h"
+
+namespace relief {
+
+/// "column 5, row 3", and the tile where a map has several.
+std::string describe_place(const TexelPlace& place, const Displacement& map);
+
+/// Whether the midlevel of the map is somebody's word: 0 may be a mere default.
+bool knows_midlevel(const Displacement& map, MapMeaning meaning);
+
+/// What the texels alone show. With MapMeaning::declared midlevel, scale and type of `map` are taken at their
+/// word; otherwise the midlevel of the survey counts.
+void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+                       std::vector<Finding>& findings);
+
+/// What a map and its mesh show together: length against size, density of texels.
+void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+                  std::vector<Finding>& findings);
+
+/// Where what was declared is not what the values look like.
+void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,
+                     std::vector<Finding>& findings);
+
+} // namespace relief

@@ -1,0 +1,247 @@
+#include "io/mesh/gltf_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "io/mesh/gltf_uri.h"
+
+namespace relief {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "values of glTF are copied as they are");
+
+const char* const kDamagedHint = "the file is damaged or incomplete: export it again";
+constexpr int64_t kMostBytes = int64_t(1) << 48;
+
+enum class Component {
+    int8 = 5120,
+    uint8 = 5121,
+    int16 = 5122,
+    uint16 = 5123,
+    uint32 = 5125,
+    float32 = 5126
+};
+
+size_t get_byte_size(Component component) {
+    switch (component) {
+    case Component::int8:
+    case Component::uint8:
+        return 1;
+    case Component::int16:
+    case Component::uint16:
+        return 2;
+    default:
+        return 4;
+    }
+}
+
+template <class T> T load(const char* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+/// The whole number, or its part of the greatest one (glTF 2.0 specification, 3.6.2.2).
+template <class T> float load_scaled(const char* bytes, bool is_normalized) {
+    const float value = float(load<T>(bytes));
+    return is_normalized ? std::max(value / float(std::numeric_limits<T>::max()), -1.0f) : value;
+}
+
+std::string_view get_type_name(size_t width) {
+    constexpr std::array<std::string_view, 5> kNames = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+    return kNames[width];
+}
+
+} // namespace
+
+/// Where the values of an accessor lie; all of them are inside of their buffer.
+struct GltfFile::Values {
+    const char* begin = nullptr;
+    size_t count = 0, stride = 0, width = 0;
+    Component component = Component::float32;
+    bool is_normalized = false;
+
+    float read_float(size_t i, size_t k) const {
+        const char* at = begin + i * stride + k * get_byte_size(component);
+        switch (component) {
+        case Component::int8:
+            return load_scaled<int8_t>(at, is_normalized);
+        case Component::uint8:
+            return load_scaled<uint8_t>(at, is_normalized);
+        case Component::int16:
+            return load_scaled<int16_t>(at, is_normalized);
+        case Component::uint16:
+            return load_scaled<uint16_t>(at, is_normalized);
+        case Component::uint32:
+            return load_scaled<uint32_t>(at, is_normalized);
+        case Component::float32:
+            return load<float>(at);
+        }
+        return 0;
+    }
+};
+
+GltfFile::GltfFile(std::string_view bytes, const std::string& name, ReadBeside read_beside)
+    : name_(name), read_beside_(std::move(read_beside)), text_(bytes) {
+    if (bytes.starts_with("glTF")) open_glb(bytes);
+    document_ = parse_json(text_, name);
+    const std::string version = root().get("asset").get("version").as_string();
+    if (!version.starts_with("2."))
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("is glTF of version {}", version), name, "export it as glTF 2.0"});
+    accessors_ = list("accessors"), views_ = list("bufferViews"), buffers_ = list("buffers");
+}
+
+/// The chunks of a GLB file: JSON first, then at most one with bytes (specification, 4.4).
+void GltfFile::open_glb(std::string_view bytes) {
+    constexpr uint32_t kJson = 0x4e4f534a, kBytes = 0x004e4942;
+    constexpr size_t kHeaderBytes = 12, kChunkBytes = 8;
+    const auto fail = [this](const std::string& message) {
+        throw Error(ErrorKind::bad_input, {message, name_, kDamagedHint});
+    };
+    if (bytes.size() < kHeaderBytes + kChunkBytes) fail("the GLB file ends in its header");
+    if (const uint32_t version = load<uint32_t>(bytes.data() + 4); version != 2)
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("is GLB of version {}", version), name_, "export it as glTF 2.0"});
+    const size_t length = load<uint32_t>(bytes.data() + 8);
+    if (length > bytes.size())
+        fail(fmt::format("the GLB file has {} bytes of the {} that it says", bytes.size(), length));
+    text_ = {};
+    for (size_t at = kHeaderBytes; at + kChunkBytes <= length;) {
+        const size_t size = load<uint32_t>(bytes.data() + at);
+        const uint32_t kind = load<uint32_t>(bytes.data() + at + 4);
+        if (size > length - at - kChunkBytes) fail(fmt::format("the chunk at byte {} is cut off", at));
+        const std::string_view chunk = bytes.substr(at + kChunkBytes, size);
+        if (kind == kJson && text_.empty()) text_ = chunk;
+        if (kind == kBytes && !has_glb_buffer_) glb_buffer_ = chunk, has_glb_buffer_ = true;
+        at += kChunkBytes + size;
+    }
+    while (text_.ends_with('\0')) text_.remove_suffix(1); // padding that some writers make in place of spaces
+    if (text_.empty()) fail("the GLB file has no JSON");
+}
+
+std::vector<JsonNode> GltfFile::list(std::string_view key) const {
+    const std::optional<JsonNode> node = root().find(key);
+    return node ? node->elements() : std::vector<JsonNode>();
+}
+
+const JsonNode& GltfFile::resolve(const JsonNode& index, const std::vector<JsonNode>& list,
+                                  const char* what) {
+    const int64_t place = index.as_integer(0, std::numeric_limits<int32_t>::max());
+    if (place >= int64_t(list.size()))
+        index.fail(fmt::format("there is no {} {}: the file has {}", what, place, list.size()), kDamagedHint);
+    return list[size_t(place)];
+}
+
+std::string GltfFile::load_buffer(const JsonNode& buffer) const {
+    const std::optional<JsonNode> uri = buffer.find("uri");
+    if (!uri) buffer.fail("has neither a 'uri' nor bytes in a GLB file", kDamagedHint);
+    const std::string text = uri->as_string();
+    // The text may be megabytes of data, which no message should hold.
+    if (is_data_uri(text)) return uri->with_place([&] { return decode_data_uri(text); });
+    const std::string path = uri->with_place([&] { return decode_path_uri(text); });
+    return uri->with_place([&] { return read_beside_(path); });
+}
+
+std::string_view GltfFile::find_buffer(const JsonNode& index) {
+    const JsonNode& buffer = resolve(index, buffers_, "buffer");
+    const auto size = size_t(buffer.get("byteLength").as_integer(0, kMostBytes));
+    std::string_view bytes;
+    if (&buffer == &buffers_.front() && has_glb_buffer_ && !buffer.find("uri")) {
+        bytes = glb_buffer_;
+    } else {
+        const auto [found, is_new] = loaded_.try_emplace(&buffer);
+        if (is_new) found->second = load_buffer(buffer);
+        bytes = found->second;
+    }
+    if (bytes.size() < size)
+        buffer.fail(fmt::format("has {} bytes of the {} that it says", bytes.size(), size), kDamagedHint);
+    return bytes.substr(0, size);
+}
+
+std::string_view GltfFile::find_view(const JsonNode& view) {
+    const std::string_view buffer = find_buffer(view.get("buffer"));
+    const auto offset_node = view.find("byteOffset");
+    const auto offset = size_t(offset_node ? offset_node->as_integer(0, kMostBytes) : 0);
+    const auto size = size_t(view.get("byteLength").as_integer(0, kMostBytes));
+    if (offset > buffer.size() || size > buffer.size() - offset)
+        view.fail(fmt::format("goes to byte {} of a buffer of {} bytes", offset + size, buffer.size()),
+                  kDamagedHint);
+    return buffer.substr(offset, size);
+}
+
+GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
+    if (accessor.find("sparse")) accessor.fail("is sparse", "export it without sparse accessors");
+    const std::optional<JsonNode> view_index = accessor.find("bufferView");
+    if (!view_index)
+        accessor.fail("has no 'bufferView'", "export it without compression, such as that of Draco");
+    if (const std::string type = accessor.get("type").as_string(); type != get_type_name(width))
+        accessor.fail(fmt::format("is of type {}, not {}", type, get_type_name(width)), kDamagedHint);
+    Values values;
+    values.width = width;
+    const int64_t component = accessor.get("componentType").as_integer(5120, 5126);
+    if (component == 5124) accessor.fail("has componentType 5124, which glTF does not know", kDamagedHint);
+    values.component = Component(component);
+    if (const auto normalized = accessor.find("normalized")) values.is_normalized = normalized->as_bool();
+    const JsonNode& view = resolve(*view_index, views_, "bufferView");
+    const std::string_view bytes = find_view(view);
+    const size_t element_bytes = width * get_byte_size(values.component);
+    constexpr int64_t kLongestStride = 252; // specification, 5.11.4
+    const auto stride = view.find("byteStride");
+    values.stride =
+        stride ? size_t(stride->as_integer(int64_t(element_bytes), kLongestStride)) : element_bytes;
+    constexpr int64_t kMostValues = int64_t(std::numeric_limits<uint32_t>::max()) - 1;
+    values.count = size_t(accessor.get("count").as_integer(0, kMostValues));
+    const auto offset_node = accessor.find("byteOffset");
+    const auto offset = size_t(offset_node ? offset_node->as_integer(0, kMostBytes) : 0);
+    const size_t end = values.count == 0 ? 0 : offset + (values.count - 1) * values.stride + element_bytes;
+    if (end > bytes.size())
+        accessor.fail(fmt::format("goes to byte {} of a bufferView of {} bytes", end, bytes.size()),
+                      kDamagedHint);
+    if (values.count > 0) values.begin = bytes.data() + offset;
+    return values;
+}
+
+std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, size_t width) {
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    const Values values = find_values(accessor, width);
+    const auto [found, is_new] = floats_.try_emplace(&accessor);
+    if (!is_new) return found->second;
+    found->second.reserve(values.count * width);
+    for (size_t i = 0; i < values.count; ++i)
+        for (size_t k = 0; k < width; ++k) found->second.push_back(values.read_float(i, k));
+    return found->second;
+}
+
+std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
+    const Values values = find_values(resolve(accessor_index, accessors_, "accessor"), 1);
+    std::vector<uint32_t> result;
+    result.reserve(values.count);
+    for (size_t i = 0; i < values.count; ++i) {
+        const char* at = values.begin + i * values.stride;
+        switch (values.component) {
+        case Component::uint8:
+            result.push_back(load<uint8_t>(at));
+            break;
+        case Component::uint16:
+            result.push_back(load<uint16_t>(at));
+            break;
+        case Component::uint32:
+            result.push_back(load<uint32_t>(at));
+            break;
+        default:
+            accessor_index.fail("indices must be unsigned whole numbers", kDamagedHint);
+        }
+    }
+    return result;
+}
+
+} // namespace relief

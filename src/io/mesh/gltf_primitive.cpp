@@ -1,0 +1,112 @@
+#include "io/mesh/gltf_primitive.h"
+
+#include <array>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace relief {
+
+namespace {
+
+const char* const kDamagedHint = "the file is damaged: export it again";
+
+enum Mode { kLastLineMode = 3, kTriangles = 4, kStrip = 5, kFan = 6 };
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// Triangles of a list of vertices (specification, 3.7.2.1); those of a strip that have no area by
+/// construction, which join its pieces, are left out.
+std::vector<Triangle> make_triangles(const std::vector<uint32_t>& indices, int64_t mode) {
+    std::vector<Triangle> triangles;
+    const size_t step = mode == kTriangles ? 3 : 1;
+    for (size_t i = 0; i + 2 < indices.size(); i += step) {
+        const size_t odd = mode == kStrip ? i % 2 : 0;
+        const Triangle triangle{indices[mode == kFan ? 0 : i], indices[i + 1 + odd], indices[i + 2 - odd]};
+        const bool joins = mode == kStrip && (triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
+                                              triangle[2] == triangle[0]);
+        if (!joins) triangles.push_back(triangle);
+    }
+    return triangles;
+}
+
+void add_triangles(GltfPrimitive& part, const std::vector<Triangle>& triangles) {
+    for (const Triangle& triangle : triangles) {
+        part.corners.insert(part.corners.end(), triangle.begin(), triangle.end());
+        part.face_sizes.push_back(3);
+    }
+}
+
+/// Undoes FB_ngon_encoding: a polygon is a fan of consecutive triangles about its first corner.
+void add_polygons(GltfPrimitive& part, const std::vector<Triangle>& triangles) {
+    const Triangle* last = nullptr;
+    for (const Triangle& triangle : triangles) {
+        if (last && (*last)[0] == triangle[0] && (*last)[2] == triangle[1]) {
+            part.corners.push_back(triangle[2]);
+            ++part.face_sizes.back();
+        } else {
+            part.corners.insert(part.corners.end(), triangle.begin(), triangle.end());
+            part.face_sizes.push_back(3);
+        }
+        last = &triangle;
+    }
+}
+
+void read_faces(GltfFile& file, const JsonNode& primitive, int64_t mode, GltfPrimitive& part) {
+    const size_t vertex_count = part.positions.size() / 3;
+    std::vector<uint32_t> indices;
+    if (const auto index = primitive.find("indices")) {
+        indices = file.read_indices(*index);
+    } else {
+        indices.resize(vertex_count);
+        std::iota(indices.begin(), indices.end(), 0u);
+    }
+    for (size_t i = 0; i < indices.size(); ++i)
+        if (indices[i] >= vertex_count)
+            primitive.fail(fmt::format("index {} is {}, out of range: there are {} vertices", i, indices[i],
+                                       vertex_count),
+                           kDamagedHint);
+    if (mode == kTriangles && indices.size() % 3 != 0)
+        primitive.fail(fmt::format("{} indices do not make triangles", indices.size()), kDamagedHint);
+    const std::vector<Triangle> triangles = make_triangles(indices, mode);
+    const auto extensions = primitive.find("extensions");
+    if (mode == kTriangles && extensions && extensions->find("FB_ngon_encoding"))
+        add_polygons(part, triangles);
+    else
+        add_triangles(part, triangles);
+}
+
+size_t count_uv_sets(const JsonNode& attributes) {
+    size_t count = 0;
+    while (attributes.find(fmt::format("TEXCOORD_{}", count))) ++count;
+    return count;
+}
+
+} // namespace
+
+GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set) {
+    GltfPrimitive part;
+    const auto mode_node = primitive.find("mode");
+    const int64_t mode = mode_node ? mode_node->as_integer(0, kFan) : kTriangles;
+    if (mode <= kLastLineMode) return part;
+    const JsonNode attributes = primitive.get("attributes");
+    part.positions = file.read_floats(attributes.get("POSITION"), 3);
+    const size_t vertex_count = part.positions.size() / 3;
+    const auto read = [&](const std::string& key, size_t width) {
+        const auto index = attributes.find(key);
+        if (!index) return std::span<const float>();
+        const std::span<const float> values = file.read_floats(*index, width);
+        if (values.size() != vertex_count * width)
+            index->fail(fmt::format("{} values for {} vertices", values.size() / width, vertex_count),
+                        kDamagedHint);
+        return values;
+    };
+    part.normals = read("NORMAL", 3);
+    part.tangents = read("TANGENT", 4);
+    part.uvs = read(fmt::format("TEXCOORD_{}", uv_set), 2);
+    part.uv_set_count = count_uv_sets(attributes);
+    read_faces(file, primitive, mode, part);
+    return part;
+}
+
+} // namespace relief

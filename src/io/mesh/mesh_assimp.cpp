@@ -1,0 +1,113 @@
+#include "io/mesh/mesh_assimp.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "io/mesh/welder.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+class AssimpBuilder {
+  public:
+    AssimpBuilder(const aiScene& scene, std::string file, const MeshReadOptions& options)
+        : scene_(scene),
+          file_(std::move(file)),
+          uv_set_(unsigned(options.uv_set)),
+          positions_(mesh_.positions),
+          uvs_(mesh_.uvs),
+          normals_(mesh_.normals) {}
+
+    Mesh build() {
+        for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
+            const aiMesh& mesh = *scene_.mMeshes[m];
+            if (!(mesh.mPrimitiveTypes & (aiPrimitiveType_TRIANGLE | aiPrimitiveType_POLYGON))) continue;
+            if (mesh.HasTextureCoords(uv_set_))
+                ++with_uv_;
+            else
+                ++without_uv_;
+            if (!mesh.HasNormals()) has_normals_ = false;
+        }
+        if (with_uv_ > 0 && without_uv_ > 0)
+            fail(fmt::format("some parts have uv set {} and some have not", uv_set_),
+                 "give every part uvs, or none");
+        if (uv_set_ > 0 && with_uv_ == 0)
+            fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
+        add_node(*scene_.mRootNode, aiMatrix4x4());
+        return std::move(mesh_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
+        throw Error(ErrorKind::bad_input, {message, file_, hint});
+    }
+
+    void add_node(const aiNode& node, const aiMatrix4x4& world_from_parent) {
+        const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
+        for (unsigned m = 0; m < node.mNumMeshes; ++m)
+            add_mesh(*scene_.mMeshes[node.mMeshes[m]], world_from_node);
+        for (unsigned c = 0; c < node.mNumChildren; ++c) add_node(*node.mChildren[c], world_from_node);
+    }
+
+    void add_mesh(const aiMesh& mesh, const aiMatrix4x4& world_from_node) {
+        aiMatrix3x3 normal_matrix(world_from_node);
+        const bool is_mirrored = normal_matrix.Determinant() < 0;
+        normal_matrix.Inverse().Transpose();
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices < 3) continue;
+            for (unsigned k = 0; k < face.mNumIndices; ++k) {
+                // A mirror turns the winding round; the corners are walked backwards to keep the outside
+                // outside.
+                const unsigned corner = face.mIndices[is_mirrored ? face.mNumIndices - 1 - k : k];
+                if (corner >= mesh.mNumVertices)
+                    fail(fmt::format("face {} has an index out of range: {} of {}", f + 1, corner,
+                                     mesh.mNumVertices),
+                         "the file is damaged: export it again");
+                add_corner(mesh, corner, world_from_node, normal_matrix);
+            }
+            mesh_.face_sizes.push_back(face.mNumIndices);
+        }
+    }
+
+    void add_corner(const aiMesh& mesh, unsigned corner, const aiMatrix4x4& world_from_node,
+                    const aiMatrix3x3& normal_matrix) {
+        const aiVector3D p = world_from_node * mesh.mVertices[corner];
+        mesh_.position_indices.push_back(positions_.add({p.x, p.y, p.z}));
+        if (mesh.HasTextureCoords(uv_set_)) {
+            const aiVector3D& uv = mesh.mTextureCoords[uv_set_][corner];
+            mesh_.uv_indices.push_back(uvs_.add({uv.x, uv.y}));
+        }
+        if (has_normals_) {
+            const aiVector3D n = normal_matrix * mesh.mNormals[corner];
+            mesh_.normal_indices.push_back(normals_.add({n.x, n.y, n.z}));
+        }
+    }
+
+    const aiScene& scene_;
+    std::string file_;
+    unsigned uv_set_;
+    Mesh mesh_;
+    PointWelder positions_;
+    UvWelder uvs_;
+    PointWelder normals_;
+    int with_uv_ = 0, without_uv_ = 0;
+    bool has_normals_ = true;
+};
+
+} // namespace
+
+Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+    if (!scene || !scene->mRootNode)
+        throw Error(ErrorKind::bad_input, {fmt::format("cannot be read: {}", importer.GetErrorString()),
+                                           file.string(), "the file is damaged: export it again"});
+    return AssimpBuilder(*scene, file.string(), options).build();
+}
+
+} // namespace relief

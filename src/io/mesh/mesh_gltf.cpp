@@ -1,0 +1,281 @@
+#include "io/mesh/mesh_gltf.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "formulas/basis.h"
+#include "io/mesh/gltf_primitive.h"
+#include "io/mesh/welder.h"
+#include "math/affine.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+const char* const kDamagedHint = "the file is damaged: export it again";
+
+Affine read_matrix(const JsonNode& node) {
+    const std::vector<JsonNode> values = node.elements();
+    if (values.size() != 16)
+        node.fail(fmt::format("must be 16 numbers, not {}", values.size()), kDamagedHint);
+    const auto at = [&values](size_t row, size_t column) { return values[4 * column + row].as_float(); };
+    constexpr float kRounding = 1e-5f;
+    for (size_t column = 0; column < 4; ++column)
+        if (std::fabs(at(3, column) - (column == 3 ? 1.0f : 0.0f)) > kRounding)
+            node.fail("is no affine map", "its last row must be 0, 0, 0, 1");
+    Affine result;
+    for (size_t row = 0; row < 3; ++row) result.rows[row] = {at(row, 0), at(row, 1), at(row, 2)};
+    result.translation = {at(0, 3), at(1, 3), at(2, 3)};
+    return result;
+}
+
+/// Rotation by a quaternion x, y, z, w, which need not have length 1.
+Affine read_rotation(const JsonNode& node) {
+    const std::vector<JsonNode> values = node.elements();
+    if (values.size() != 4) node.fail(fmt::format("must be 4 numbers, not {}", values.size()), kDamagedHint);
+    double q[4], square = 0;
+    for (size_t k = 0; k < 4; ++k) q[k] = double(values[k].as_float()), square += q[k] * q[k];
+    if (!(square > 0)) node.fail("has no length", kDamagedHint);
+    const double s = 2 / square, x = q[0], y = q[1], z = q[2], w = q[3];
+    Affine result;
+    result.rows[0] = {float(1 - s * (y * y + z * z)), float(s * (x * y - z * w)), float(s * (x * z + y * w))};
+    result.rows[1] = {float(s * (x * y + z * w)), float(1 - s * (x * x + z * z)), float(s * (y * z - x * w))};
+    result.rows[2] = {float(s * (x * z - y * w)), float(s * (y * z + x * w)), float(1 - s * (x * x + y * y))};
+    return result;
+}
+
+Affine read_transform(const JsonNode& node) {
+    if (const auto matrix = node.find("matrix")) return read_matrix(*matrix);
+    Affine result;
+    if (const auto scale = node.find("scale")) result = make_scale(scale->as_vec3());
+    if (const auto rotation = node.find("rotation")) result = compose(read_rotation(*rotation), result);
+    if (const auto offset = node.find("translation")) result.translation = offset->as_vec3();
+    return result;
+}
+
+/// Carries vectors of an object into the world, also where its transform flattens it.
+class VectorTransform {
+  public:
+    explicit VectorTransform(const Affine& world_from_node)
+        : world_from_node_(world_from_node), is_mirrored_(compute_determinant(world_from_node) < 0) {
+        const auto& rows = world_from_node.rows;
+        const float sign = is_mirrored_ ? -1.0f : 1.0f;
+        // Rows of cofactors are the inverse transpose times the determinant, and exist for every matrix.
+        cofactors_.rows = {cross(rows[1], rows[2]) * sign, cross(rows[2], rows[0]) * sign,
+                           cross(rows[0], rows[1]) * sign};
+    }
+    bool is_mirrored() const { return is_mirrored_; }
+    Vec3f carry_normal(const Vec3f& n) const { return normalize(transform_vector(cofactors_, n)); }
+    Vec3f carry_tangent(const Vec3f& t) const { return normalize(transform_vector(world_from_node_, t)); }
+
+  private:
+    const Affine& world_from_node_;
+    Affine cofactors_;
+    bool is_mirrored_;
+};
+
+class GltfBuilder {
+  public:
+    GltfBuilder(GltfFile& file, const std::string& name, const MeshReadOptions& options)
+        : file_(file),
+          name_(name),
+          uv_set_(options.uv_set),
+          nodes_(file.list("nodes")),
+          meshes_(file.list("meshes")),
+          positions_(mesh_.positions),
+          normals_(mesh_.normals),
+          uvs_(mesh_.uvs) {}
+
+    Mesh build() {
+        check_extensions();
+        find_instances();
+        for (const Instance& instance : instances_) read_parts(*instance.mesh);
+        check_uvs();
+        for (const Instance& instance : instances_)
+            for (const GltfPrimitive& part : parts_.at(instance.mesh))
+                add_part(part, instance.world_from_node);
+        return std::move(mesh_);
+    }
+
+  private:
+    struct Instance {
+        const JsonNode* mesh;
+        Affine world_from_node;
+    };
+
+    [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
+        throw Error(ErrorKind::bad_input, {message, name_, hint});
+    }
+
+    void check_extensions() const {
+        for (const JsonNode& node : file_.list("extensionsRequired"))
+            if (const std::string extension = node.as_string();
+                extension.find("compression") != std::string::npos)
+                node.fail(fmt::format("needs the extension {}, which is not supported", extension),
+                          "export it without compression");
+    }
+
+    /// The roots of the file's scene; of a file without one, all nodes that are nobody's children.
+    std::vector<const JsonNode*> find_roots() const {
+        std::vector<const JsonNode*> roots;
+        const std::vector<JsonNode> scenes = file_.list("scenes");
+        const auto chosen = file_.root().find("scene");
+        if (!scenes.empty()) {
+            const JsonNode& scene = chosen ? GltfFile::resolve(*chosen, scenes, "scene") : scenes.front();
+            if (const auto list = scene.find("nodes"))
+                for (const JsonNode& index : list->elements())
+                    roots.push_back(&GltfFile::resolve(index, nodes_, "node"));
+            return roots;
+        }
+        std::vector<bool> is_child(nodes_.size(), false);
+        for (const JsonNode& node : nodes_)
+            if (const auto children = node.find("children"))
+                for (const JsonNode& index : children->elements())
+                    is_child[size_t(&GltfFile::resolve(index, nodes_, "node") - nodes_.data())] = true;
+        for (size_t i = 0; i < nodes_.size(); ++i)
+            if (!is_child[i]) roots.push_back(&nodes_[i]);
+        return roots;
+    }
+
+    void find_instances() {
+        struct Item {
+            const JsonNode* node;
+            Affine world_from_parent;
+        };
+        std::vector<Item> open;
+        const std::vector<const JsonNode*> roots = find_roots();
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
+        std::vector<bool> is_seen(nodes_.size(), false);
+        while (!open.empty()) {
+            const Item item = open.back();
+            open.pop_back();
+            const auto index = size_t(item.node - nodes_.data());
+            if (is_seen[index]) item.node->fail("stands twice in the tree of nodes", kDamagedHint);
+            is_seen[index] = true;
+            const Affine world_from_node = compose(item.world_from_parent, read_transform(*item.node));
+            if (const auto mesh = item.node->find("mesh"))
+                instances_.push_back({&GltfFile::resolve(*mesh, meshes_, "mesh"), world_from_node});
+            const auto children = item.node->find("children");
+            if (!children) continue;
+            const std::vector<JsonNode> indices = children->elements();
+            for (auto child = indices.rbegin(); child != indices.rend(); ++child)
+                open.push_back({&GltfFile::resolve(*child, nodes_, "node"), world_from_node});
+        }
+        if (nodes_.empty()) // a library of meshes
+            for (const JsonNode& mesh : meshes_) instances_.push_back({&mesh, {}});
+    }
+
+    void read_parts(const JsonNode& mesh) {
+        const auto [found, is_new] = parts_.try_emplace(&mesh);
+        if (!is_new) return;
+        for (const JsonNode& primitive : mesh.get("primitives").elements()) {
+            GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_);
+            if (part.face_sizes.empty()) continue;
+            ++(part.uvs.empty() ? without_uv_ : with_uv_);
+            most_uv_sets_ = std::max(most_uv_sets_, part.uv_set_count);
+            if (part.normals.empty()) has_normals_ = false;
+            if (part.tangents.empty()) has_tangents_ = false;
+            found->second.push_back(std::move(part));
+        }
+    }
+
+    void check_uvs() const {
+        if (with_uv_ > 0 && without_uv_ > 0)
+            fail(fmt::format("some parts have uv set {} and some have not", uv_set_),
+                 "give every part uvs, or none");
+        if (uv_set_ > 0 && with_uv_ == 0)
+            fail(fmt::format("has no uv set {}", uv_set_),
+                 fmt::format("it has {}, counted from 0", most_uv_sets_));
+    }
+
+    /// What a vertex of a part has become in the mesh.
+    struct Corner {
+        uint32_t copy = 0; ///< of which part, counted from 1: parts may share vertices by the million
+        uint32_t position = kNoIndex, uv = kNoIndex, normal = kNoIndex;
+        std::array<float, 4> tangent{};
+    };
+
+    void add_part(const GltfPrimitive& part, const Affine& world_from_node) {
+        const VectorTransform vectors(world_from_node);
+        if (mesh_.position_indices.size() + part.corners.size() >= kNoIndex)
+            fail("has more than 2^32 corners with all its copies", "split the file");
+        corners_.resize(std::max(corners_.size(), part.positions.size() / 3));
+        ++copy_count_;
+        size_t begin = 0;
+        for (const uint32_t size : part.face_sizes) {
+            // A mirror turns the winding round; the corners are walked backwards to keep the outside outside.
+            for (uint32_t k = 0; k < size; ++k) {
+                const uint32_t vertex = part.corners[begin + (vectors.is_mirrored() ? size - 1 - k : k)];
+                Corner& corner = corners_[vertex];
+                if (corner.copy != copy_count_) corner = weld(part, vertex, world_from_node, vectors);
+                add_corner(corner);
+            }
+            mesh_.face_sizes.push_back(size);
+            begin += size;
+        }
+    }
+
+    void add_corner(const Corner& corner) {
+        mesh_.position_indices.push_back(corner.position);
+        if (with_uv_ > 0) mesh_.uv_indices.push_back(corner.uv);
+        if (has_normals_) mesh_.normal_indices.push_back(corner.normal);
+        if (has_tangents_) mesh_.tangents.push_back(corner.tangent);
+    }
+
+    Corner weld(const GltfPrimitive& part, size_t vertex, const Affine& world_from_node,
+                const VectorTransform& vectors) {
+        const auto load = [vertex](std::span<const float> values, size_t width) {
+            const float* at = values.data() + vertex * width;
+            return Vec3f{at[0], at[1], at[2]};
+        };
+        Corner corner;
+        corner.copy = copy_count_;
+        corner.position = positions_.add(transform_point(world_from_node, load(part.positions, 3)));
+        if (with_uv_ > 0)
+            corner.uv = uvs_.add({part.uvs[2 * vertex], 1 - part.uvs[2 * vertex + 1]}); // v from the top
+        Vec3f normal{};
+        if (!part.normals.empty()) normal = vectors.carry_normal(load(part.normals, 3));
+        if (has_normals_) corner.normal = normals_.add(normal);
+        if (!has_tangents_) return corner;
+        Vec3f tangent = vectors.carry_tangent(load(part.tangents, 4));
+        // Where the uvs have no direction writers store zeros or NaN: no tangent is more right than another.
+        if (tangent == Vec3f{}) tangent = normal == Vec3f{} ? Vec3f{1, 0, 0} : scalar::make_basis(normal).t;
+        const bool is_left_handed = (part.tangents[4 * vertex + 3] < 0) != vectors.is_mirrored();
+        corner.tangent = {tangent.x, tangent.y, tangent.z, is_left_handed ? -1.0f : 1.0f};
+        return corner;
+    }
+
+    GltfFile& file_;
+    const std::string& name_;
+    int uv_set_;
+    std::vector<JsonNode> nodes_, meshes_;
+    Mesh mesh_;
+    PointWelder positions_, normals_;
+    UvWelder uvs_;
+    std::vector<Instance> instances_;
+    std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
+    std::vector<Corner> corners_;                                 ///< by vertex
+    uint32_t copy_count_ = 0;
+    int with_uv_ = 0, without_uv_ = 0;
+    size_t most_uv_sets_ = 0;
+    bool has_normals_ = true, has_tangents_ = true;
+};
+
+} // namespace
+
+Mesh parse_gltf(std::string_view bytes, const std::string& name, const ReadBeside& read_beside,
+                const MeshReadOptions& options) {
+    try {
+        GltfFile file(bytes, name, read_beside);
+        return GltfBuilder(file, name, options).build();
+    } catch (const Error& error) {
+        if (!error.hint().empty()) throw;
+        throw Error(error.kind(), {error.message(), error.where(), kDamagedHint});
+    }
+}
+
+} // namespace relief

@@ -1,0 +1,290 @@
+#include "io/mesh/mesh_ply.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "io/mesh/ply_header.h"
+#include "io/mesh/welder.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+const char* const kDamagedHint = "the file is damaged or incomplete: export it again";
+
+/// Reads one value after another, and knows where it is.
+class PlyCursor {
+  public:
+    PlyCursor(std::string_view bytes, const std::string& name, const PlyHeader& header)
+        : bytes_(bytes), name_(name), format_(header.format), at_(header.byte_count) {}
+
+    void enter(const std::string& element, uint64_t index) { element_ = &element, index_ = index; }
+
+    [[noreturn]] void fail(const std::string& message) const {
+        const std::string place =
+            format_ == PlyFormat::ascii
+                ? fmt::format("line {}",
+                              1 + std::count(bytes_.begin(), bytes_.begin() + ptrdiff_t(at_), '\n'))
+                : fmt::format("byte {}", at_);
+        throw Error(ErrorKind::bad_input,
+                    {message, fmt::format("{}, {}, {} {}", name_, place, *element_, index_), kDamagedHint});
+    }
+
+    /// Every type of PLY fits a double.
+    double read(PlyType type) { return format_ == PlyFormat::ascii ? read_word() : read_bytes(type); }
+
+    /// A whole number below `end`.
+    uint64_t read_whole(PlyType type, uint64_t end, const char* what) {
+        const double value = read(type);
+        if (!(value >= 0 && value < double(end)) || value != std::floor(value))
+            fail(fmt::format("{} {} is out of range: there are {}", what, value, end));
+        return uint64_t(value);
+    }
+
+    /// The number of values of a list, which must still be there.
+    uint64_t read_count(const PlyProperty& list) {
+        const double value = read(*list.count_type);
+        // A value of a text takes a digit and a space; behind the last one there may be none.
+        const uint64_t left = bytes_.size() - at_;
+        const uint64_t room = format_ == PlyFormat::ascii ? (left + 1) / 2 : left / get_byte_size(list.type);
+        if (!(value >= 0 && value <= double(room)) || value != std::floor(value))
+            fail(fmt::format("a list of {} values does not fit the file", value));
+        return uint64_t(value);
+    }
+
+  private:
+    double read_word() {
+        const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+        while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
+        if (at_ < bytes_.size() && bytes_[at_] == '+') ++at_;
+        double value = 0;
+        const char *begin = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
+        if (begin == end) fail("the file ends early");
+        const auto [stop, code] = std::from_chars(begin, end, value);
+        if (code != std::errc() || (stop != end && !is_space(*stop)))
+            fail("there is no number where one must be, or one out of range");
+        at_ += size_t(stop - begin);
+        return value;
+    }
+
+    double read_bytes(PlyType type) {
+        switch (type) {
+        case PlyType::int8:
+            return double(take<int8_t>());
+        case PlyType::uint8:
+            return double(take<uint8_t>());
+        case PlyType::int16:
+            return double(take<int16_t>());
+        case PlyType::uint16:
+            return double(take<uint16_t>());
+        case PlyType::int32:
+            return double(take<int32_t>());
+        case PlyType::uint32:
+            return double(take<uint32_t>());
+        case PlyType::float32:
+            return double(take<float>());
+        case PlyType::float64:
+            return take<double>();
+        }
+        return 0;
+    }
+
+    template <class T> T take() {
+        if (bytes_.size() - at_ < sizeof(T)) fail("the file ends early");
+        std::array<char, sizeof(T)> raw;
+        std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
+        at_ += sizeof(T);
+        const bool is_native =
+            (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
+        if (!is_native) std::reverse(raw.begin(), raw.end());
+        return std::bit_cast<T>(raw);
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    PlyFormat format_;
+    size_t at_;
+    const std::string* element_ = nullptr;
+    uint64_t index_ = 0;
+};
+
+using NameList = std::array<std::string_view, 4>;
+
+class PlyBuilder {
+  public:
+    PlyBuilder(std::string_view bytes, const std::string& name)
+        : name_(name), header_(parse_ply_header(bytes, name)), cursor_(bytes, name, header_) {}
+
+    Mesh build() {
+        const PlyElement *vertices = find_element("vertex"), *faces = find_element("face");
+        if (!vertices || !faces)
+            fail("the mesh has no faces", "export the polygons as well: a cloud of points has no surface");
+        vertex_count_ = vertices->count;
+        for (const PlyElement& element : header_.elements) {
+            if (&element == vertices)
+                read_vertices(element);
+            else if (&element == faces)
+                read_faces(element);
+            else
+                skip(element);
+            if (std::max(vertices, faces) == &element) break; // nothing behind it is wanted
+        }
+        return weld();
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
+        throw Error(ErrorKind::bad_input, {message, name_, hint});
+    }
+
+    const PlyElement* find_element(std::string_view name) const {
+        for (const PlyElement& element : header_.elements)
+            if (element.name == name) return &element;
+        return nullptr;
+    }
+
+    /// The place among the properties of the first of these names that is a number; none: their count.
+    static size_t find_number(const PlyElement& element, const NameList& names) {
+        for (const std::string_view name : names)
+            for (size_t i = 0; i < element.properties.size(); ++i)
+                if (element.properties[i].name == name && !element.properties[i].count_type) return i;
+        return element.properties.size();
+    }
+
+    static size_t find_list(const PlyElement& element, const NameList& names) {
+        for (size_t i = 0; i < element.properties.size(); ++i)
+            if (element.properties[i].count_type &&
+                std::find(names.begin(), names.end(), element.properties[i].name) != names.end())
+                return i;
+        return element.properties.size();
+    }
+
+    void skip_value(const PlyProperty& property) {
+        const uint64_t count = property.count_type ? cursor_.read_count(property) : 1;
+        for (uint64_t k = 0; k < count; ++k) cursor_.read(property.type);
+    }
+
+    void skip(const PlyElement& element) {
+        if (element.properties.empty()) return; // takes no bytes, whatever its count
+        for (uint64_t i = 0; i < element.count; ++i) {
+            cursor_.enter(element.name, i);
+            for (const PlyProperty& property : element.properties) skip_value(property);
+        }
+    }
+
+    void read_vertices(const PlyElement& element) {
+        constexpr std::array<NameList, 8> kNames = {{{"x"},
+                                                     {"y"},
+                                                     {"z"},
+                                                     {"nx"},
+                                                     {"ny"},
+                                                     {"nz"},
+                                                     {"s", "u", "texture_u", "texture_s"},
+                                                     {"t", "v", "texture_v", "texture_t"}}};
+        const size_t none = element.properties.size();
+        std::array<size_t, 8> places;
+        for (size_t k = 0; k < places.size(); ++k) places[k] = find_number(element, kNames[k]);
+        const auto has = [&](size_t begin, size_t end) {
+            return std::find(places.begin() + begin, places.begin() + end, none) == places.begin() + end;
+        };
+        if (!has(0, 3)) fail("the vertices have no x, y and z", kDamagedHint);
+        if (element.count >= kNoIndex) fail("has too many vertices", "split the mesh");
+        const bool has_normals = has(3, 6), has_uvs = has(6, 8);
+        std::vector<float> values(none + 1);
+        for (uint64_t i = 0; i < element.count; ++i) {
+            cursor_.enter(element.name, i);
+            for (size_t p = 0; p < none; ++p) {
+                if (element.properties[p].count_type)
+                    skip_value(element.properties[p]);
+                else
+                    values[p] = float(cursor_.read(element.properties[p].type));
+            }
+            positions_.push_back({values[places[0]], values[places[1]], values[places[2]]});
+            if (has_normals) normals_.push_back({values[places[3]], values[places[4]], values[places[5]]});
+            if (has_uvs) uvs_.push_back({values[places[6]], values[places[7]]});
+        }
+    }
+
+    void read_faces(const PlyElement& element) {
+        const size_t index_place = find_list(element, {"vertex_indices", "vertex_index"});
+        const size_t uv_place = find_list(element, {"texcoord"});
+        if (index_place == element.properties.size())
+            fail("the faces have no list 'vertex_indices'", kDamagedHint);
+        std::vector<uint32_t> corners;
+        std::vector<float> uvs;
+        for (uint64_t i = 0; i < element.count; ++i) {
+            cursor_.enter(element.name, i);
+            corners.clear(), uvs.clear();
+            for (size_t p = 0; p < element.properties.size(); ++p) {
+                const PlyProperty& property = element.properties[p];
+                if (p == index_place)
+                    for (uint64_t left = cursor_.read_count(property); left > 0; --left)
+                        corners.push_back(
+                            uint32_t(cursor_.read_whole(property.type, vertex_count_, "vertex index")));
+                else if (p == uv_place)
+                    for (uint64_t left = cursor_.read_count(property); left > 0; --left)
+                        uvs.push_back(float(cursor_.read(property.type)));
+                else
+                    skip_value(property);
+            }
+            add_face(corners, uvs);
+        }
+    }
+
+    void add_face(const std::vector<uint32_t>& corners, const std::vector<float>& uvs) {
+        if (!uvs.empty() && uvs.size() != 2 * corners.size())
+            cursor_.fail(fmt::format("{} texture coordinates for {} corners", uvs.size(), corners.size()));
+        if (corners.size() < 3) return;
+        mesh_.face_sizes.push_back(uint32_t(corners.size()));
+        corners_.insert(corners_.end(), corners.begin(), corners.end());
+        for (size_t k = 0; k + 1 < uvs.size(); k += 2) corner_uvs_.push_back({uvs[k], uvs[k + 1]});
+        if (!corner_uvs_.empty() && corner_uvs_.size() != corners_.size())
+            cursor_.fail("some faces have texture coordinates and some have none");
+    }
+
+    /// Welds the values of the vertices; the corners get the index of theirs.
+    template <class Value, size_t N>
+    void weld(const std::vector<Value>& of_vertices, std::vector<Value>& values,
+              std::vector<uint32_t>& indices) {
+        if (of_vertices.empty()) return;
+        Welder<Value, N> welder(values);
+        std::vector<uint32_t> welded;
+        for (const Value& value : of_vertices) welded.push_back(welder.add(value));
+        for (const uint32_t vertex : corners_) indices.push_back(welded[vertex]);
+    }
+
+    Mesh weld() {
+        weld<Vec3f, 3>(positions_, mesh_.positions, mesh_.position_indices);
+        weld<Vec3f, 3>(normals_, mesh_.normals, mesh_.normal_indices);
+        if (corner_uvs_.empty()) {
+            weld<Vec2f, 2>(uvs_, mesh_.uvs, mesh_.uv_indices);
+        } else {
+            UvWelder uvs(mesh_.uvs);
+            for (const Vec2f& uv : corner_uvs_) mesh_.uv_indices.push_back(uvs.add(uv));
+        }
+        return std::move(mesh_);
+    }
+
+    const std::string& name_;
+    PlyHeader header_;
+    PlyCursor cursor_;
+    Mesh mesh_;
+    uint64_t vertex_count_ = 0;
+    std::vector<Vec3f> positions_, normals_;
+    std::vector<Vec2f> uvs_, corner_uvs_;
+    std::vector<uint32_t> corners_; ///< of the vertices as they stand in the file
+};
+
+} // namespace
+
+Mesh parse_ply(std::string_view bytes, const std::string& name) { return PlyBuilder(bytes, name).build(); }
+
+} // namespace relief

@@ -1,0 +1,165 @@
+#include "io/mesh/ply_header.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+/// Both spellings that are in use, the one by size and the one of the first PLY files.
+constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
+    {"char", PlyType::int8},
+    {"int8", PlyType::int8},
+    {"uchar", PlyType::uint8},
+    {"uint8", PlyType::uint8},
+    {"short", PlyType::int16},
+    {"int16", PlyType::int16},
+    {"ushort", PlyType::uint16},
+    {"uint16", PlyType::uint16},
+    {"int", PlyType::int32},
+    {"int32", PlyType::int32},
+    {"uint", PlyType::uint32},
+    {"uint32", PlyType::uint32},
+    {"float", PlyType::float32},
+    {"float32", PlyType::float32},
+    {"double", PlyType::float64},
+    {"float64", PlyType::float64},
+}};
+
+std::vector<std::string_view> split_words(std::string_view line) {
+    constexpr std::string_view kSpaces = " \t";
+    std::vector<std::string_view> words;
+    for (size_t at = line.find_first_not_of(kSpaces); at < line.size();) {
+        const size_t end = std::min(line.find_first_of(kSpaces, at), line.size());
+        words.push_back(line.substr(at, end - at));
+        at = line.find_first_not_of(kSpaces, end);
+    }
+    return words;
+}
+
+class HeaderParser {
+  public:
+    HeaderParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+    PlyHeader parse() {
+        if (next_line() != "ply") fail("does not begin with the word 'ply'", "this is no PLY file");
+        while (true) {
+            const std::vector<std::string_view> words = split_words(next_line());
+            if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+            if (words[0] == "end_header") break;
+            if (words[0] == "format")
+                add_format(words);
+            else if (words[0] == "element")
+                add_element(words);
+            else if (words[0] == "property")
+                add_property(words);
+            else
+                fail(fmt::format("unknown word '{}' in the header", words[0]), kDamagedHint);
+        }
+        if (!has_format_) fail("the header names no format", kDamagedHint);
+        header_.byte_count = at_;
+        return std::move(header_);
+    }
+
+  private:
+    static constexpr const char* kDamagedHint = "the file is damaged: export it again";
+
+    [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
+        throw Error(ErrorKind::bad_input, {message, fmt::format("{}, line {}", name_, line_), hint});
+    }
+
+    std::string_view next_line() {
+        ++line_;
+        const size_t end = bytes_.find('\n', at_);
+        if (end == std::string_view::npos) fail("the header has no end", kDamagedHint);
+        std::string_view line = bytes_.substr(at_, end - at_);
+        at_ = end + 1;
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        return line;
+    }
+
+    void add_format(const std::vector<std::string_view>& words) {
+        constexpr std::array<std::pair<std::string_view, PlyFormat>, 3> kFormats = {{
+            {"ascii", PlyFormat::ascii},
+            {"binary_little_endian", PlyFormat::little_endian},
+            {"binary_big_endian", PlyFormat::big_endian},
+        }};
+        for (const auto& [word, format] : kFormats)
+            if (words.size() == 3 && words[1] == word && words[2] == "1.0")
+                header_.format = format, has_format_ = true;
+        if (!has_format_)
+            fail("unknown format", "it is 'ascii', 'binary_little_endian' or 'binary_big_endian', and 1.0");
+    }
+
+    void add_element(const std::vector<std::string_view>& words) {
+        PlyElement element;
+        bool is_understood = words.size() == 3;
+        if (is_understood) {
+            const char* end = words[2].data() + words[2].size();
+            const auto [stop, code] = std::from_chars(words[2].data(), end, element.count);
+            is_understood = stop == end && code == std::errc();
+        }
+        if (!is_understood) fail("an element needs a name and a count", kDamagedHint);
+        element.name = words[1];
+        for (const PlyElement& other : header_.elements)
+            if (other.name == element.name)
+                fail(fmt::format("element '{}' stands twice", element.name), kDamagedHint);
+        header_.elements.push_back(std::move(element));
+    }
+
+    void add_property(const std::vector<std::string_view>& words) {
+        if (header_.elements.empty()) fail("a property stands before the first element", kDamagedHint);
+        const bool is_list = words.size() == 5 && words[1] == "list";
+        if (!is_list && words.size() != 3) fail("a property needs a type and a name", kDamagedHint);
+        PlyProperty property;
+        property.name = words.back();
+        property.type = find_type(words[words.size() - 2]);
+        if (is_list) property.count_type = find_type(words[2]);
+        header_.elements.back().properties.push_back(std::move(property));
+    }
+
+    PlyType find_type(std::string_view word) const {
+        const auto found = std::find_if(kTypes.begin(), kTypes.end(),
+                                        [word](const auto& type) { return type.first == word; });
+        if (found == kTypes.end())
+            fail(fmt::format("unknown type '{}'", word), "the types are char to double and int8 to float64");
+        return found->second;
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    PlyHeader header_;
+    bool has_format_ = false;
+    size_t at_ = 0, line_ = 0;
+};
+
+} // namespace
+
+PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
+    return HeaderParser(bytes, name).parse();
+}
+
+size_t get_byte_size(PlyType type) {
+    switch (type) {
+    case PlyType::int8:
+    case PlyType::uint8:
+        return 1;
+    case PlyType::int16:
+    case PlyType::uint16:
+        return 2;
+    case PlyType::float64:
+        return 8;
+    default:
+        return 4;
+    }
+}
+
+} // namespace relief

@@ -1,0 +1,167 @@
+#include "io/picture/exr_source.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <limits>
+#include <new>
+#include <optional>
+#include <set>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include "io/picture/exr_names.h"
+#include "io/picture/exr_threads.h"
+#include "io/picture/picture_error.h"
+
+namespace relief {
+
+namespace {
+
+/// A stream of ours as OpenEXR wants it.
+class ExrStream final : public Imf::IStream {
+  public:
+    ExrStream(std::unique_ptr<std::istream> stream, const std::string& name)
+        : IStream(name.c_str()), stream_(std::move(stream)) {}
+
+    bool read(char bytes[], int count) override {
+        if (!stream_->read(bytes, count))
+            throw std::runtime_error(stream_->eof() ? "unexpected end of file" : "the file cannot be read");
+        return stream_->peek() != std::istream::traits_type::eof();
+    }
+    uint64_t tellg() override { return uint64_t(std::streamoff(stream_->tellg())); }
+    void seekg(uint64_t position) override {
+        stream_->clear();
+        stream_->seekg(std::streamoff(position));
+    }
+    void clear() override { stream_->clear(); }
+
+  private:
+    std::unique_ptr<std::istream> stream_;
+};
+
+/// Whether the first eight bytes are those of an EXR file of one part and flat pixels.
+bool is_flat_exr(std::istream& stream) {
+    constexpr unsigned kDeepOrManyParts = 0x18;
+    std::array<char, 8> head{};
+    const bool is_exr = stream.read(head.data(), 8) && head[0] == '\x76' && head[1] == '\x2f' &&
+                        head[2] == '\x31' && head[3] == '\x01';
+    stream.clear();
+    stream.seekg(0);
+    return is_exr && (unsigned(head[5]) & kDeepOrManyParts) == 0;
+}
+
+/// Names in the order of PixelHeader::channels; nothing where another reader must decide.
+std::optional<std::vector<std::string>> order_channels(const Imf::ChannelList& channels) {
+    std::map<std::string, std::set<std::string>> layers; // with its dot, and what follows
+    const Imf::PixelType type =
+        channels.begin() == channels.end() ? Imf::HALF : channels.begin().channel().type;
+    if (type != Imf::HALF && type != Imf::FLOAT) return std::nullopt;
+    for (auto it = channels.begin(); it != channels.end(); ++it) {
+        const Imf::Channel& channel = it.channel();
+        if (channel.type != type || channel.xSampling != 1 || channel.ySampling != 1) return std::nullopt;
+        const std::string name = it.name();
+        const size_t suffix = name.rfind('.') + 1; // 0 without a dot
+        layers[name.substr(0, suffix)].insert(name.substr(suffix));
+    }
+    std::vector<std::string> names;
+    for (const auto& [layer, suffixes] : layers) {
+        size_t count = 0;
+        for (const std::string_view known : {"R", "G", "B", "A", "X", "Y", "Z"})
+            if (suffixes.contains(std::string(known))) names.push_back(layer + std::string(known)), ++count;
+        const bool is_mixed = (suffixes.contains("X") || suffixes.contains("Y") || suffixes.contains("Z")) &&
+                              (suffixes.contains("R") || suffixes.contains("A"));
+        if (count == 0 && suffixes.size() == 1) names.push_back(layer + *suffixes.begin()), ++count;
+        if (count != suffixes.size() || is_mixed) return std::nullopt;
+    }
+    return names;
+}
+
+int count_pixels(int least, int greatest) {
+    return int(std::clamp<int64_t>(int64_t(greatest) - least + 1, 0, std::numeric_limits<int>::max()));
+}
+
+PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channels) {
+    PixelHeader header;
+    const Imath::Box2i &data = exr.dataWindow(), &display = exr.displayWindow();
+    header.x = data.min.x, header.y = data.min.y;
+    header.width = count_pixels(data.min.x, data.max.x), header.height = count_pixels(data.min.y, data.max.y);
+    header.full_x = display.min.x, header.full_y = display.min.y;
+    header.full_width = count_pixels(display.min.x, display.max.x);
+    header.full_height = count_pixels(display.min.y, display.max.y);
+    const bool is_half = !channels.empty() && exr.channels()[channels.front()].type == Imf::HALF;
+    header.type = is_half ? SampleType::float16 : SampleType::float32;
+    header.pixel_bytes = channels.size() * (is_half ? 2 : 4);
+    header.channels = std::move(channels);
+    for (auto it = exr.begin(); it != exr.end(); ++it)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+            if (const std::string name = get_metadata_name(it.name()); !name.empty())
+                header.metadata[name] = text->value();
+    return header;
+}
+
+class ExrSource final : public PixelSource {
+  public:
+    ExrSource(std::unique_ptr<std::istream> stream, const std::string& name)
+        : name_(name), stream_(std::move(stream), name), file_(stream_, prepare_exr_threads()) {
+        if (auto channels = order_channels(file_.header().channels())) {
+            header_ = make_header(file_.header(), std::move(*channels));
+            is_plain_ = true;
+        }
+    }
+
+    bool is_plain() const { return is_plain_; }
+    const PixelHeader& header() const override { return header_; }
+    void read_floats(int channel_count, size_t stride, float* values) override {
+        read(Imf::FLOAT, channel_count, stride * sizeof(float), sizeof(float), values);
+    }
+    void read_halves(int channel_count, size_t stride, uint16_t* values) override {
+        read(Imf::HALF, channel_count, stride * sizeof(uint16_t), sizeof(uint16_t), values);
+    }
+
+  private:
+    void read(Imf::PixelType type, int channel_count, size_t stride_bytes, size_t value_bytes, void* values) {
+        try {
+            Imf::FrameBuffer buffer;
+            const Imath::Box2i& window = file_.header().dataWindow();
+            for (int c = 0; c < channel_count; ++c)
+                buffer.insert(header_.channels[size_t(c)],
+                              Imf::Slice::Make(type, static_cast<char*>(values) + size_t(c) * value_bytes,
+                                               window, stride_bytes, stride_bytes * size_t(header_.width)));
+            file_.setFrameBuffer(buffer);
+            file_.readPixels(window.min.y, window.max.y);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& error) {
+            fail_damaged(name_, fmt::format("cannot be read: {}", error.what()));
+        }
+    }
+
+    std::string name_;
+    ExrStream stream_;
+    Imf::InputFile file_;
+    PixelHeader header_;
+    bool is_plain_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<PixelSource> open_plain_exr(std::unique_ptr<std::istream> stream, const std::string& name) {
+    if (!is_flat_exr(*stream)) return nullptr;
+    try {
+        auto source = std::make_unique<ExrSource>(std::move(stream), name);
+        if (source->is_plain()) return source;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        fail_damaged(name, fmt::format("cannot be opened: {}", error.what()));
+    }
+    return nullptr;
+}
+
+} // namespace relief

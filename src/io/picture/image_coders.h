@@ -1,0 +1,30 @@
+// The kinds of pictures that Relief writes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "io/picture/image_output.h"
+#include "math/vec.h"
+#include "relief/image.h"
+
+namespace relief {
+
+/// All channels as floats, ZIP, windows and metadata.
+void encode_exr(const Image& image, CheckedFile& file);
+/// The texels as they are, ZIP; channels Y, R G, R G B or R G B A.
+void encode_exr(const Texture& texture, CheckedFile& file);
+
+/// Fills row y, which has the right size. Pictures are encoded row by row, without a second copy of the
+/// whole.
+template <class Value> using FillRow = std::function<void(int y, std::vector<Value>& row)>;
+
+/// Three bytes a pixel, sRGB.
+void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
+/// Six bytes a pixel, the high one of each value first; without a tag of colour, as data.
+void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
+/// Radiance RGBE: three mantissas and a common exponent, run lengths.
+void encode_hdr(int width, int height, const FillRow<Vec3f>& fill_row, CheckedFile& file);
+
+} // namespace relief

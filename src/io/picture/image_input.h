@@ -1,0 +1,32 @@
+// Opening pictures, guarded against absurd headers.
+#pragma once
+
+#include <filesystem>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/picture/pixel_source.h"
+
+namespace relief {
+
+/// Throws Error{bad_input}: missing or unreadable file, unknown kind, no pixels, more than 65536 a side or
+/// 2^31 texels, or a header that claims far more pixels than the file can hold; Error{failed} where the
+/// picture takes the module relief_pictures and that is missing; std::bad_alloc.
+std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file);
+/// The same for the bytes of a file, which must outlive the source; the extension of `name` tells the kind.
+std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std::string& name);
+
+/// read_texture for the bytes of a file; throws as it does.
+Texture parse_texture(std::string_view bytes, const std::string& name);
+
+/// What a file, by the chunks and attributes in it, says of its values being colours; empty: nothing. The
+/// libraries' own guesses by the kind of file do not count.
+std::string find_colour_tag(std::istream& stream);
+
+/// True where the display window is at most four times as wide and high as the pixels: textures are filled up
+/// to it.
+bool has_near_display(const PixelHeader& header);
+
+} // namespace relief

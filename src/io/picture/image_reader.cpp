@@ -1,0 +1,115 @@
+// read_texture and read_image: pixels as stored.
+#include <algorithm>
+#include <fstream>
+#include <new>
+#include <sstream>
+
+#include "io/picture/image_input.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+constexpr uint16_t kHalfOne = 0x3c00;
+
+/// Room for four channels a pixel: those that the file lacks are 0, a missing fourth is 1.
+template <class T> std::vector<T> make_texels(const PixelHeader& header, T one) {
+    std::vector<T> texels(4 * size_t(header.width) * size_t(header.height), T(0));
+    for (size_t i = 3; i < texels.size(); i += 4) texels[i] = one;
+    return texels;
+}
+
+/// A data window smaller than the display window is put into its place; what the file leaves out is 0.
+template <class T> void place_in_display_window(const PixelHeader& header, std::vector<T>& texels) {
+    if (texels.empty()) return;
+    std::vector<T> placed(4 * size_t(header.full_width) * header.full_height, T(0));
+    for (int y = 0; y < header.height; ++y) {
+        const int row = header.y + y - header.full_y;
+        if (row < 0 || row >= header.full_height) continue;
+        for (int x = 0; x < header.width; ++x) {
+            const int column = header.x + x - header.full_x;
+            if (column < 0 || column >= header.full_width) continue;
+            const auto* source = &texels[4 * (size_t(y) * header.width + x)];
+            std::copy(source, source + 4, &placed[4 * (size_t(row) * header.full_width + column)]);
+        }
+    }
+    texels = std::move(placed);
+}
+
+Texture read_pixels(PixelSource& source, const std::string& name) {
+    const PixelHeader& header = source.header();
+    const int channel_count = int(std::min<size_t>(4, header.channels.size()));
+    Texture texture;
+    texture.file = name;
+    texture.width = uint32_t(header.width);
+    texture.height = uint32_t(header.height);
+    texture.channel_count = uint32_t(channel_count);
+    texture.source_type = header.type;
+    if (texture.source_type == SampleType::float16) {
+        texture.halves = make_texels(header, kHalfOne);
+        source.read_halves(channel_count, 4, texture.halves.data());
+    } else {
+        texture.floats = make_texels(header, 1.0f);
+        source.read_floats(channel_count, 4, texture.floats.data());
+    }
+    const bool is_whole = header.x == header.full_x && header.y == header.full_y &&
+                          header.width == header.full_width && header.height == header.full_height;
+    if (!is_whole && has_near_display(header)) {
+        place_in_display_window(header, texture.floats);
+        place_in_display_window(header, texture.halves);
+        texture.width = uint32_t(header.full_width);
+        texture.height = uint32_t(header.full_height);
+    }
+    return texture;
+}
+
+template <class Read> auto with_memory_error(const std::string& name, const Read& read) {
+    try {
+        return read();
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::out_of_memory,
+                    {"not enough memory for this image", name, "use a smaller image"});
+    }
+}
+
+} // namespace
+
+Texture read_texture(const std::filesystem::path& file) {
+    return with_memory_error(file.string(), [&] {
+        Texture texture = read_pixels(*open_image(file), file.string());
+        std::ifstream stream(file, std::ios::binary);
+        texture.colour_tag = find_colour_tag(stream);
+        return texture;
+    });
+}
+
+Texture parse_texture(std::string_view bytes, const std::string& name) {
+    return with_memory_error(name, [&] {
+        Texture texture = read_pixels(*open_image_bytes(bytes, name), name);
+        std::istringstream stream{std::string(bytes)};
+        texture.colour_tag = find_colour_tag(stream);
+        return texture;
+    });
+}
+
+Image read_image(const std::filesystem::path& file) {
+    return with_memory_error(file.string(), [&] {
+        const std::unique_ptr<PixelSource> source = open_image(file);
+        const PixelHeader& header = source->header();
+        Image image;
+        image.width = header.width, image.height = header.height;
+        image.x0 = header.x - header.full_x, image.y0 = header.y - header.full_y;
+        image.full_width = header.full_width, image.full_height = header.full_height;
+        image.channels = header.channels;
+        image.metadata = header.metadata;
+        image.source_type = header.type;
+        const size_t channel_count = header.channels.size();
+        image.pixels.resize(size_t(header.width) * size_t(header.height) * channel_count);
+        source->read_floats(int(channel_count), channel_count, image.pixels.data());
+        return image;
+    });
+}
+
+} // namespace relief

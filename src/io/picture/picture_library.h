@@ -1,0 +1,39 @@
+// The door to relief_pictures: OpenImageIO, for the kinds of pictures that Relief has no reader of its own
+// for. It brings some 250 shared libraries, so it is a module that is loaded when the first such picture is
+// opened.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/picture/pixel_source.h"
+
+namespace relief {
+
+/// What the module offers. For any thread; may throw std::bad_alloc.
+class PictureLibrary {
+  public:
+    virtual ~PictureLibrary() = default;
+    /// Throws Error{bad_input}.
+    virtual std::unique_ptr<PixelSource> open_file(const std::string& file) const = 0;
+    /// The same for the bytes of a file, which must outlive the source; the extension of `name` tells the
+    /// kind.
+    virtual std::unique_ptr<PixelSource> open_bytes(std::string_view bytes,
+                                                    const std::string& name) const = 0;
+};
+
+/// The module's function that returns its library. The number counts the layouts of PictureLibrary,
+/// PixelSource and PixelHeader: raise it with every change of theirs, so that a module of another build is
+/// refused in place of being called wrongly.
+#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_1
+
+/// Loads a module, for good. Throws Error{failed}, with `name`, the picture, as the place, where it is
+/// missing or was built for another layout.
+const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);
+
+/// Loads relief_pictures when first called. It lies beside the program, or where the build put it. Throws as
+/// load_picture_library.
+const PictureLibrary& get_picture_library(const std::string& name);
+
+} // namespace relief

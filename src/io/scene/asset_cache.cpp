@@ -1,0 +1,113 @@
+#include "io/scene/asset_cache.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "formulas/tonemap.h"
+#include "io/scene/tile_names.h"
+#include "math/half.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
+
+void decode_colours(Texture& texture) {
+    const bool is_integer =
+        texture.source_type == SampleType::uint8 || texture.source_type == SampleType::uint16;
+    if (!is_integer) return;
+    const bool is_grey = texture.channel_count < 3;
+    for (size_t i = 0; i < texture.floats.size(); i += 4) {
+        for (size_t c = 0; c < (is_grey ? 1 : 3); ++c)
+            texture.floats[i + c] = scalar::decode_srgb(texture.floats[i + c]);
+    }
+}
+
+/// A picture with one channel is grey: it counts for red, green and blue.
+void spread_grey(Texture& texture) {
+    if (texture.channel_count >= 3) return;
+    const auto spread = [](auto& texels) {
+        for (size_t i = 0; i < texels.size(); i += 4) texels[i + 1] = texels[i + 2] = texels[i];
+    };
+    spread(texture.floats), spread(texture.halves);
+}
+
+bool lift_negatives(Texture& texture) {
+    bool has_lifted = false;
+    for (size_t i = 0; i < texture.floats.size(); ++i)
+        if (i % 4 != 3 && texture.floats[i] < 0) texture.floats[i] = 0, has_lifted = true;
+    for (size_t i = 0; i < texture.halves.size(); ++i)
+        if (i % 4 != 3 && texture.halves[i] > 0x8000) texture.halves[i] = 0, has_lifted = true;
+    return has_lifted;
+}
+
+} // namespace
+
+float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel) {
+    const size_t i = 4 * (size_t(y) * texture.width + x) + channel;
+    return texture.floats.empty() ? half_to_float(texture.halves[i]) : texture.floats[i];
+}
+
+void check_finite(const Texture& texture, int udim) {
+    const size_t count = size_t(texture.width) * texture.height;
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t c = 0; c < 3; ++c) {
+            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[4 * i + c])
+                                                       : !std::isfinite(texture.floats[4 * i + c]);
+            if (!is_bad) continue;
+            const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
+            const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();
+            const bool is_nan = std::isnan(get_texel(texture, x, y, uint32_t(c)));
+            const std::string channel =
+                texture.channel_count < 3 ? std::string() : fmt::format(" in channel {}", "RGB"[c]);
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("{}{}", is_nan ? "NaN" : "infinity", channel),
+                         fmt::format("{}, pixel ({}, {}){}", texture.file, x, y, tile),
+                         "repair the pixel, for example by painting over it, and export again"});
+        }
+    }
+}
+
+fs::path AssetCache::resolve(const std::string& file) const {
+    const fs::path path(file);
+    return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
+}
+
+std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use) {
+    const fs::path path = resolve(file);
+    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use}];
+    if (cached) return cached;
+    auto texture = std::make_shared<Texture>(read_texture(path));
+    if (use != TextureUse::data) {
+        check_finite(*texture, 0);
+        if (use == TextureUse::colour) decode_colours(*texture);
+        spread_grey(*texture);
+        if (use == TextureUse::radiance && lift_negatives(*texture))
+            warnings_.push_back(fmt::format("{}: negative radiance counts as 0", path.string()));
+    }
+    return cached = std::move(texture);
+}
+
+std::vector<MapTile> AssetCache::load_displacement(const std::string& file) {
+    std::vector<MapTile> tiles;
+    if (!has_tile_token(file)) {
+        tiles.push_back({1001, load(file, TextureUse::data)});
+        if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
+            warnings_.push_back(
+                fmt::format("{}: is one tile of several, and the only one read; name them all "
+                            "as {}",
+                            file, pattern));
+        return tiles;
+    }
+    for (const auto& [udim, path] : find_tiles(resolve(file)))
+        tiles.push_back({udim, load(fs::absolute(path).string(), TextureUse::data)});
+    return tiles;
+}
+
+} // namespace relief

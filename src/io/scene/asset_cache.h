@@ -1,0 +1,44 @@
+// Textures of one scene: each file is read once and shared.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+/// What a texture is for decides what is done to its values: `data` nothing; `colour` decodes integers from
+/// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0.
+enum class TextureUse { data, colour, radiance };
+
+class AssetCache {
+  public:
+    explicit AssetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    std::filesystem::path resolve(const std::string& file) const;
+    std::shared_ptr<const Texture> load(const std::string& file, TextureUse use);
+    /// The tiles of a displacement map as they are: one for a plain file, all that exist for a name with a
+    /// token (io/scene/tile_names.h). A plain file that is one tile of several is warned of.
+    std::vector<MapTile> load_displacement(const std::string& file);
+
+    /// What was noticed while reading, in order.
+    std::vector<std::string>& warnings() { return warnings_; }
+
+  private:
+    std::filesystem::path folder_;
+    std::map<std::pair<std::string, TextureUse>, std::shared_ptr<const Texture>> textures_;
+    std::vector<std::string> warnings_;
+};
+
+/// Throws bad_input with pixel and tile (0: none) for a NaN or an infinity in the first three channels.
+void check_finite(const Texture& texture, int udim);
+
+/// Value of channel `channel` of texel (x, y).
+float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel);
+
+} // namespace relief

@@ -1,0 +1,196 @@
+#include "io/scene/json_node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+
+namespace relief {
+
+namespace {
+
+struct LineAndColumn {
+    size_t line = 1, column = 1;
+};
+
+LineAndColumn locate(std::string_view text, size_t byte) {
+    LineAndColumn place;
+    for (size_t i = 0; i < std::min(byte, text.size()); ++i) {
+        if (text[i] == '\n')
+            ++place.line, place.column = 1;
+        else
+            ++place.column;
+    }
+    return place;
+}
+
+/// The part of the parser's message that says what is wrong, without its own error number and position.
+std::string strip_parser_prefix(std::string message) {
+    for (const std::string_view mark : {"] ", ": "}) {
+        const size_t at = message.find(mark);
+        if (at != std::string::npos) message.erase(0, at + mark.size());
+    }
+    return message;
+}
+
+/// Remembers the keys of the objects that are open and the first key that came twice.
+class DuplicateKeyFinder {
+  public:
+    bool operator()(int, Json::parse_event_t event, const Json& value) {
+        if (event == Json::parse_event_t::object_start)
+            open_.emplace_back();
+        else if (event == Json::parse_event_t::object_end && !open_.empty())
+            open_.pop_back();
+        else if (event == Json::parse_event_t::key && !open_.empty()) {
+            const std::string key = value.get<std::string>();
+            if (!open_.back().insert(key).second && duplicate_.empty()) duplicate_ = key;
+        }
+        return true;
+    }
+    const std::string& duplicate() const { return duplicate_; }
+
+  private:
+    std::vector<std::set<std::string>> open_;
+    std::string duplicate_;
+};
+
+std::string describe_type(const Json& value) {
+    return (value.is_array() || value.is_object() ? "an "
+            : value.is_null()                     ? ""
+                                                  : "a ") +
+           std::string(value.type_name());
+}
+
+} // namespace
+
+Json parse_json(std::string_view text, const std::string& file) {
+    DuplicateKeyFinder finder;
+    Json document;
+    try {
+        document = Json::parse(
+            text.begin(), text.end(),
+            [&finder](int depth, Json::parse_event_t event, Json& value) {
+                return finder(depth, event, value);
+            },
+            true, true);
+    } catch (const Json::parse_error& error) {
+        // The parser counts the byte that it could not accept, starting from 1.
+        const LineAndColumn place = locate(text, error.byte > 0 ? error.byte - 1 : 0);
+        throw Error(ErrorKind::bad_input,
+                    {"broken JSON: " + strip_parser_prefix(error.what()),
+                     fmt::format("{}, line {}, column {}", file, place.line, place.column), ""});
+    } catch (const Json::exception& error) {
+        throw Error(ErrorKind::bad_input, {"broken JSON: " + strip_parser_prefix(error.what()), file, ""});
+    }
+    if (!finder.duplicate().empty()) {
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("key '{}' stands twice in one object", finder.duplicate()), file,
+                     "give every material, mesh and map a name of its own"});
+    }
+    return document;
+}
+
+void JsonNode::fail(const std::string& message, const std::string& hint) const {
+    throw Error(ErrorKind::bad_input, {message, place(), hint});
+}
+
+void JsonNode::fail_type(const std::string& wanted) const {
+    fail(fmt::format("must be {}, not {}", wanted, describe_type(*value_)));
+}
+
+void JsonNode::rethrow_with_place(const Error& error) const {
+    const std::string message =
+        error.where().empty() ? error.message() : error.where() + ": " + error.message();
+    throw Error(error.kind(), {message, place(), error.hint()});
+}
+
+void JsonNode::check_keys(std::span<const std::string_view> keys) const {
+    if (!value_->is_object()) fail_type("an object");
+    for (const auto& item : value_->items()) {
+        if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
+        const std::string inside = path_.empty() ? std::string() : " in " + path_;
+        throw Error(ErrorKind::bad_input, {fmt::format("unknown key '{}'{}", item.key(), inside), *file_,
+                                           suggest_word(item.key(), keys)});
+    }
+}
+
+std::optional<JsonNode> JsonNode::find(std::string_view key) const {
+    if (!value_->is_object()) fail_type("an object");
+    const auto found = value_->find(std::string(key));
+    if (found == value_->end()) return std::nullopt;
+    return JsonNode(*found, path_.empty() ? std::string(key) : path_ + "." + std::string(key), *file_);
+}
+
+JsonNode JsonNode::get(std::string_view key) const {
+    const std::optional<JsonNode> node = find(key);
+    if (!node) fail(fmt::format("key '{}' is missing", key));
+    return *node;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+    if (!value_->is_object()) fail_type("an object");
+    std::vector<std::pair<std::string, JsonNode>> result;
+    for (const auto& item : value_->items())
+        result.emplace_back(item.key(), JsonNode(item.value(), path_ + "." + item.key(), *file_));
+    return result;
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+    if (!value_->is_array()) fail_type("an array");
+    std::vector<JsonNode> result;
+    for (size_t i = 0; i < value_->size(); ++i)
+        result.emplace_back((*value_)[i], fmt::format("{}[{}]", path_, i), *file_);
+    return result;
+}
+
+float JsonNode::as_float(double low, double high) const {
+    if (!value_->is_number()) fail_type("a number");
+    const double number = value_->get<double>();
+    if (!(number >= low && number <= high)) {
+        if (low <= -double(FLT_MAX)) fail(fmt::format("{} is too large", number));
+        const std::string range =
+            high >= double(FLT_MAX) ? fmt::format("at least {}", low) : fmt::format("in [{}, {}]", low, high);
+        fail(fmt::format("must be {}, not {}", range, number));
+    }
+    return float(number);
+}
+
+int64_t JsonNode::as_integer(int64_t low, int64_t high) const {
+    if (!value_->is_number()) fail_type("a whole number");
+    const double number = value_->get<double>();
+    if (number != std::floor(number)) fail(fmt::format("must be a whole number, not {}", number));
+    if (!(number >= double(low) && number <= double(high)))
+        fail(fmt::format("must be in [{}, {}], not {}", low, high, number));
+    return int64_t(number);
+}
+
+bool JsonNode::as_bool() const {
+    if (!value_->is_boolean()) fail_type("true or false");
+    return value_->get<bool>();
+}
+
+std::string JsonNode::as_string() const {
+    if (!value_->is_string()) fail_type("a text");
+    return value_->get<std::string>();
+}
+
+Vec3f JsonNode::as_vec3(double low, double high) const {
+    if (!value_->is_array() || value_->size() != 3) {
+        if (value_->is_array()) fail(fmt::format("must be 3 numbers, not {}", value_->size()));
+        fail_type("an array of 3 numbers");
+    }
+    const std::vector<JsonNode> parts = elements();
+    return {parts[0].as_float(low, high), parts[1].as_float(low, high), parts[2].as_float(low, high)};
+}
+
+Vec3f JsonNode::as_vec3_or_number() const {
+    if (is_array()) return as_vec3();
+    if (!value_->is_number()) fail_type("a number or an array of 3 numbers");
+    const float number = as_float();
+    return {number, number, number};
+}
+
+} // namespace relief

@@ -1,0 +1,20 @@
+// load_map and make_map_meaning: a displacement map without a scene file.
+#include <iterator>
+
+#include "io/scene/asset_cache.h"
+#include "io/scene/displacement_reader.h"
+#include "relief/io.h"
+
+namespace relief {
+
+Displacement load_map(const std::filesystem::path& file, const MapOptions& options,
+                      std::vector<std::string>& warnings) {
+    AssetCache assets("");
+    Displacement map = read_displacement_map({file.stem().string(), file.string(), options}, assets);
+    std::move(assets.warnings().begin(), assets.warnings().end(), std::back_inserter(warnings));
+    return map;
+}
+
+Displacement make_map_meaning(const MapOptions& options) { return make_displacement_values(options); }
+
+} // namespace relief

@@ -1,0 +1,180 @@
+// load_mesh_scene: a camera that shows the whole object, a material and a light, for a mesh that comes alone.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "formulas/bsdf.h"
+#include "formulas/environment.h"
+#include "io/content_hash.h"
+#include "io/scene/asset_cache.h"
+#include "io/scene/displacement_reader.h"
+#include "io/scene/frame_object.h"
+#include "io/scene/subdivision_json.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+/// Normals of surfaces that the camera sees, spread evenly.
+std::vector<Vec3f> make_visible_normals(const Vec3f& view) {
+    std::vector<Vec3f> normals = {view};
+    constexpr int kCount = 64;
+    constexpr float kGoldenAngle = 2.3999632f;
+    for (int k = 0; k < kCount; ++k) {
+        const float y = 1 - 2 * (float(k) + 0.5f) / kCount, radius = std::sqrt(1 - y * y);
+        const float turn = kGoldenAngle * float(k);
+        const Vec3f normal{radius * std::sin(turn), y, radius * std::cos(turn)};
+        if (dot(normal, view) > 0.2f) normals.push_back(normal);
+    }
+    return normals;
+}
+
+/// Radiance of the brightest of all white diffuse surfaces that the camera sees under an image of a sky.
+float measure_brightness(const Texture& sky, const Vec3f& view) {
+    const std::vector<Vec3f> normals = make_visible_normals(view);
+    std::vector<double> received(normals.size());
+    double weights = 0;
+    const uint32_t columns = std::max(sky.width, 128u), rows = std::max(sky.height, 64u);
+    for (uint32_t row = 0; row < rows; ++row) {
+        const float v = (float(row) + 0.5f) / float(rows);
+        const uint32_t y = uint32_t(uint64_t(row) * sky.height / rows);
+        const double weight = std::sin(std::numbers::pi * double(v));
+        weights += weight * columns;
+        for (uint32_t column = 0; column < columns; ++column) {
+            const uint32_t x = uint32_t(uint64_t(column) * sky.width / columns);
+            const Vec3f radiance{get_texel(sky, x, y, 0), get_texel(sky, x, y, 1), get_texel(sky, x, y, 2)};
+            const double light = weight * double(scalar::luminance(radiance));
+            const Vec3f direction =
+                scalar::latlong_to_direction(Vec2f{(float(column) + 0.5f) / float(columns), v});
+            for (size_t k = 0; k < normals.size(); ++k)
+                received[k] += light * double(std::max(0.0f, dot(direction, normals[k])));
+        }
+    }
+    // The mean of max(0, cos) over the sphere is 1/4.
+    return float(4 * *std::max_element(received.begin(), received.end()) / weights);
+}
+
+void add_image_light(Scene& scene, std::shared_ptr<const Texture> sky, const Vec3f& view) {
+    constexpr float kWhite = 1;
+    Environment environment;
+    const float brightness = measure_brightness(*sky, view);
+    if (brightness > 0) environment.strength = kWhite / brightness;
+    environment.texture = std::move(sky);
+    scene.environment = std::move(environment);
+}
+
+void add_default_light(Scene& scene, const Vec3f& view) {
+    Environment sky;
+    sky.color = {0.25f, 0.28f, 0.33f};
+    scene.environment = sky;
+    const Vec3f left = normalize(cross(view, Vec3f{0, 1, 0}));
+    Light sun;
+    sun.direction = normalize(left * 0.8f + Vec3f{0, 0.9f, 0} + view * 0.55f) * -1.0f;
+    sun.angle_degrees = 3;
+    sun.color = {1.0f, 0.95f, 0.88f};
+    sun.strength = 2.2f;
+    scene.lights.push_back(sun);
+}
+
+void add_map(Scene& scene, const MeshSceneOptions& options, AssetCache& assets) {
+    const Mesh& mesh = scene.meshes.front();
+    if (mesh.uv_indices.empty())
+        throw Error(ErrorKind::bad_input, {"the mesh has no uvs, which its displacement map needs",
+                                           mesh.source, "export the mesh with texture coordinates"});
+    DisplacementRequest request;
+    request.name = options.displacement_map.stem().string();
+    request.file = std::filesystem::absolute(options.displacement_map).string();
+    request.options = options.map;
+    scene.displacements.push_back(make_displacement(request, assets));
+    scene.objects.front().displacement = 0;
+}
+
+uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
+    ContentHash hash;
+    const MapOptions& map = options.map;
+    hash.add(map.preset);
+    for (const std::optional<std::string>& text :
+         {map.type, map.space, map.axes, map.frame, map.lengths, map.encoding, map.wrap, map.filter})
+        hash.add(text.value_or("-"));
+    for (const std::optional<Vec3f>& value : {map.midlevel, map.scale})
+        hash.add(value ? fmt::format("{} {} {}", value->x, value->y, value->z) : std::string("-"));
+    for (const bool value : {map.flip_v, map.dilate, map.autobump}) hash.add(value ? "yes" : "no");
+    add_scene_content(hash, scene);
+    return hash.value();
+}
+
+/// One object of clay; not framed and not lit yet.
+Scene make_clay_scene(Mesh mesh) {
+    Scene scene;
+    scene.source = mesh.source;
+    scene.meshes.push_back(std::move(mesh));
+    Material clay;
+    clay.name = "clay";
+    clay.base_color = {0.75f, 0.55f, 0.45f};
+    clay.roughness = 0.6f;
+    scene.materials.push_back(clay);
+    Object object;
+    object.name = scene.meshes.front().name;
+    object.material = 0;
+    scene.objects.push_back(object);
+    return scene;
+}
+
+/// Sets the camera; returns the way from the object to it.
+Vec3f frame_scene(Scene& scene) {
+    validate_scene(scene); // framing follows the indices of the mesh and the uvs into the map
+    scene.camera = frame_object(scene.meshes.front(),
+                                scene.displacements.empty() ? nullptr : &scene.displacements.front());
+    return normalize(scene.camera.from - scene.camera.to);
+}
+
+Mesh make_map_plane() {
+    Mesh plane;
+    plane.name = "plane";
+    plane.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    plane.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    plane.face_sizes = {4};
+    plane.position_indices = plane.uv_indices = {0, 1, 2, 3};
+    return plane;
+}
+
+} // namespace
+
+Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
+    Scene scene = make_clay_scene(load_mesh(mesh));
+    Subdivision& subdivision = scene.meshes.front().subdivision;
+    if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
+    if (options.subdivision_level) subdivision.level = *options.subdivision_level;
+    AssetCache assets("");
+    if (!options.displacement_map.empty()) add_map(scene, options, assets);
+    const Vec3f view = frame_scene(scene);
+    if (options.environment.empty()) {
+        add_default_light(scene, view);
+    } else {
+        add_image_light(scene, assets.load(options.environment.string(), TextureUse::radiance), view);
+    }
+    scene.warnings = std::move(assets.warnings());
+    validate_scene(scene);
+    scene.hash = compute_hash(scene, options);
+    return scene;
+}
+
+Scene make_mesh_scene(Mesh mesh, const Displacement* map) {
+    Scene scene = make_clay_scene(std::move(mesh));
+    if (map) {
+        scene.displacements.push_back(*map);
+        scene.objects.front().displacement = 0;
+    }
+    add_default_light(scene, frame_scene(scene));
+    validate_scene(scene);
+    return scene;
+}
+
+Scene make_map_scene(const Displacement& map) { return make_mesh_scene(make_map_plane(), &map); }
+
+} // namespace relief

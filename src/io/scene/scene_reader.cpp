@@ -1,0 +1,134 @@
+#include "io/scene/scene_reader.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "io/content_hash.h"
+#include "io/file_system.h"
+#include "io/scene/json_node.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/scene_sections.h"
+#include "io/scene/subdivision_json.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+using NameIndex = std::unordered_map<std::string, uint32_t>;
+
+uint32_t find_named(const JsonNode& node, const NameIndex& index, const char* what) {
+    const std::string name = node.as_string();
+    const auto found = index.find(name);
+    if (found != index.end()) return found->second;
+    std::vector<std::string_view> names;
+    for (const auto& [known, position] : index) names.push_back(known);
+    std::sort(names.begin(), names.end());
+    node.fail(fmt::format("there is no {} '{}'", what, name), suggest_word(name, names));
+}
+
+/// Reads the members of a section of names into a list and remembers where each went.
+template <class Item, class Read>
+NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<Item>& items,
+                       const Read& read) {
+    NameIndex index;
+    const auto section = root.find(key);
+    if (!section) return index;
+    for (const auto& [name, node] : section->members()) {
+        index[name] = uint32_t(items.size());
+        items.push_back(read(name, node));
+    }
+    return index;
+}
+
+Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets) {
+    node.check_keys(scene_keys::kMesh);
+    const JsonNode file = node.get("file");
+    const std::filesystem::path path = assets.resolve(file.as_string());
+    constexpr int kLastUvSet = 255;
+    MeshReadOptions options;
+    if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
+    mesh.name = name;
+    if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
+    return mesh;
+}
+
+struct ObjectNames {
+    NameIndex meshes, displacements, materials;
+};
+
+Object read_object(const JsonNode& node, const ObjectNames& names) {
+    node.check_keys(scene_keys::kObject);
+    Object object;
+    if (const auto name = node.find("name")) object.name = name->as_string();
+    object.mesh = find_named(node.get("mesh"), names.meshes, "mesh");
+    if (const auto found = node.find("displacement"))
+        object.displacement = find_named(*found, names.displacements, "displacement");
+    if (const auto found = node.find("material"))
+        object.material = find_named(*found, names.materials, "material");
+    if (const auto found = node.find("transform")) object.world_from_object = read_transform(*found);
+    return object;
+}
+
+void read_root(const JsonNode& root, Scene& scene, AssetCache& assets) {
+    root.check_keys(scene_keys::kRoot);
+    if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
+        version->fail("only version 1 is known", "use a newer version of the program");
+    if (const auto node = root.find("render")) scene.picture = read_picture(*node);
+    if (const auto node = root.find("camera")) scene.camera = read_camera(*node);
+    if (const auto node = root.find("environment")) scene.environment = read_environment(*node, assets);
+    ObjectNames names;
+    names.materials = read_section(root, "materials", scene.materials, [&](const auto& name, const auto& n) {
+        return read_material(n, name, assets);
+    });
+    names.displacements =
+        read_section(root, "displacements", scene.displacements,
+                     [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
+    names.meshes = read_section(root, "meshes", scene.meshes,
+                                [&](const auto& name, const auto& n) { return read_mesh(n, name, assets); });
+    if (const auto node = root.find("objects"))
+        for (const JsonNode& element : node->elements()) scene.objects.push_back(read_object(element, names));
+    if (const auto node = root.find("lights"))
+        for (const JsonNode& element : node->elements()) scene.lights.push_back(read_light(element));
+}
+
+/// Size and samples of the picture may change without its being another picture.
+uint64_t compute_hash(const Json& document, const Scene& scene) {
+    nlohmann::json canonical = document; // sorts the keys
+    if (const auto render = canonical.find("render"); render != canonical.end())
+        for (const char* key : {"width", "height", "spp"}) render->erase(key);
+    ContentHash hash;
+    hash.add(canonical.dump());
+    add_scene_content(hash, scene);
+    return hash.value();
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
+    const Json document = parse_json(text, name);
+    Scene scene;
+    scene.source = name;
+    AssetCache assets(folder);
+    read_root(JsonNode(document, "", name), scene, assets);
+    scene.warnings = std::move(assets.warnings());
+    try {
+        validate_scene(scene);
+    } catch (const Error& error) {
+        throw Error(error.kind(), {error.message(), name + ": " + error.where(), error.hint()});
+    }
+    scene.hash = compute_hash(document, scene);
+    return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file) {
+    return parse_scene(read_file_bytes(file), file.parent_path(), file.string());
+}
+
+} // namespace relief

@@ -1,0 +1,183 @@
+#include "io/scene/scene_sections.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "io/scene/displacement_reader.h"
+#include "io/scene/scene_keys.h"
+#include "math/affine.h"
+
+namespace relief {
+
+namespace {
+
+template <class Value, class Read>
+void read_optional(const JsonNode& node, std::string_view key, Value& value, const Read& read) {
+    if (const auto found = node.find(key)) value = read(*found);
+}
+
+void read_float(const JsonNode& node, std::string_view key, float& value, double low = -double(FLT_MAX),
+                double high = FLT_MAX) {
+    if (const auto found = node.find(key)) value = found->as_float(low, high);
+}
+
+void read_vec3(const JsonNode& node, std::string_view key, Vec3f& value, double low = -double(FLT_MAX),
+               double high = FLT_MAX) {
+    if (const auto found = node.find(key)) value = found->as_vec3(low, high);
+}
+
+std::optional<int> read_int(const JsonNode& node, std::string_view key, int64_t low, int64_t high) {
+    const auto found = node.find(key);
+    return found ? std::optional<int>(int(found->as_integer(low, high))) : std::nullopt;
+}
+
+std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::string_view key, TextureUse use,
+                                                AssetCache& assets) {
+    const auto found = node.find(key);
+    if (!found) return nullptr;
+    const std::string file = found->as_string();
+    return found->with_place([&] { return assets.load(file, use); });
+}
+
+Affine read_matrix(const JsonNode& node) {
+    const std::vector<JsonNode> values = node.elements();
+    if (values.size() != 16) node.fail(fmt::format("must be 16 numbers, row by row, not {}", values.size()));
+    Affine m;
+    for (size_t r = 0; r < 3; ++r) {
+        m.rows[r] = {values[4 * r].as_float(), values[4 * r + 1].as_float(), values[4 * r + 2].as_float()};
+        set_component(m.translation, int(r), values[4 * r + 3].as_float());
+    }
+    for (size_t c = 0; c < 4; ++c)
+        if (values[12 + c].as_float() != (c == 3 ? 1.0f : 0.0f))
+            node.fail("the last row must be 0, 0, 0, 1",
+                      "numbers go row by row; projections are not supported");
+    return m;
+}
+
+} // namespace
+
+PictureDefaults read_picture(const JsonNode& node) {
+    node.check_keys(scene_keys::kPicture);
+    PictureDefaults picture;
+    picture.width = read_int(node, "width", 1, kMaxPictureSize);
+    picture.height = read_int(node, "height", 1, kMaxPictureSize);
+    picture.spp = read_int(node, "spp", 1, kMaxSamples);
+    picture.bounces = read_int(node, "bounces", 0, kMaxBounces);
+    if (const auto seed = node.find("seed"))
+        picture.seed = uint32_t(seed->as_integer(0, std::numeric_limits<uint32_t>::max()));
+    return picture;
+}
+
+Camera read_camera(const JsonNode& node) {
+    node.check_keys(scene_keys::kCamera);
+    Camera camera;
+    read_vec3(node, "from", camera.from);
+    read_vec3(node, "to", camera.to);
+    read_vec3(node, "up", camera.up);
+    read_float(node, "fov_degrees", camera.fov_degrees, 0.001, 179.999);
+    read_float(node, "aperture_radius", camera.aperture_radius, 0);
+    const float distance = length(camera.to - camera.from);
+    if (distance > 0) camera.focus_distance = distance;
+    read_float(node, "focus_distance", camera.focus_distance, FLT_MIN);
+    return camera;
+}
+
+Affine read_transform(const JsonNode& node) {
+    node.check_keys(scene_keys::kTransform);
+    Affine transform;
+    if (const auto matrix = node.find("matrix")) {
+        if (node.members().size() > 1)
+            matrix->fail("cannot be mixed with translate, rotate_degrees or scale");
+        transform = read_matrix(*matrix);
+    } else {
+        Vec3f translate, rotate, scale{1, 1, 1};
+        read_vec3(node, "translate", translate);
+        read_vec3(node, "rotate_degrees", rotate);
+        read_optional(node, "scale", scale, [](const JsonNode& n) { return n.as_vec3_or_number(); });
+        transform = compose(make_rotation_degrees(rotate), make_scale(scale));
+        transform.translation = translate;
+    }
+    if (!invert(transform)) {
+        const auto scale = node.find("scale");
+        (scale ? *scale : node)
+            .fail("makes the transform singular", "no factor may be 0: nothing would be left");
+    }
+    return transform;
+}
+
+Light read_light(const JsonNode& node) {
+    Light light;
+    const JsonNode type = node.get("type");
+    const std::string name = type.as_string();
+    if (name == "sun") {
+        node.check_keys(scene_keys::kSun);
+        read_vec3(node, "direction", light.direction);
+        read_float(node, "angle_degrees", light.angle_degrees, 0, 90);
+        if (length(light.direction) == 0) node.fail("the direction has no length");
+    } else if (name == "point") {
+        light.type = LightType::point;
+        node.check_keys(scene_keys::kPoint);
+        read_vec3(node, "position", light.position);
+        read_float(node, "radius", light.radius, 0);
+    } else {
+        constexpr std::string_view kNames[] = {"sun", "point"};
+        type.fail(fmt::format("unknown light '{}'", name), suggest_word(name, kNames));
+    }
+    read_vec3(node, "color", light.color, 0);
+    read_float(node, "strength", light.strength, 0);
+    return light;
+}
+
+Environment read_environment(const JsonNode& node, AssetCache& assets) {
+    node.check_keys(scene_keys::kEnvironment);
+    Environment environment;
+    environment.texture = read_texture_key(node, "file", TextureUse::radiance, assets);
+    read_vec3(node, "color", environment.color, 0);
+    read_float(node, "strength", environment.strength, 0);
+    read_float(node, "rotate_degrees", environment.rotate_degrees);
+    return environment;
+}
+
+Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets) {
+    node.check_keys(scene_keys::kMaterial);
+    Material material;
+    material.name = name;
+    read_vec3(node, "base_color", material.base_color, 0, 1);
+    read_float(node, "roughness", material.roughness, 0, 1);
+    read_float(node, "metallic", material.metallic, 0, 1);
+    read_float(node, "ior", material.ior, 1);
+    read_vec3(node, "emission", material.emission, 0);
+    material.base_color_texture = read_texture_key(node, "base_color_texture", TextureUse::colour, assets);
+    material.roughness_texture = read_texture_key(node, "roughness_texture", TextureUse::data, assets);
+    return material;
+}
+
+Displacement read_displacement(const JsonNode& node, const std::string& name, AssetCache& assets) {
+    node.check_keys(scene_keys::kDisplacement);
+    DisplacementRequest request;
+    request.name = name;
+    MapOptions& options = request.options;
+    const auto as_text = [](const JsonNode& n) { return n.as_string(); };
+    const auto as_factors = [](const JsonNode& n) { return n.as_vec3_or_number(); };
+    request.file = node.get("file").as_string();
+    read_optional(node, "preset", options.preset, as_text);
+    read_optional(node, "type", options.type, as_text);
+    read_optional(node, "space", options.space, as_text);
+    read_optional(node, "axes", options.axes, as_text);
+    read_optional(node, "frame", options.frame, as_text);
+    read_optional(node, "lengths", options.lengths, as_text);
+    read_optional(node, "encoding", options.encoding, as_text);
+    read_optional(node, "wrap", options.wrap, as_text);
+    read_optional(node, "midlevel", options.midlevel, as_factors);
+    read_optional(node, "scale", options.scale, as_factors);
+    const auto as_bool = [](const JsonNode& n) { return n.as_bool(); };
+    read_optional(node, "flip_v", options.flip_v, as_bool);
+    read_optional(node, "dilate", options.dilate, as_bool);
+    read_optional(node, "filter", options.filter, as_text);
+    read_optional(node, "autobump", options.autobump, as_bool);
+    return node.with_place([&] { return make_displacement(request, assets); });
+}
+
+} // namespace relief

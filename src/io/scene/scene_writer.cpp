@@ -1,0 +1,249 @@
+// save_scene: scene.json with meshes as OBJ and maps as EXR beside it.
+#include <cctype>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "io/file_system.h"
+#include "io/mesh/mesh_writer.h"
+#include "io/picture/image_coders.h"
+#include "io/scene/displacement_reader.h"
+#include "io/scene/json_node.h"
+#include "io/scene/subdivision_json.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+/// The shortest decimal that reads back as the same float.
+Json to_json(float value) { return std::stod(fmt::format("{}", value)); }
+Json to_json(const Vec3f& v) { return Json::array({to_json(v.x), to_json(v.y), to_json(v.z)}); }
+
+/// Gives every item a name of its own, close to the one it has.
+class Namer {
+  public:
+    explicit Namer(std::string fallback) : fallback_(std::move(fallback)) {}
+
+    std::string make_unique(const std::string& wanted) {
+        const std::string base = wanted.empty() ? fallback_ : wanted;
+        std::string name = base;
+        for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}", base, i);
+        return name;
+    }
+
+  private:
+    std::string fallback_;
+    std::set<std::string> taken_;
+};
+
+std::string make_file_stem(std::string name) {
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    return name;
+}
+
+void write_texels(const Texture& texture, const std::filesystem::path& file) {
+    write_checked(file, [&](CheckedFile& stream) { encode_exr(texture, stream); });
+}
+
+/// Fails where a map goes through tangents of its mesh, which an OBJ cannot hold.
+void check_tangents(const Scene& scene, const Object& object) {
+    if (object.displacement == kNoIndex) return;
+    const Displacement& map = scene.displacements[object.displacement];
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (map.frame != FrameKind::file || map.type != DisplacementType::vector ||
+        map.space != DisplacementSpace::tangent || mesh.tangents.empty())
+        return;
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("displacement '{}' uses the tangents of its mesh, and a scene is saved with OBJ "
+                             "meshes, which hold none",
+                             map.name),
+                 fmt::format("mesh '{}'", mesh.name), "use frame mikk, or write the scene file by hand"});
+}
+
+class SceneWriter {
+  public:
+    SceneWriter(const Scene& scene, std::filesystem::path folder)
+        : scene_(scene), folder_(std::move(folder)) {}
+
+    void write() {
+        for (const char* name : {"meshes", "maps"}) {
+            std::error_code code;
+            std::filesystem::create_directories(folder_ / name, code);
+            if (code)
+                throw Error(ErrorKind::failed, {"the folder cannot be made: " + code.message(),
+                                                (folder_ / name).string(), "check its rights"});
+        }
+        root_["version"] = 1;
+        add_picture(), add_camera(), add_environment(), add_materials(), add_displacements(), add_meshes();
+        add_objects(), add_lights();
+        write_text_file(folder_ / "scene.json", root_.dump(2) + "\n");
+    }
+
+  private:
+    /// Writes a texture once, whoever uses it, and returns its path relative to the scene.
+    std::string add_map(const std::shared_ptr<const Texture>& texture, const std::string& name) {
+        std::string& file = files_[texture.get()];
+        if (file.empty()) {
+            file = "maps/" + map_names_.make_unique(make_file_stem(name)) + ".exr";
+            write_texels(*texture, folder_ / file);
+        }
+        return file;
+    }
+
+    void add_picture() {
+        Json node = Json::object();
+        const PictureDefaults& picture = scene_.picture;
+        if (picture.width) node["width"] = *picture.width;
+        if (picture.height) node["height"] = *picture.height;
+        if (picture.spp) node["spp"] = *picture.spp;
+        if (picture.bounces) node["bounces"] = *picture.bounces;
+        if (picture.seed) node["seed"] = *picture.seed;
+        if (!node.empty()) root_["render"] = node;
+    }
+
+    void add_camera() {
+        const Camera& camera = scene_.camera;
+        root_["camera"] = {{"from", to_json(camera.from)},
+                           {"to", to_json(camera.to)},
+                           {"up", to_json(camera.up)},
+                           {"fov_degrees", to_json(camera.fov_degrees)},
+                           {"aperture_radius", to_json(camera.aperture_radius)},
+                           {"focus_distance", to_json(camera.focus_distance)}};
+    }
+
+    void add_environment() {
+        if (!scene_.environment) return;
+        const Environment& environment = *scene_.environment;
+        Json& node = root_["environment"];
+        if (environment.texture) node["file"] = add_map(environment.texture, "environment");
+        node["color"] = to_json(environment.color);
+        node["strength"] = to_json(environment.strength);
+        node["rotate_degrees"] = to_json(environment.rotate_degrees);
+    }
+
+    void add_materials() {
+        Namer namer("material");
+        for (const Material& material : scene_.materials) {
+            material_names_.push_back(namer.make_unique(material.name));
+            Json& node = root_["materials"][material_names_.back()];
+            node["base_color"] = to_json(material.base_color);
+            node["roughness"] = to_json(material.roughness);
+            node["metallic"] = to_json(material.metallic);
+            node["ior"] = to_json(material.ior);
+            node["emission"] = to_json(material.emission);
+            if (material.base_color_texture)
+                node["base_color_texture"] =
+                    add_map(material.base_color_texture, material_names_.back() + "_color");
+            if (material.roughness_texture)
+                node["roughness_texture"] =
+                    add_map(material.roughness_texture, material_names_.back() + "_roughness");
+        }
+    }
+
+    std::string add_displacement_maps(const Displacement& map, const std::string& name) {
+        if (!map.is_udim) return add_map(map.tiles.front().texture, name);
+        const std::string stem = "maps/" + map_names_.make_unique(make_file_stem(name));
+        for (const MapTile& tile : map.tiles)
+            write_texels(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
+        return stem + ".<UDIM>.exr";
+    }
+
+    void add_displacements() {
+        Namer namer("displacement");
+        for (const Displacement& map : scene_.displacements) {
+            displacement_names_.push_back(namer.make_unique(map.name));
+            Json& node = root_["displacements"][displacement_names_.back()];
+            node["type"] = std::string(get_name(map.type));
+            node["file"] = add_displacement_maps(map, displacement_names_.back());
+            node["space"] = std::string(get_name(map.space));
+            node["axes"] = format_axes(map.axes, map.space);
+            node["frame"] = std::string(get_name(map.frame));
+            node["lengths"] = std::string(get_name(map.lengths));
+            // Unsaid it is 0 of the floats that are written.
+            if (map.has_midlevel || map.midlevel != Vec3f{}) node["midlevel"] = to_json(map.midlevel);
+            node["scale"] = to_json(map.scale);
+            node["flip_v"] = map.flip_v;
+            node["dilate"] = map.dilate;
+            node["filter"] = std::string(get_name(map.filter));
+            node["autobump"] = map.autobump;
+            node["wrap"] = std::string(get_name(map.wrap));
+        }
+    }
+
+    void add_meshes() {
+        Namer namer("mesh"), file_namer("mesh");
+        for (const Mesh& mesh : scene_.meshes) {
+            mesh_names_.push_back(namer.make_unique(mesh.name));
+            const std::string file =
+                "meshes/" + file_namer.make_unique(make_file_stem(mesh_names_.back())) + ".obj";
+            write_text_file(folder_ / file, format_obj(mesh));
+            Json& node = root_["meshes"][mesh_names_.back()];
+            node["file"] = file;
+            if (has_subdivision(mesh)) node["subdivision"] = write_subdivision(mesh);
+        }
+    }
+
+    void add_objects() {
+        root_["objects"] = Json::array();
+        for (const Object& object : scene_.objects) {
+            Json node;
+            if (!object.name.empty()) node["name"] = object.name;
+            node["mesh"] = mesh_names_.at(object.mesh);
+            if (object.displacement != kNoIndex)
+                node["displacement"] = displacement_names_.at(object.displacement);
+            if (object.material != kNoIndex) node["material"] = material_names_.at(object.material);
+            const Affine& m = object.world_from_object;
+            if (!(m == Affine{})) {
+                Json matrix = Json::array();
+                const float offsets[] = {m.translation.x, m.translation.y, m.translation.z};
+                for (size_t r = 0; r < 3; ++r)
+                    for (const float value : {m.rows[r].x, m.rows[r].y, m.rows[r].z, offsets[r]})
+                        matrix.push_back(to_json(value));
+                for (const int value : {0, 0, 0, 1}) matrix.push_back(value);
+                node["transform"]["matrix"] = matrix;
+            }
+            root_["objects"].push_back(node);
+        }
+    }
+
+    void add_lights() {
+        if (scene_.lights.empty()) return;
+        root_["lights"] = Json::array();
+        for (const Light& light : scene_.lights) {
+            Json node;
+            if (light.type == LightType::sun) {
+                node = {{"type", "sun"},
+                        {"direction", to_json(light.direction)},
+                        {"angle_degrees", to_json(light.angle_degrees)}};
+            } else {
+                node = {{"type", "point"},
+                        {"position", to_json(light.position)},
+                        {"radius", to_json(light.radius)}};
+            }
+            node["color"] = to_json(light.color);
+            node["strength"] = to_json(light.strength);
+            root_["lights"].push_back(node);
+        }
+    }
+
+    const Scene& scene_;
+    std::filesystem::path folder_;
+    Json root_;
+    Namer map_names_{"map"};
+    std::map<const Texture*, std::string> files_;
+    std::vector<std::string> mesh_names_, material_names_, displacement_names_;
+};
+
+} // namespace
+
+void save_scene(const Scene& scene, const std::filesystem::path& folder) {
+    validate_scene(scene);
+    for (const Object& object : scene.objects) check_tangents(scene, object);
+    SceneWriter(scene, folder).write();
+}
+
+} // namespace relief

@@ -1,0 +1,229 @@
+// Trees over one mesh on the processor: the scalar walks of lab/walks/walks.h, rays over threads.
+#include "lab/tree_workshop.h"
+
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "formulas/object_ray.h"
+#include "lab/walks/trail.h"
+#include "relief/error.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr size_t kRaysOfAJob = 512;
+
+scalar::HeapKey split_key(uint64_t key, scalar::HeapKey) { return {uint32_t(key), uint32_t(key >> 32)}; }
+uint32_t split_key(uint64_t key, uint32_t) { return uint32_t(key); }
+uint64_t join_key(scalar::HeapKey key) { return key.low | uint64_t(key.high) << 32; }
+uint64_t join_key(uint32_t key) { return key; }
+
+/// Tests the triangles of one ray: as leaf of a walk.
+class TriangleLeaf {
+  public:
+    TriangleLeaf(const TriangleSoup& soup, const BoxRay& ray)
+        : soup_(soup), ray_(scalar::make_object_ray(ray.origin, ray.direction)) {}
+
+    /// Nearest hit, ties to the lowest triangle.
+    void offer(uint32_t triangle, BoxRay& ray) {
+        const float t = intersect(triangle, ray);
+        if (t == std::numeric_limits<float>::infinity() || t > best_.t) return;
+        if (t == best_.t && triangle > best_.primitive) return;
+        best_ = {t, triangle};
+        ray.t_max = t;
+    }
+
+    bool stop_at(uint32_t triangle, const BoxRay& ray) {
+        const float t = intersect(triangle, ray);
+        if (t == std::numeric_limits<float>::infinity()) return false;
+        best_ = {t, triangle};
+        return true;
+    }
+
+    const TreeHit& best() const { return best_; }
+
+  private:
+    float intersect(uint32_t triangle, const BoxRay& ray) const {
+        const uint32_t* corners = &soup_.indices[3 * size_t(triangle)];
+        const auto shear = [&](int k) { return scalar::shear_vertex(ray_, soup_.positions[corners[k]]); };
+        return scalar::intersect_sheared(ray_, shear(0), shear(1), shear(2), ray.t_min, ray.t_max).t;
+    }
+
+    const TriangleSoup& soup_;
+    const scalar::ObjectRay ray_;
+    TreeHit best_;
+};
+
+/// One cast over one form of tree.
+template <TraversalKind kTraversal, class View> class Caster {
+  public:
+    Caster(const TriangleSoup& soup, const View& view, const TreeQuery& query, const TreeCastData& data)
+        : soup_(soup), view_(view), query_(query), data_(data) {}
+
+    TreeCast run() {
+        const Timer timer;
+        parallel_for("tree_cast", data_.rays.size(), kRaysOfAJob, [this](size_t begin, size_t end) {
+            if (query_.counting == Counting::on) {
+                WalkCounts counts;
+                cast_range(begin, end, counts);
+                add(counts);
+            } else {
+                NoCounts none;
+                cast_range(begin, end, none);
+            }
+        });
+        return {timer.seconds(), sums_.box_tests, sums_.primitive_tests, sums_.restarts, sums_.bytes};
+    }
+
+  private:
+    template <class Counts> void cast_range(size_t begin, size_t end, Counts& counts) {
+        if (query_.kind == HitKind::closest)
+            for (size_t k = begin; k < end; ++k) cast_closest(k, counts);
+        else
+            for (size_t k = begin; k < end; ++k) cast_any(k, counts);
+    }
+
+    BoxRay get_ray(size_t k) const {
+        const Ray& ray = data_.rays[k];
+        return {ray.origin, ray.direction, ray.t_min, ray.t_max};
+    }
+
+    typename View::Key get_start(size_t k) const {
+        return split_key(data_.keys.empty() ? kRootKey : data_.keys[k], typename View::Key{});
+    }
+
+    template <class Counts> void cast_closest(size_t k, Counts& counts) {
+        BoxRay ray = get_ray(k);
+        auto start = get_start(k);
+        TriangleLeaf leaf(soup_, ray);
+        const auto visit = [&](uint32_t id, BoxRay& r) { leaf.offer(id, r); };
+        closest_hit_from<kTraversal>(view_, start, ray, visit, counts);
+        finish(k, leaf, start);
+    }
+
+    template <class Counts> void cast_any(size_t k, Counts& counts) {
+        BoxRay ray = get_ray(k);
+        auto start = get_start(k);
+        TriangleLeaf leaf(soup_, ray);
+        const auto visit = [&](uint32_t id, const BoxRay& r) { return leaf.stop_at(id, r); };
+        any_hit_from<kTraversal>(view_, start, ray, visit, counts);
+        finish(k, leaf, start);
+    }
+
+    void finish(size_t k, const TriangleLeaf& leaf, typename View::Key key) {
+        data_.hits[k] = leaf.best();
+        if (!data_.keys.empty()) data_.keys[k] = join_key(key);
+    }
+
+    void add(const WalkCounts& counts) {
+        const std::lock_guard lock(mutex_);
+        sums_.box_tests += counts.box_tests, sums_.primitive_tests += counts.primitive_tests;
+        sums_.restarts += counts.restarts, sums_.bytes += counts.bytes;
+    }
+
+    const TriangleSoup& soup_;
+    const View view_;
+    const TreeQuery& query_;
+    const TreeCastData& data_;
+    std::mutex mutex_;
+    WalkCounts sums_;
+};
+
+/// The walks over one form of tree, and which of them was asked for.
+class Walks {
+  public:
+    Walks(const TriangleSoup& soup, const TreeQuery& query, const TreeCastData& data)
+        : soup_(soup), query_(query), data_(data) {}
+
+    TreeCast operator()(const LinkedBvh& tree) const {
+        switch (query_.traversal) {
+        case TraversalKind::restart_trail:
+            return tree.depth <= int(scalar::kTrailLevels32)
+                       ? run<TraversalKind::restart_trail>(make_walk_view(tree))
+                       : run<TraversalKind::restart_trail>(make_wide_walk_view(tree));
+        case TraversalKind::parent_link:
+            return run<TraversalKind::parent_link>(make_walk_view(tree));
+        case TraversalKind::skip_link:
+            return run<TraversalKind::skip_link>(make_walk_view(tree));
+        default:
+            return run<TraversalKind::stack>(make_walk_view(tree));
+        }
+    }
+
+    TreeCast operator()(const DenseHeap& tree) const { return run_trail(make_walk_view(tree)); }
+
+    TreeCast operator()(const SuccinctHeap& tree) const {
+        return tree.depth <= int(scalar::kTrailLevels32) ? run_trail(make_walk_view(tree))
+                                                         : run_trail(make_wide_walk_view(tree));
+    }
+
+    TreeCast operator()(const KdTree& tree) const {
+        switch (query_.traversal) {
+        case TraversalKind::push_down:
+            return run<TraversalKind::push_down>(make_walk_view(tree));
+        case TraversalKind::backtrack:
+            return run<TraversalKind::backtrack>(make_walk_view(tree));
+        default:
+            return run<TraversalKind::restart>(make_walk_view(tree));
+        }
+    }
+
+  private:
+    template <TraversalKind kTraversal, class View> TreeCast run(const View& view) const {
+        return Caster<kTraversal, View>(soup_, view, query_, data_).run();
+    }
+    template <class View> TreeCast run_trail(const View& view) const {
+        return query_.traversal == TraversalKind::trail ? run<TraversalKind::trail>(view)
+                                                        : run<TraversalKind::pair_trail>(view);
+    }
+
+    const TriangleSoup& soup_;
+    const TreeQuery& query_;
+    const TreeCastData& data_;
+};
+
+class CpuTreeWorkshop final : public TreeWorkshop {
+  public:
+    explicit CpuTreeWorkshop(TriangleSoup soup)
+        : TreeWorkshop(std::move(soup)), boxes_(compute_triangle_boxes(soup_)) {
+        device_name_ = processor_name();
+    }
+
+    TreeBuild build(TreeKind kind, int heap_levels) override {
+        tree_ = {}; // makes room
+        BuiltTree built = build_host_tree(boxes_, kind, heap_levels);
+        tree_ = std::move(built.tree);
+        return built.report;
+    }
+
+    TreeCast cast(const TreeQuery& query, const TreeCastData& data) override {
+        return std::visit(Walks(soup_, query, data), tree_);
+    }
+
+    bool contains_key(uint64_t key) const override {
+        if (const auto* heap = std::get_if<DenseHeap>(&tree_)) return relief::contains_key(*heap, key);
+        const auto* heap = std::get_if<SuccinctHeap>(&tree_);
+        return heap && relief::contains_key(*heap, key);
+    }
+
+  private:
+    std::vector<Box> boxes_;
+    HostTree tree_;
+};
+
+} // namespace
+
+} // namespace relief::cpu
+
+namespace relief {
+
+std::unique_ptr<TreeWorkshop> make_cpu_tree_workshop(TriangleSoup soup) {
+    return std::make_unique<cpu::CpuTreeWorkshop>(std::move(soup));
+}
+
+} // namespace relief

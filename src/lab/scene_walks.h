@@ -1,0 +1,29 @@
+// Traversals of the scene that are chosen by name (RenderSettings::structure and traversal), for both
+// engines.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "cpu/traversal/scene_walk.h"
+#include "prepare/prepared_scene.h"
+#ifdef RELIEF_VULKAN
+#include "vulkan/scene_walk.h"
+#endif
+
+namespace relief {
+
+/// Null where the settings name the engine's own traversal.
+std::unique_ptr<const cpu::SceneWalk> make_scene_walk(const PreparedScene& scene,
+                                                      const RenderSettings& settings);
+
+#ifdef RELIEF_VULKAN
+namespace vulkan {
+
+/// Empty where the settings name the engine's own traversal.
+std::optional<SceneWalk> make_device_walk(const PreparedScene& scene, const RenderSettings& settings);
+
+} // namespace vulkan
+#endif
+
+} // namespace relief

@@ -1,0 +1,70 @@
+// The walk of shared/traverse_*.h that a WALK_... macro names, under common names: start_walk(root), walk_on(), and its
+// state in walk_state. The hooks of formulas/tree.h come before, and enter_root_cell() of kd-trees; Key is defined where
+// the walk has one. A trail starts at a key.
+#ifndef RELIEF_WALK_KIND_GLSL
+#define RELIEF_WALK_KIND_GLSL
+
+#if defined(WALK_STACK)
+#include "lab/walks/traverse_stack.h"
+#define KindState StackState
+#define walk_state stack_walk
+void start_walk(uint root) { start_stack(root); }
+bool walk_on() { return walk_stack(); }
+#elif defined(WALK_RESTART_TRAIL)
+#include "lab/walks/traverse_restart_trail.h"
+#define KindState RestartState
+#define walk_state restart_walk
+// The level of each width; the macro Key picks one by the type of the argument.
+uint make_root_level(uint width) { return make_root_level32(); }
+HeapKey make_root_level(HeapKey width) { return make_root_level64(); }
+Key make_root_level() {
+    Key width;
+    return make_root_level(width);
+}
+void start_walk(uint root) { restart_walk = start_restart_trail(root, make_root_level()); }
+bool walk_on() { return walk_restart_trail(); }
+#elif defined(WALK_PARENT_LINK)
+#include "lab/walks/traverse_parent_link.h"
+#define KindState ParentLinkState
+#define walk_state parent_walk
+void start_walk(uint root) { parent_walk = start_parent_link(root); }
+bool walk_on() { return walk_parent_link(); }
+#elif defined(WALK_SKIP_LINK)
+#include "lab/walks/traverse_skip_link.h"
+#define KindState SkipLinkState
+#define walk_state skip_walk
+void start_walk(uint root) { skip_walk = start_skip_link(root); }
+bool walk_on() { return walk_skip_link(); }
+#elif defined(WALK_TRAIL)
+#include "lab/walks/traverse_trail.h"
+#define KindState TrailState
+#define walk_state trail_walk
+void start_walk(Key key) { trail_walk = start_trail(key); }
+bool walk_on() { return walk_trail(); }
+#elif defined(WALK_PAIR_TRAIL)
+#include "lab/walks/traverse_pair_trail.h"
+#define KindState PairTrailState
+#define walk_state pair_walk
+void start_walk(Key key) { pair_walk = start_pair_trail(key); }
+bool walk_on() { return walk_pair_trail(); }
+#elif defined(WALK_KD_RESTART)
+#include "lab/walks/traverse_kd_restart.h"
+#define KindState KdRestartState
+#define walk_state kd_restart_walk
+void start_walk(uint root) { kd_restart_walk = start_kd_restart(root, enter_root_cell()); }
+bool walk_on() { return walk_kd_restart(); }
+#elif defined(WALK_KD_PUSH_DOWN)
+#include "lab/walks/traverse_kd_push_down.h"
+#define KindState KdPushDownState
+#define walk_state kd_push_down_walk
+void start_walk(uint root) { kd_push_down_walk = start_kd_push_down(root, enter_root_cell()); }
+bool walk_on() { return walk_kd_push_down(); }
+#elif defined(WALK_KD_BACKTRACK)
+#include "lab/walks/traverse_kd_backtrack.h"
+#define KindState KdBacktrackState
+#define walk_state kd_backtrack_walk
+void start_walk(uint root) { kd_backtrack_walk = start_kd_backtrack(root, enter_root_cell()); }
+bool walk_on() { return walk_kd_backtrack(); }
+#endif
+
+#endif

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "formulas/mips.h"
+#include "prepare/prepared_scene.h"
+#include "prepare/scene_warnings.h"
+#include "prepare/tessellate.h"
+#include "relief/error.h"
+#include "surface/map/displacement_map.h"
+#include "surface/patch/patch_mips.h"
+
+namespace relief {
+
+namespace {
+
+/// Objects that share a surface: same mesh, same displacement, and for world-space maps the same transform.
+using SurfaceKey = std::tuple<uint32_t, uint32_t, uint32_t>;
+
+SurfaceKey make_key(const Scene& scene, uint32_t object_index) {
+    const Object& object = scene.objects[object_index];
+    const bool is_world = object.displacement != kNoIndex &&
+                          scene.displacements[object.displacement].space == DisplacementSpace::world;
+    return {object.mesh, object.displacement, is_world ? object_index : kNoIndex};
+}
+
+Instance make_instance(const Object& object, uint32_t surface, uint32_t default_material) {
+    Instance instance;
+    instance.surface = surface;
+    instance.material = object.material == kNoIndex ? default_material : object.material;
+    instance.world_from_object = object.world_from_object;
+    instance.object_from_world = *invert(object.world_from_object);
+    instance.is_mirrored = compute_determinant(object.world_from_object) < 0;
+    instance.is_in_place = instance.object_from_world == Affine{} && instance.world_from_object == Affine{};
+    return instance;
+}
+
+LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& settings) {
+    LevelFieldConfig config;
+    config.fixed_level = settings.level == kAutoLevel ? -1 : settings.level;
+    config.pixel_error = settings.pixel_error;
+    config.camera = scene.camera.from;
+    config.pixel_angle =
+        float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
+    return config;
+}
+
+std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
+    std::set<uint32_t> meshes;
+    for (const Object& object : scene.objects)
+        if (object.displacement == displacement) meshes.insert(object.mesh);
+    std::vector<const Mesh*> list;
+    for (const uint32_t mesh : meshes) list.push_back(&scene.meshes[mesh]);
+    return list;
+}
+
+/// Lists the maps, gutters filled: in copies, since the scene's textures may be shared with whoever made it.
+std::vector<PreparedMap> prepare_maps(Scene& scene) {
+    std::vector<PreparedMap> maps;
+    for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
+        Displacement& displacement = scene.displacements[k];
+        const std::vector<const Mesh*> meshes = list_meshes(scene, k);
+        for (MapTile& tile : displacement.tiles) {
+            const void* source = tile.texture.get();
+            GutterFill gutter;
+            if (displacement.dilate && !meshes.empty()) gutter = find_gutter(displacement, tile, meshes);
+            if (!gutter.copies.empty()) {
+                auto filled = std::make_shared<Texture>(*tile.texture);
+                gutter.apply(*filled);
+                tile.texture = std::move(filled);
+            }
+            std::shared_ptr<MipChain> mips;
+            if (displacement.filter == MapFilter::mip && !meshes.empty()) {
+                const TexelRectangle all{0, 0, tile.texture->width - 1, tile.texture->height - 1};
+                if (!find_texel_range(*tile.texture, all)) refuse_bad_texel(*tile.texture, all);
+                OutsideTexels outside;
+                if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
+                mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
+            }
+            maps.push_back(
+                {displacement.name, tile.udim, tile.texture, std::move(gutter), std::move(mips), source});
+        }
+    }
+    return maps;
+}
+
+/// Hands the copies of maps to the surfaces of their displacements.
+void share_mips(const Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
+                PreparedScene& prepared) {
+    std::vector<size_t> first_map(scene.displacements.size(), 0);
+    for (size_t k = 1; k < first_map.size(); ++k)
+        first_map[k] = first_map[k - 1] + scene.displacements[k - 1].tiles.size();
+    for (const auto& [key, surface] : surface_of_key) {
+        const uint32_t displacement = std::get<1>(key);
+        if (displacement == kNoIndex) continue;
+        std::vector<DisplacementMap::Tile>& tiles = prepared.surfaces[surface].map.tiles;
+        for (size_t k = 0; k < tiles.size(); ++k)
+            tiles[k].mips = prepared.maps[first_map[displacement] + k].mips;
+    }
+}
+
+/// Normals at vertices cannot hold what is finer than the cells between them.
+void drop_detail(PreparedScene& scene) {
+    for (Surface& surface : scene.surfaces)
+        for (uint32_t& word : surface.mips) word &= (1u << scalar::kDetailShift) - 1;
+}
+
+/// Frees the polygons of meshes that no later surface needs.
+void release_mesh(Scene& scene, uint32_t mesh) {
+    Mesh empty;
+    empty.name = std::move(scene.meshes[mesh].name);
+    scene.meshes[mesh] = std::move(empty);
+}
+
+/// One surface a key, in the order of the first object that needs it; mesh by mesh, so that polygons can be
+/// freed.
+void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
+                   const std::vector<uint32_t>& first_object, std::vector<Surface>& surfaces) {
+    std::vector<std::vector<uint32_t>> surfaces_of_mesh(scene.meshes.size());
+    for (const auto& [key, surface] : surface_of_key) surfaces_of_mesh[std::get<0>(key)].push_back(surface);
+    PyramidCache pyramids;
+    surfaces.resize(surface_of_key.size());
+    parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t mesh = begin; mesh < end; ++mesh) {
+            for (const uint32_t surface : surfaces_of_mesh[mesh]) {
+                const Object& object = scene.objects[first_object[surface]];
+                const Displacement* displacement =
+                    object.displacement == kNoIndex ? nullptr : &scene.displacements[object.displacement];
+                surfaces[surface] = make_surface(scene.meshes[mesh], displacement,
+                                                 *invert(object.world_from_object), &pyramids);
+            }
+            release_mesh(scene, uint32_t(mesh));
+        }
+    });
+}
+
+} // namespace
+
+std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
+    std::vector<const LevelField*> levels;
+    for (const Instance& instance : scene.instances)
+        if (instance.surface == surface) levels.push_back(instance.levels.get());
+    return choose_mips(scene.surfaces[surface], levels);
+}
+
+std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
+    validate_scene(scene);
+    auto prepared = std::make_shared<PreparedScene>();
+    prepared->warnings = std::move(scene.warnings);
+    // Before anything else is moved out of the scene.
+    for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
+    prepared->materials = std::move(scene.materials);
+    prepared->materials.emplace_back();
+    prepared->lights = std::move(scene.lights);
+    prepared->environment = std::move(scene.environment);
+    prepared->camera = scene.camera;
+    prepared->mesh_count = uint32_t(scene.meshes.size());
+    prepared->width = settings.width, prepared->height = settings.height;
+
+    std::map<SurfaceKey, uint32_t> surface_of_key;
+    std::vector<uint32_t> first_object;
+    const uint32_t default_material = uint32_t(prepared->materials.size()) - 1;
+    for (uint32_t k = 0; k < scene.objects.size(); ++k) {
+        const auto [place, is_new] =
+            surface_of_key.try_emplace(make_key(scene, k), uint32_t(first_object.size()));
+        if (is_new) first_object.push_back(k);
+        prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
+    }
+    prepared->maps = prepare_maps(scene);
+    make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
+    share_mips(scene, surface_of_key, *prepared);
+
+    prepared->levels = make_level_config(scene, settings);
+    parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            Instance& instance = prepared->instances[k];
+            instance.levels = std::make_shared<const LevelField>(LevelField::compute(
+                prepared->surfaces[instance.surface], instance.world_from_object, prepared->levels));
+        }
+    });
+    for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
+        prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
+    if (settings.surface == SurfaceMode::tessellated) drop_detail(*prepared);
+    if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());
+    return prepared;
+}
+
+} // namespace relief

@@ -1,0 +1,61 @@
+// The scene as engines see it: surfaces, instances with their levels, materials, lights. Immutable once made.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/affine.h"
+#include "relief/render.h"
+#include "relief/scene.h"
+#include "surface/map/gutter.h"
+#include "surface/map/mip_chain.h"
+#include "surface/patch/level_field.h"
+#include "surface/patch/surface.h"
+
+namespace relief {
+
+/// One placed surface.
+struct Instance {
+    uint32_t surface = 0;  ///< index into PreparedScene::surfaces
+    uint32_t material = 0; ///< index into PreparedScene::materials
+    Affine world_from_object, object_from_world;
+    bool is_mirrored = false; ///< negative determinant: the winding is turned
+    bool is_in_place = false; ///< object space is world space
+    std::shared_ptr<const LevelField> levels;
+};
+
+/// One image of a displacement, as the surfaces that use it read it.
+struct PreparedMap {
+    std::string displacement;
+    int udim = 1001;
+    std::shared_ptr<const Texture> texture;
+    GutterFill gutter;              ///< worked into the texture already
+    std::shared_ptr<MipChain> mips; ///< of that texture; null: not filtered
+    const void* source = nullptr;   ///< names the scene's image; those of one image may hold different copies
+};
+
+struct PreparedScene {
+    std::vector<Surface>
+        surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
+    std::vector<Instance> instances; ///< in the order of Scene::objects
+    std::vector<PreparedMap> maps;   ///< of all displacements
+    std::vector<Material> materials; ///< the last one is the default material
+    std::vector<Light> lights;
+    std::optional<Environment> environment;
+    Camera camera;
+    uint32_t mesh_count = 0;   ///< of the scene
+    int width = 0, height = 0; ///< of the whole picture
+    LevelFieldConfig levels;   ///< what the instances' levels were computed with
+    std::vector<std::string> warnings;
+};
+
+/// Chooses the copies of maps that the surfaces read, by the levels of their instances.
+std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
+
+/// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are
+/// used.
+std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
+
+} // namespace relief

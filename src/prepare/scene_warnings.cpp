@@ -1,0 +1,98 @@
+#include "prepare/scene_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace relief {
+
+namespace {
+
+/// Of faces whose uvs name a tile; those with indices out of range are refused elsewhere.
+std::set<int> list_tiles(const Mesh& mesh) {
+    std::set<int> tiles;
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        double u = 0, v = 0;
+        for (size_t k = first; k < first + size && k < mesh.uv_indices.size(); ++k)
+            if (mesh.uv_indices[k] < mesh.uvs.size()) {
+                u += double(mesh.uvs[mesh.uv_indices[k]].x) / size;
+                v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
+            }
+        first += size;
+        u = std::floor(u), v = std::floor(v);
+        if (u >= 0 && u <= 9 && v >= 0 && v < 1e6) tiles.insert(1001 + int(u) + 10 * int(v));
+    }
+    return tiles;
+}
+
+void warn_of_tiles(const Mesh& mesh, const Displacement& map, std::vector<std::string>& warnings) {
+    if (!map.is_udim) return;
+    std::set<int> missing = list_tiles(mesh);
+    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
+    if (missing.empty()) return;
+    warnings.push_back(fmt::format("displacement '{}' has no file for tile(s) {} of mesh '{}', which is not "
+                                   "displaced there",
+                                   map.name, fmt::join(missing, ", "), mesh.name));
+}
+
+/// Below this level quads beside semi-sharp creases come too close to each other to be cut along them.
+constexpr int kLevelForCreases = 2;
+
+/// Semi-sharp creases that are wider than nothing at the level of their mesh are fitted there, not exact.
+void warn_of_creases(const Mesh& mesh, std::vector<std::string>& warnings) {
+    const Subdivision& subdivision = mesh.subdivision;
+    if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey) return;
+    float sharpest = 0;
+    for (const Crease& crease : mesh.creases)
+        if (crease.sharpness < kInfiniteSharpness) sharpest = std::max(sharpest, crease.sharpness);
+    const int level = std::min(kLevelForCreases, int(std::ceil(sharpest)));
+    if (level <= subdivision.level) return;
+    warnings.push_back(
+        fmt::format("mesh '{}': creases of sharpness {:g} are narrower than the patches of subdivision level "
+                    "{} and fitted by them; level {} shows them as they are",
+                    mesh.name, sharpest, subdivision.level, level));
+}
+
+bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
+
+void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
+    if (scene.objects.empty()) {
+        warnings.emplace_back("the scene has no objects; only its environment, if it has one, is seen");
+        return;
+    }
+    const bool has_light =
+        (scene.environment && scene.environment->strength > 0 && !is_black(scene.environment->color)) ||
+        std::any_of(scene.lights.begin(), scene.lights.end(),
+                    [](const Light& light) { return light.strength > 0 && !is_black(light.color); }) ||
+        std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+            return object.material != kNoIndex && !is_black(scene.materials[object.material].emission);
+        });
+    if (!has_light)
+        warnings.emplace_back(
+            "nothing in the scene gives light, and the picture is black; add an environment, a "
+            "light or an emission");
+}
+
+} // namespace
+
+std::vector<std::string> find_scene_warnings(const Scene& scene) {
+    std::vector<std::string> warnings;
+    warn_of_darkness(scene, warnings);
+    std::set<std::pair<uint32_t, uint32_t>> pairs;
+    std::set<uint32_t> meshes;
+    for (const Object& object : scene.objects) {
+        if (object.displacement == kNoIndex) continue;
+        const Mesh& mesh = scene.meshes[object.mesh];
+        if (pairs.insert({object.mesh, object.displacement}).second)
+            warn_of_tiles(mesh, scene.displacements[object.displacement], warnings);
+        if (meshes.insert(object.mesh).second) warn_of_creases(mesh, warnings);
+    }
+    return warnings;
+}
+
+} // namespace relief

@@ -1,0 +1,177 @@
+#include "prepare/tessellate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+constexpr uint64_t kBytesPerVertex = sizeof(Vec3f) + sizeof(PackedFrame) + sizeof(Vec2f);
+/// Of the finished trees, corners of triangles included: 120 to 123 over micro-quads of the sample scenes.
+constexpr double kTreeBytesPerQuad = 121, kTreeBytesPerTriangle = 61;
+/// Of a quad while its tree is built: box, two nodes of the binary tree, its number and its share of the wide
+/// tree.
+constexpr uint64_t kBuildBytesPerQuad =
+    sizeof(Box) + 2 * 32 + sizeof(uint32_t) + uint64_t(kTreeBytesPerQuad) + 10;
+
+struct MicroCounts {
+    uint64_t quads = 0, vertices = 0;
+};
+
+MicroCounts count_micro(const Surface& surface, const LevelField& levels) {
+    MicroCounts counts;
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+        const uint64_t side = uint64_t(1) << levels.at(patch).patch;
+        counts.quads += side * side;
+        counts.vertices += (side + 1) * (side + 1);
+    }
+    return counts;
+}
+
+bool have_equal_levels(const Surface& surface, const LevelField& a, const LevelField& b) {
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
+        if (!(a.at(patch) == b.at(patch))) return false;
+    return true;
+}
+
+/// For each instance, the first one that has the same displaced surface at the same levels: itself or an
+/// earlier one.
+std::vector<uint32_t> find_equals(const PreparedScene& scene) {
+    std::vector<uint32_t> equals, firsts;
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) {
+        const Instance& instance = scene.instances[k];
+        const auto is_equal = [&](uint32_t other) {
+            return scene.instances[other].surface == instance.surface &&
+                   have_equal_levels(scene.surfaces[instance.surface], *scene.instances[other].levels,
+                                     *instance.levels);
+        };
+        const auto found = std::find_if(firsts.begin(), firsts.end(), is_equal);
+        equals.push_back(found == firsts.end() ? k : *found);
+        if (found == firsts.end()) firsts.push_back(k);
+    }
+    return equals;
+}
+
+/// First cell and vertex of every patch, one entry more than patches.
+struct PatchOffsets {
+    std::vector<uint64_t> cell, vertex;
+};
+
+PatchOffsets compute_offsets(const Surface& surface, const LevelField& levels) {
+    PatchOffsets offsets;
+    offsets.cell.push_back(0), offsets.vertex.push_back(0);
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+        const uint64_t side = uint64_t(1) << levels.at(patch).patch;
+        offsets.cell.push_back(offsets.cell.back() + side * side);
+        offsets.vertex.push_back(offsets.vertex.back() + (side + 1) * (side + 1));
+    }
+    if (offsets.vertex.back() >= kNoIndex || offsets.cell.back() >= (uint64_t(1) << 28))
+        throw Error(ErrorKind::out_of_memory,
+                    {fmt::format("the tessellated mesh has {} micro-quads; its tree can index 268435456",
+                                 offsets.cell.back()),
+                     surface.name, "render it directly (--surface direct) or lower --level"});
+    return offsets;
+}
+
+void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t vertex,
+                      uint64_t cell, Surface& result) {
+    const uint32_t side = 1u << levels.patch;
+    const Quad quad = surface.quads[patch];
+    for (uint32_t j = 0; j <= side; ++j)
+        for (uint32_t i = 0; i <= side; ++i) {
+            const uint64_t at = vertex + uint64_t(j) * (side + 1) + i;
+            const float u = float(i) / float(side), v = float(j) / float(side);
+            result.positions[at] = evaluate_vertex(surface, patch, levels, i, j);
+            const Vec3f normal = compute_shading_normal(surface, patch, levels.patch, u, v);
+            result.frames[at] = pack_frame(normal, {0, 0, 0}, 1);
+            const auto& uvs = surface.uvs;
+            result.uvs[at] = (uvs[quad.vertex[0]] * (1 - u) + uvs[quad.vertex[1]] * u) * (1 - v) +
+                             (uvs[quad.vertex[3]] * (1 - u) + uvs[quad.vertex[2]] * u) * v;
+        }
+    for (uint32_t j = 0; j < side; ++j)
+        for (uint32_t i = 0; i < side; ++i) {
+            const uint32_t first = uint32_t(vertex) + j * (side + 1) + i;
+            result.quads.set(cell + uint64_t(j) * side + i,
+                             {{first, first + 1, first + side + 2, first + side + 1}});
+        }
+}
+
+Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
+    const PatchOffsets offsets = compute_offsets(surface, levels);
+    Surface result;
+    result.name = surface.name;
+    result.positions.resize(offsets.vertex.back());
+    result.frames.resize(offsets.vertex.back());
+    result.uvs.resize(offsets.vertex.back());
+    result.quads.reset(offsets.cell.back(), uint32_t(offsets.vertex.back()));
+    parallel_for("tessellate", surface.patch_count(), 16, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            tessellate_patch(surface, uint32_t(patch), levels.at(uint32_t(patch)), offsets.vertex[patch],
+                             offsets.cell[patch], result);
+    });
+    return result;
+}
+
+} // namespace
+
+TessellationCost estimate_tessellation(const PreparedScene& scene) {
+    const std::vector<uint32_t> equals = find_equals(scene);
+    TessellationCost cost;
+    double plain_bytes = 0;
+    for (const Surface& surface : scene.surfaces) {
+        if (surface.has_displacement) continue;
+        cost.geometry_bytes += surface.geometry_bytes();
+        for (const Quad quad : surface.quads)
+            plain_bytes += quad.is_triangle() ? kTreeBytesPerTriangle : kTreeBytesPerQuad;
+    }
+    cost.geometry_bytes += scene.instances.size() * sizeof(Instance);
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) {
+        const Surface& surface = scene.surfaces[scene.instances[k].surface];
+        if (!surface.has_displacement || equals[k] != k) continue;
+        const MicroCounts counts = count_micro(surface, *scene.instances[k].levels);
+        const uint64_t bytes =
+            QuadList::byte_count(counts.quads, counts.vertices) + counts.vertices * kBytesPerVertex;
+        cost.micro_quads += counts.quads;
+        cost.geometry_bytes += bytes;
+        cost.peak_bytes += bytes + counts.quads * kBuildBytesPerQuad;
+    }
+    cost.structures_bytes = uint64_t(kTreeBytesPerQuad * double(cost.micro_quads) + plain_bytes);
+    return cost;
+}
+
+void tessellate_scene(PreparedScene& scene, uint64_t available_bytes) {
+    const uint64_t needed = estimate_tessellation(scene).peak_bytes;
+    if (needed > available_bytes)
+        throw Error(
+            ErrorKind::out_of_memory,
+            {fmt::format("the tessellated scene needs {} bytes ({:.1f} GiB), {:.1f} GiB are available",
+                         needed, double(needed) / (1 << 30), double(available_bytes) / (1 << 30)),
+             "", "render it directly (--surface direct) or lower --level"});
+    const std::vector<uint32_t> equals = find_equals(scene);
+    const std::vector<Instance> instances = scene.instances;
+    const size_t source_count = scene.surfaces.size();
+    for (uint32_t k = 0; k < instances.size(); ++k) {
+        if (!scene.surfaces[instances[k].surface].has_displacement) continue;
+        if (equals[k] == k)
+            scene.surfaces.push_back(
+                tessellate_surface(scene.surfaces[instances[k].surface], *instances[k].levels));
+        scene.instances[k].surface =
+            equals[k] == k ? uint32_t(scene.surfaces.size()) - 1 : scene.instances[equals[k]].surface;
+    }
+    // The displaced originals are no longer seen by any instance.
+    for (size_t k = 0; k < source_count; ++k)
+        if (scene.surfaces[k].has_displacement) scene.surfaces[k] = Surface{};
+    LevelFieldConfig flat;
+    flat.fixed_level = 0;
+    for (Instance& instance : scene.instances)
+        instance.levels = std::make_shared<const LevelField>(
+            LevelField::compute(scene.surfaces[instance.surface], instance.world_from_object, flat));
+}
+
+} // namespace relief

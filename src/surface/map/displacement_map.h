@@ -1,0 +1,41 @@
+// From the displacement of the scene to the map that surfaces read: decode matrix, tiles with their pyramids.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "math/affine.h"
+#include "surface/patch/surface.h"
+
+namespace relief {
+
+/// One pyramid a texture, shared by all surfaces that are made with it. Thread safe; keeps the textures
+/// alive.
+class PyramidCache {
+  public:
+    std::shared_ptr<const BoundsPyramid> get_or_build(const std::shared_ptr<const Texture>& texture);
+
+  private:
+    struct Entry {
+        std::shared_ptr<const Texture> texture;
+        std::shared_ptr<const BoundsPyramid> pyramid;
+    };
+    std::mutex mutex_;
+    std::map<const Texture*, Entry> entries_;
+};
+
+/// Throws bad_input with the displacement's `name` for texels (raw, of `file`) that displace by more than
+/// 1e18.
+void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
+                 const ChannelRange& range);
+/// The same of all tiles.
+void check_reach(const std::string& name, const DisplacementMap& map);
+
+/// Throws bad_input with the displacement's name for a map without tiles, an axis out of range, a factor that
+/// is not finite, a displacement above 1e18, and whatever BoundsPyramid::build refuses.
+DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,
+                                      PyramidCache& pyramids);
+
+} // namespace relief

@@ -1,0 +1,146 @@
+#include "surface/map/gutter.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "surface/map/texels.h"
+#include "surface/mesh/uv_islands.h"
+
+namespace relief {
+
+namespace {
+
+constexpr double kStep = 0.125;        ///< texels between two points of a border
+constexpr double kLongestBorder = 1e5; ///< texels of one edge; beyond, its uvs are no picture of an island
+
+using Point = UvIslands::Point;
+
+/// Works out the gutter of one texture.
+class GutterFinder {
+  public:
+    GutterFinder(const Texture& texture, WrapMode wrap, const UvIslands& islands)
+        : texture_(texture), wrap_(wrap), read_(texture), near_(texture), covered_(texture) {
+        for (const auto& [a, b] : islands.borders()) mark_border(a, b);
+        const auto is_open = [&](int64_t x, int64_t y) {
+            bool is_open = false;
+            visit_texel(x, y,
+                        [&](int64_t i, int64_t j) { is_open = near_.has(i, j) && !covered_.has(i, j); });
+            return is_open;
+        };
+        islands.visit_covered(is_open, [&](int64_t x, int64_t y) {
+            visit_texel(x, y, [&](int64_t i, int64_t j) { covered_.set(i, j); });
+        });
+    }
+
+    GutterFill run() const {
+        std::vector<std::array<uint32_t, 2>> gutter;
+        TexelCensus census;
+        for (uint32_t y = 0; y < texture_.height; ++y)
+            for (uint32_t x = 0; x < texture_.width; ++x) {
+                if (!read_.has(x, y) || covered_.has(x, y)) continue;
+                gutter.push_back({x, y});
+                census.add(get_texel_bits(texture_, x, y));
+            }
+        GutterFill fill;
+        if (2 * size_t(census.most()) <= gutter.size()) return fill;
+        fill.background = census.value();
+        for (const auto& [x, y] : gutter) add_nearest(x, y, fill);
+        return fill;
+    }
+
+  private:
+    /// Calls `visit` with the texel that (x, y), anywhere, reads.
+    template <class Visit> void visit_texel(int64_t x, int64_t y, const Visit& visit) const {
+        const int64_t column = wrap_index(x, texture_.width, wrap_),
+                      row = wrap_index(y, texture_.height, wrap_);
+        if (column >= 0 && row >= 0) visit(column, row);
+    }
+
+    void mark_border(const Point& a, const Point& b) {
+        const double size = std::hypot(b.x - a.x, b.y - a.y);
+        if (!(size < kLongestBorder)) return;
+        const int count = int(std::ceil(size / kStep)) + 1;
+        constexpr int64_t kReach = GutterFill::kReach;
+        for (int k = 0; k <= count; ++k) {
+            const double s = double(k) / count;
+            const auto x = int64_t(std::floor(a.x + (b.x - a.x) * s - 0.5));
+            const auto y = int64_t(std::floor(a.y + (b.y - a.y) * s - 0.5));
+            for (int64_t row = y; row <= y + 1; ++row)
+                for (int64_t column = x; column <= x + 1; ++column)
+                    visit_texel(column, row, [&](int64_t i, int64_t j) { read_.set(i, j); });
+            for (int64_t row = y - kReach; row <= y + 1 + kReach; ++row)
+                for (int64_t column = x - kReach; column <= x + 1 + kReach; ++column)
+                    visit_texel(column, row, [&](int64_t i, int64_t j) { near_.set(i, j); });
+        }
+    }
+
+    void add_nearest(uint32_t x, uint32_t y, GutterFill& fill) const {
+        constexpr int64_t kReach = GutterFill::kReach;
+        int64_t best = 2 * kReach * kReach + 1;
+        GutterFill::Copy copy{x, y, x, y, false};
+        for (int64_t dy = -kReach; dy <= kReach; ++dy)
+            for (int64_t dx = -kReach; dx <= kReach; ++dx)
+                visit_texel(x + dx, y + dy, [&](int64_t i, int64_t j) {
+                    if (dx * dx + dy * dy >= best || !near_.has(i, j) || !covered_.has(i, j)) return;
+                    best = dx * dx + dy * dy;
+                    copy.from_x = uint32_t(i), copy.from_y = uint32_t(j);
+                });
+        if (copy.from_x != x || copy.from_y != y) fill.copies.push_back(copy);
+    }
+
+    const Texture& texture_;
+    const WrapMode wrap_;
+    TexelMask read_;    ///< by points of borders
+    TexelMask near_;    ///< to those: of these it is known whether they are covered
+    TexelMask covered_; ///< the centre lies in a face
+};
+
+void copy_texel(Texture& texture, const GutterFill::Copy& copy) {
+    const size_t from = 4 * (size_t(copy.from_y) * texture.width + copy.from_x);
+    const size_t to = 4 * (size_t(copy.to_y) * texture.width + copy.to_x);
+    for (size_t c = 0; c < 3; ++c) {
+        if (texture.halves.empty())
+            texture.floats[to + c] = texture.floats[from + c];
+        else
+            texture.halves[to + c] = texture.halves[from + c];
+    }
+}
+
+} // namespace
+
+void GutterFill::apply(Texture& texture) {
+    for (Copy& copy : copies) {
+        copy.is_done = get_texel_bits(texture, copy.to_x, copy.to_y) == background;
+        if (copy.is_done) copy_texel(texture, copy);
+    }
+}
+
+TexelRectangle GutterFill::follow(Texture& texture, const TexelRectangle& changed) {
+    const auto holds = [&](uint32_t x, uint32_t y) {
+        return x >= changed.x0 && x <= changed.x1 && y >= changed.y0 && y <= changed.y1;
+    };
+    TexelRectangle all = changed;
+    for (Copy& copy : copies) {
+        const bool is_new = holds(copy.to_x, copy.to_y);
+        if (is_new) copy.is_done = get_texel_bits(texture, copy.to_x, copy.to_y) == background;
+        if (!copy.is_done || !(is_new || holds(copy.from_x, copy.from_y))) continue;
+        copy_texel(texture, copy);
+        all = {std::min(all.x0, copy.to_x), std::min(all.y0, copy.to_y), std::max(all.x1, copy.to_x),
+               std::max(all.y1, copy.to_y)};
+    }
+    return all;
+}
+
+GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
+                       std::span<const Mesh* const> meshes) {
+    if (!may_have_background(*tile.texture)) return {};
+    UvIslands islands(displacement, tile);
+    for (const Mesh* mesh : meshes) islands.add(*mesh);
+    if (islands.is_all_covered()) return {};
+    return GutterFinder(*tile.texture, displacement.wrap, islands).run();
+}
+
+} // namespace relief

@@ -1,0 +1,40 @@
+// The gutter: texels between the islands of a map that bilinear fetches read but nothing was baked into. They
+// are given the values beside them, so that the background does not bleed into the surface along its seams.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "relief/scene.h"
+#include "surface/map/texel_range.h"
+
+namespace relief {
+
+/// Which texels of one image take the values of which others, wherever they hold the background's.
+struct GutterFill {
+    struct Copy {
+        uint32_t to_x, to_y, from_x, from_y;
+        bool is_done = false; ///< the texel held the background's value and has the other's now
+    };
+    std::vector<Copy> copies;
+    std::array<uint32_t, 3> background{}; ///< bits of the first three channels, as floats
+
+    /// Texels are copied no farther than that, in either direction.
+    static constexpr uint32_t kReach = 2;
+
+    void apply(Texture& texture);
+    /// After a rectangle has got new values, those of the gutter in it as raw as the others. Returns what has
+    /// changed in all.
+    TexelRectangle follow(Texture& texture, const TexelRectangle& changed);
+};
+
+/// Texels of tile `udim` that are read along the borders of the uv islands of the meshes and whose centres
+/// lie outside of all faces. Where more than half of them hold one and the same value, that is the
+/// background's, and those that hold it are to take the value of the nearest texel inside; else the map is
+/// padded already, and nothing is to be done. Faces with indices out of range are left out.
+GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
+                       std::span<const Mesh* const> meshes);
+
+} // namespace relief

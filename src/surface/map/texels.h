@@ -1,0 +1,63 @@
+// Raw texels by integer coordinates: the wrap modes, four channels to three.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+#include "formulas/displace.h"
+#include "formulas/texel.h"
+#include "math/half.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+using scalar::floor_texel;
+
+/// Beyond it an index is brought near first: formulas/texel.h counts in 32 bits.
+inline constexpr int32_t kFarTexel = 1 << 30;
+static_assert(uint32_t(WrapMode::clamp) == scalar::kWrapClamp &&
+              uint32_t(WrapMode::repeat) == scalar::kWrapRepeat &&
+              uint32_t(WrapMode::mirror) == scalar::kWrapMirror &&
+              uint32_t(WrapMode::black) == scalar::kWrapBlack);
+/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
+/// representable.
+template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
+    // Both periods divide twice the size.
+    if (index > kFarTexel || index < -kFarTexel)
+        index = wrap == WrapMode::repeat || wrap == WrapMode::mirror ? index % (2 * size)
+                                                                     : (index < 0 ? Index(-1) : size);
+    return scalar::wrap_texel(int32_t(index), int32_t(size), uint32_t(wrap));
+}
+
+/// The texel in column x and row y, both inside the texture: four channels, so that it fills a register.
+inline std::array<float, 4> read_channels(const Texture& texture, int64_t x, int64_t y) {
+    const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));
+    std::array<float, 4> texel;
+    if (texture.halves.empty())
+        for (size_t c = 0; c < 4; ++c) texel[c] = texture.floats[offset + c];
+    else
+        for (size_t c = 0; c < 4; ++c) texel[c] = half_to_float(texture.halves[offset + c]);
+    return texel;
+}
+
+/// Bilinear value between four texels.
+inline std::array<float, 4> filter_channels(const std::array<float, 4>& t00, const std::array<float, 4>& t10,
+                                            const std::array<float, 4>& t01, const std::array<float, 4>& t11,
+                                            float fx, float fy) {
+    std::array<float, 4> value;
+    for (size_t c = 0; c < 4; ++c) value[c] = scalar::filter_texels(t00[c], t10[c], t01[c], t11[c], fx, fy);
+    return value;
+}
+
+/// First three channels of the texel in column x and row y, both inside the texture.
+inline std::array<float, 3> read_texel(const Texture& texture, int64_t x, int64_t y) {
+    const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));
+    if (texture.halves.empty())
+        return {texture.floats[offset], texture.floats[offset + 1], texture.floats[offset + 2]};
+    return {half_to_float(texture.halves[offset]), half_to_float(texture.halves[offset + 1]),
+            half_to_float(texture.halves[offset + 2])};
+}
+
+} // namespace relief

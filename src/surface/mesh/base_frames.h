@@ -1,0 +1,25 @@
+// The base of a displaced surface with what its frames are made from.
+#pragma once
+
+#include <vector>
+
+#include "surface/mesh/subdivide.h"
+#include "surface/mesh/vertex_frames.h"
+
+namespace relief {
+
+struct FramedBase {
+    /// Its normals are those of the file, or empty where the points' are meant; its tangents are set where
+    /// corners have them before the vertices are made.
+    SmoothBase base;
+    std::vector<Vec3d> point_normals; ///< unit, one a position
+};
+
+/// Quads, smooth where the mesh says so, with the normals and tangents that `displacement` asks for.
+/// `polygons` are those of the mesh, with uvs. MikkTSpace runs on triangles and quads as they are in the
+/// mesh, before they are refined to quads; on the patches where there are faces of more corners or where the
+/// base is smooth. Throws bad_input where the mesh has no normals to take, or is subdivided, and for
+/// relative lengths of the file's frames.
+FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacement& displacement);
+
+} // namespace relief

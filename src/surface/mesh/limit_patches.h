@@ -1,0 +1,23 @@
+// Bicubic patches of the limit surface: exact where it is bicubic, fitted beside irregular points and
+// semi-sharp creases (docs/decisions/bicubic-base-patches.md).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surface/mesh/subdivision_mesh.h"
+#include "surface/patch/surface.h"
+
+namespace relief {
+
+struct LimitPatches {
+    std::vector<Vec3f> positions;                     ///< one a point: on the limit
+    std::vector<InnerControls> controls;              ///< one a quad; equal bits on both sides of an edge
+    std::vector<std::array<Vec3f, 4>> corner_normals; ///< one a quad: unit normals of its own corners
+};
+
+/// `refined` is that of `mesh`. Controls, which take most of the time, are left out where nobody wants them.
+LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined,
+                                bool has_controls = true);
+
+} // namespace relief

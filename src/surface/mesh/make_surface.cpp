@@ -1,0 +1,300 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+#include "surface/map/displacement_map.h"
+#include "surface/mesh/base_frames.h"
+#include "surface/mesh/polygons.h"
+#include "surface/mesh/subdivide.h"
+#include "surface/mesh/vertex_frames.h"
+#include "surface/patch/surface.h"
+
+namespace relief {
+
+namespace {
+
+/// Joins corners that agree in all they carry; numbers vertices in the order of their first use.
+class VertexSplitter {
+  public:
+    struct Attributes {
+        Vec2f uv{};
+        Vec3f normal{}, bitangent{};
+        std::array<float, 4> tangent{};
+        uint8_t tile = 0;
+        float handedness = 1;
+        friend bool operator==(const Attributes&, const Attributes&) = default;
+    };
+
+    explicit VertexSplitter(size_t point_count) : first_of_point_(point_count, kNoIndex) {}
+
+    uint32_t find_or_add(uint32_t point, const Attributes& attributes) {
+        uint32_t* link = &first_of_point_[point];
+        while (*link != kNoIndex) {
+            if (vertices_[*link].attributes == attributes) return *link;
+            link = &vertices_[*link].next;
+        }
+        const uint32_t vertex = uint32_t(vertices_.size());
+        *link = vertex;
+        vertices_.push_back({attributes, point, kNoIndex});
+        return vertex;
+    }
+
+    /// Vertices are numbered anew: first the dominant ones, then the others, each kind in its order. Their
+    /// old numbers to new ones.
+    std::vector<uint32_t> put_copies_last() {
+        std::vector<uint32_t> numbers(vertices_.size());
+        uint32_t next = 0;
+        for (const bool is_dominant : {true, false})
+            for (uint32_t v = 0; v < vertices_.size(); ++v)
+                if ((dominant(v) == v) == is_dominant) numbers[v] = next++;
+        const auto renumber = [&](uint32_t v) { return v == kNoIndex ? v : numbers[v]; };
+        std::vector<Vertex> sorted(vertices_.size());
+        for (uint32_t v = 0; v < vertices_.size(); ++v) {
+            sorted[numbers[v]] = vertices_[v];
+            sorted[numbers[v]].next = renumber(vertices_[v].next);
+        }
+        vertices_.swap(sorted);
+        for (uint32_t& first : first_of_point_) first = renumber(first);
+        return numbers;
+    }
+
+    uint32_t count() const { return uint32_t(vertices_.size()); }
+    uint32_t point(uint32_t vertex) const { return vertices_[vertex].point; }
+    uint32_t dominant(uint32_t vertex) const { return first_of_point_[vertices_[vertex].point]; }
+    const Attributes& attributes(uint32_t vertex) const { return vertices_[vertex].attributes; }
+
+  private:
+    struct Vertex {
+        Attributes attributes;
+        uint32_t point, next;
+    };
+    std::vector<uint32_t> first_of_point_;
+    std::vector<Vertex> vertices_;
+};
+
+/// Of the first `count` vertices.
+void copy_positions(Surface& surface, const Polygons& polygons, const VertexSplitter& vertices,
+                    uint32_t count) {
+    surface.positions.resize(count);
+    for (uint32_t v = 0; v < count; ++v) surface.positions[v] = polygons.positions[vertices.point(v)];
+}
+
+void copy_uvs(Surface& surface, const VertexSplitter& vertices) {
+    surface.uvs.resize(vertices.count());
+    for (uint32_t v = 0; v < vertices.count(); ++v) surface.uvs[v] = vertices.attributes(v).uv;
+}
+
+/// Tile of a patch by the middle of its uvs, and what to take off them.
+struct TileChoice {
+    uint8_t index = 0;
+    Vec2f offset{};
+};
+
+TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs) {
+    const float u = std::floor((uvs[0].x + uvs[1].x + uvs[2].x + uvs[3].x) / 4);
+    const float v = std::floor((uvs[0].y + uvs[1].y + uvs[2].y + uvs[3].y) / 4);
+    TileChoice choice{Surface::kNoTile, {u, v}};
+    if (u < 0 || u > 9 || v < 0) return choice;
+    const double udim = 1001 + double(u) + 10 * double(v);
+    for (size_t k = 0; k < map.tiles.size(); ++k)
+        if (double(map.tiles[k].udim) == udim) choice.index = uint8_t(k);
+    return choice;
+}
+
+/// Fails where a texel coordinate would not fit the integers of the kernels.
+void check_texel_range(const DisplacementMap& map, const Polygons& polygons, uint32_t face, const Vec2f& uv) {
+    double size = 1;
+    for (const DisplacementMap::Tile& tile : map.tiles)
+        size = std::max({size, double(tile.texture->width), double(tile.texture->height)});
+    if (size * (1 + std::max(std::fabs(uv.x), std::fabs(uv.y))) < 0x1p30) return;
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("uv ({}, {}) is too far out for a map of {} texels", uv.x, uv.y, size),
+                 fmt::format("{}, face {}", polygons.where, polygons.source_faces[face]),
+                 "unwrap the mesh again"});
+}
+
+/// What corners bring to their vertices beside uvs.
+void add_frame_attributes(const Polygons& polygons, uint32_t corner, VertexSplitter::Attributes& attributes) {
+    if (!polygons.normals.empty()) attributes.normal = polygons.normals[corner];
+    if (!polygons.bitangents.empty()) attributes.bitangent = polygons.bitangents[corner];
+    if (polygons.tangents.empty()) return;
+    attributes.tangent = polygons.tangents[corner];
+    attributes.handedness = attributes.tangent[3] < 0 ? -1.0f : 1.0f;
+}
+
+VertexSources list_sources(const Polygons& polygons, const VertexSplitter& vertices) {
+    VertexSources sources;
+    for (uint32_t v = 0; v < vertices.count(); ++v) {
+        const VertexSplitter::Attributes& attributes = vertices.attributes(v);
+        sources.points.push_back(vertices.point(v));
+        sources.handedness.push_back(attributes.handedness);
+        if (!polygons.normals.empty()) sources.normals.push_back(attributes.normal);
+        if (!polygons.tangents.empty()) sources.tangents.push_back(attributes.tangent);
+        if (!polygons.bitangents.empty()) sources.bitangents.push_back(attributes.bitangent);
+    }
+    return sources;
+}
+
+/// Patches and what their vertices share: the dominant ones get the lowest numbers.
+void store_patches(std::vector<Quad>& quads, VertexSplitter& vertices, Surface& surface) {
+    const std::vector<uint32_t> numbers = vertices.put_copies_last();
+    surface.quads.reset(quads.size(), vertices.count());
+    for (size_t k = 0; k < quads.size(); ++k) {
+        for (uint32_t& vertex : quads[k].vertex) vertex = numbers[vertex];
+        surface.quads.set(k, quads[k]);
+    }
+    for (uint32_t v = 0; v < vertices.count(); ++v)
+        if (vertices.dominant(v) != v) surface.copies.push_back({vertices.dominant(v)});
+    surface.copies.shrink_to_fit();
+}
+
+/// Patches and split vertices.
+VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
+    VertexSplitter vertices(polygons.positions.size());
+    std::vector<Quad> quads(polygons.face_count());
+    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+        const uint32_t start = polygons.starts[face];
+        std::array<Vec2f, 4> uvs;
+        for (uint32_t k = 0; k < 4; ++k) {
+            uvs[k] = {polygons.uvs[start + k].x + 0.0f, polygons.uvs[start + k].y + 0.0f};
+            check_texel_range(surface.map, polygons, face, uvs[k]);
+        }
+        const TileChoice tile = is_udim ? choose_tile(surface.map, uvs) : TileChoice{};
+        VertexSplitter::Attributes attributes;
+        attributes.tile = tile.index;
+        attributes.handedness = compute_uv_area(uvs) < 0 ? -1.0f : 1.0f;
+        for (uint32_t k = 0; k < 4; ++k) {
+            attributes.uv = {uvs[k].x - tile.offset.x, uvs[k].y - tile.offset.y};
+            add_frame_attributes(polygons, start + k, attributes);
+            quads[face].vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
+        }
+    }
+    store_patches(quads, vertices, surface);
+    if (is_udim)
+        for (uint32_t v = 0; v < vertices.count(); ++v)
+            surface.vertex_tiles.push_back(vertices.attributes(v).tile);
+    copy_positions(surface, polygons, vertices, vertices.count() - uint32_t(surface.copies.size()));
+    copy_uvs(surface, vertices);
+    return list_sources(polygons, vertices);
+}
+
+/// Where patch edges between the same two points have different vertices, all take those of the lowest.
+void find_overrides(Surface& surface) {
+    if (surface.copies.empty()) return;
+    struct Edge {
+        uint64_t key;
+        uint32_t patch_edge;
+    };
+    std::vector<Edge> edges;
+    std::vector<EdgeOverride> overrides;
+    edges.reserve(4 * surface.quads.size());
+    const auto get_ends = [&](uint32_t patch_edge) {
+        const Quad quad = surface.quads[patch_edge / 4];
+        return std::array<uint32_t, 2>{quad.vertex[patch_edge & 3], quad.vertex[(patch_edge + 1) & 3]};
+    };
+    for (uint32_t patch_edge = 0; patch_edge < 4 * surface.patch_count(); ++patch_edge) {
+        const auto ends = get_ends(patch_edge);
+        const uint64_t a = surface.dominant(ends[0]), b = surface.dominant(ends[1]);
+        edges.push_back({std::min(a, b) << 32 | std::max(a, b), patch_edge});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return a.key != b.key ? a.key < b.key : a.patch_edge < b.patch_edge;
+    });
+    for (size_t first = 0, end = 0; first < edges.size(); first = end) {
+        bool is_seam = false;
+        const size_t begin = overrides.size();
+        for (end = first; end < edges.size() && edges[end].key == edges[first].key; ++end) {
+            std::array<uint32_t, 2> leading = get_ends(edges[first].patch_edge);
+            const auto own = get_ends(edges[end].patch_edge);
+            if (surface.dominant(leading[0]) != surface.dominant(own[0])) std::swap(leading[0], leading[1]);
+            is_seam = is_seam || leading != own;
+            overrides.push_back({edges[end].patch_edge, leading[0], leading[1]});
+        }
+        if (!is_seam) overrides.resize(begin);
+    }
+    std::sort(overrides.begin(), overrides.end(),
+              [](const EdgeOverride& a, const EdgeOverride& b) { return a.patch_edge < b.patch_edge; });
+    surface.overrides = EdgeOverrides(overrides, surface.quads.size());
+}
+
+/// Fails where an axis of a relative frame carries the map's largest displacement too far.
+void check_derivatives(Surface& surface, const std::string& name) {
+    if (surface.derivatives.empty()) return;
+    float& longest = surface.map.longest_axis;
+    for (const std::array<Vec3f, 2>& derivatives : surface.derivatives)
+        for (const Vec3f& derivative : derivatives)
+            for (const float value : {derivative.x, derivative.y, derivative.z})
+                longest = std::fmax(longest, std::fabs(value));
+    check_reach(name, surface.map);
+}
+
+Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const Affine& object_from_world,
+                       PyramidCache& pyramids) {
+    Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    if (polygons.uvs.empty())
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
+                     polygons.where, "unwrap the mesh"});
+    FramedBase framed = make_framed_base(std::move(polygons), mesh, displacement);
+    Surface surface;
+    surface.name = mesh.name;
+    surface.has_displacement = true;
+    surface.map = make_displacement_map(displacement, object_from_world, pyramids);
+    VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim);
+    find_overrides(surface);
+    surface.controls = std::move(framed.base.controls);
+    sources.point_normals = std::move(framed.point_normals);
+    // A height moves along the normal alone.
+    if (displacement.type == DisplacementType::vector) sources.lengths = displacement.lengths;
+    compute_vertex_frames(surface, sources);
+    check_derivatives(surface, displacement.name);
+    return surface;
+}
+
+Polygons make_plain_polygons(const Mesh& mesh) {
+    if (mesh.subdivision.scheme == SubdivisionScheme::none)
+        return cut_to_triangles(make_polygons(mesh, Welding::none));
+    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    return cut_to_triangles(subdivide(polygons, mesh.subdivision, BasePatches::bilinear).polygons);
+}
+
+Surface make_plain(const Mesh& mesh) {
+    const Polygons polygons = make_plain_polygons(mesh);
+    Surface surface;
+    surface.name = mesh.name;
+    VertexSplitter vertices(polygons.positions.size());
+    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+        const uint32_t start = polygons.starts[face];
+        Quad quad;
+        for (uint32_t k = 0; k < 4; ++k) {
+            const uint32_t corner = start + std::min(k, polygons.face_size(face) - 1);
+            VertexSplitter::Attributes attributes;
+            if (!polygons.uvs.empty()) attributes.uv = polygons.uvs[corner];
+            if (!polygons.normals.empty()) attributes.normal = polygons.normals[corner];
+            quad.vertex[k] = vertices.find_or_add(polygons.points[corner], attributes);
+        }
+        surface.quads.push_back(quad);
+    }
+    copy_positions(surface, polygons, vertices, vertices.count());
+    surface.quads.shrink_to_fit();
+    if (!polygons.uvs.empty()) copy_uvs(surface, vertices);
+    if (!polygons.normals.empty())
+        for (uint32_t v = 0; v < vertices.count(); ++v)
+            surface.frames.push_back({pack_frame(normalize(vertices.attributes(v).normal), {}, 1).normal, 0});
+    return surface;
+}
+
+} // namespace
+
+Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
+                     PyramidCache* pyramids) {
+    if (!displacement) return make_plain(mesh);
+    PyramidCache own_pyramids;
+    return make_displaced(mesh, *displacement, object_from_world, pyramids ? *pyramids : own_pyramids);
+}
+
+} // namespace relief

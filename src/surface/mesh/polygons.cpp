@@ -1,0 +1,204 @@
+#include "surface/mesh/polygons.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "math/vec.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+constexpr float kLargestCoordinate = 1e18f; // squares of lengths stay finite
+constexpr float kLargestUv = 1e6f;
+constexpr double kSmallestAreaRatio =
+    1e-12; // of the square of the longest edge: rounding of collinear corners
+
+[[noreturn]] void throw_bad_face(const std::string& where, size_t face, std::string message,
+                                 std::string hint) {
+    throw Error(ErrorKind::bad_input,
+                {std::move(message), fmt::format("{}, face {}", where, face), std::move(hint)});
+}
+
+std::string describe_mesh(const Mesh& mesh) {
+    const std::string name = fmt::format("mesh '{}'", mesh.name);
+    return mesh.source.empty() ? name : mesh.source + ": " + name;
+}
+
+void check_counts(const Mesh& mesh, const std::string& where) {
+    const auto fail = [&](std::string message) {
+        throw Error(ErrorKind::bad_input, {std::move(message), where, "write the mesh again"});
+    };
+    if (mesh.face_sizes.empty())
+        throw Error(ErrorKind::bad_input, {"mesh has no faces", where, "export it with polygons"});
+    size_t corner_count = 0;
+    for (const uint32_t size : mesh.face_sizes) corner_count += size;
+    if (corner_count != mesh.position_indices.size())
+        fail(fmt::format("faces have {} corners, but there are {} position indices", corner_count,
+                         mesh.position_indices.size()));
+    if (!mesh.uv_indices.empty() && mesh.uv_indices.size() != corner_count)
+        fail(fmt::format("faces have {} corners, but there are {} uv indices", corner_count,
+                         mesh.uv_indices.size()));
+    if (!mesh.normal_indices.empty() && mesh.normal_indices.size() != corner_count)
+        fail(fmt::format("faces have {} corners, but there are {} normal indices", corner_count,
+                         mesh.normal_indices.size()));
+    if (!mesh.tangents.empty() && mesh.tangents.size() != corner_count)
+        fail(fmt::format("faces have {} corners, but there are {} tangents", corner_count,
+                         mesh.tangents.size()));
+    if (corner_count >= size_t(kNoIndex) / 8) fail("mesh has too many corners");
+}
+
+bool is_in_range(const Vec3f& p, float limit) {
+    return std::fabs(p.x) <= limit && std::fabs(p.y) <= limit && std::fabs(p.z) <= limit;
+}
+
+void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t start) {
+    const uint32_t size = mesh.face_sizes[face];
+    if (size < 3)
+        throw_bad_face(where, face, fmt::format("face has {} corners", size),
+                       "remove points and lines from the mesh");
+    const auto check_index = [&](const char* name, uint32_t index, size_t count) {
+        if (index >= count)
+            throw_bad_face(where, face,
+                           fmt::format("{} index {} is out of range, there are {}", name, index, count),
+                           "write the mesh again");
+    };
+    for (size_t corner = start; corner < start + size; ++corner) {
+        const uint32_t point = mesh.position_indices[corner];
+        check_index("position", point, mesh.positions.size());
+        if (!is_in_range(mesh.positions[point], kLargestCoordinate))
+            throw_bad_face(where, face, fmt::format("position {} is not finite or above 1e18", point),
+                           "write the mesh again");
+        if (!mesh.uv_indices.empty()) {
+            const uint32_t index = mesh.uv_indices[corner];
+            check_index("uv", index, mesh.uvs.size());
+            const Vec2f& uv = mesh.uvs[index];
+            if (!(std::fabs(uv.x) <= kLargestUv && std::fabs(uv.y) <= kLargestUv))
+                throw_bad_face(where, face, fmt::format("uv {} is not finite or above 1e6", index),
+                               "unwrap the mesh again");
+        }
+        if (!mesh.normal_indices.empty()) {
+            const uint32_t index = mesh.normal_indices[corner];
+            check_index("normal", index, mesh.normals.size());
+            if (!is_in_range(mesh.normals[index], kLargestCoordinate))
+                throw_bad_face(where, face, fmt::format("normal {} is not finite", index),
+                               "write the mesh again");
+        }
+    }
+}
+
+struct PositionHash {
+    size_t operator()(const Vec3f& p) const {
+        uint64_t hash = std::bit_cast<uint32_t>(p.x) | uint64_t(std::bit_cast<uint32_t>(p.y)) << 32;
+        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + std::bit_cast<uint32_t>(p.z);
+        hash = (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
+        return size_t(hash ^ hash >> 32);
+    }
+};
+
+/// First point at the same position, for each point.
+std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
+    std::unordered_map<Vec3f, uint32_t, PositionHash> first_at;
+    first_at.reserve(positions.size());
+    std::vector<uint32_t> result(positions.size());
+    for (uint32_t k = 0; k < positions.size(); ++k)
+        result[k] = first_at.try_emplace(positions[k], k).first->second;
+    return result;
+}
+
+/// Creases between the points of the polygons; those between points that have become one are gone.
+std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
+                                 const std::vector<uint32_t>& representatives) {
+    std::vector<Crease> result;
+    for (const Crease& crease : mesh.creases) {
+        if (crease.first >= mesh.positions.size() || crease.second >= mesh.positions.size())
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("crease from point {} to {} is out of range, there are {}", crease.first,
+                                     crease.second, mesh.positions.size()),
+                         where, "points count from 0; write the mesh again"});
+        if (!(crease.sharpness >= 0))
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("sharpness {} of a crease is not 0 or more", crease.sharpness), where,
+                         "10 and above stays sharp for ever"});
+        Crease moved = crease;
+        if (!representatives.empty())
+            moved = {representatives[crease.first], representatives[crease.second], crease.sharpness};
+        if ((moved.first == moved.second) == (crease.first == crease.second)) result.push_back(moved);
+    }
+    return result;
+}
+
+void check_area(const Polygons& polygons, uint32_t face) {
+    const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+    const auto refuse = [&] {
+        throw_bad_face(polygons.where, polygons.source_faces[face], "face has zero area",
+                       "remove degenerate faces from the mesh");
+    };
+    if (size < 3) refuse();
+    double longest = 0;
+    for (uint32_t k = 0; k < size; ++k) {
+        const Vec3f& a = polygons.positions[polygons.points[start + k]];
+        const Vec3f& b = polygons.positions[polygons.points[start + (k + 1) % size]];
+        const double x = double(b.x) - a.x, y = double(b.y) - a.y, z = double(b.z) - a.z;
+        longest = std::max(longest, x * x + y * y + z * z);
+    }
+    const Vec3<double> n = compute_newell_normal(polygons, face);
+    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > kSmallestAreaRatio * longest)) refuse();
+}
+
+} // namespace
+
+Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
+    const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+    const Vec3f& origin = polygons.positions[polygons.points[start]];
+    const auto offset = [&](uint32_t k) {
+        const Vec3f& p = polygons.positions[polygons.points[start + k]];
+        return Vec3<double>{double(p.x) - origin.x, double(p.y) - origin.y, double(p.z) - origin.z};
+    };
+    Vec3<double> sum{};
+    for (uint32_t k = 1; k + 1 < size; ++k) sum += cross(offset(k), offset(k + 1));
+    return sum;
+}
+
+Polygons make_polygons(const Mesh& mesh, Welding welding) {
+    Polygons result;
+    result.where = describe_mesh(mesh);
+    check_counts(mesh, result.where);
+    result.positions = mesh.positions;
+    for (Vec3f& p : result.positions) p = p + Vec3f{}; // -0 becomes 0
+    std::vector<uint32_t> representatives;
+    if (welding == Welding::equal_points) representatives = find_equal_points(result.positions);
+
+    if (mesh.subdivision.creases == CreaseRule::obey)
+        result.creases = move_creases(mesh, result.where, representatives);
+
+    size_t start = 0;
+    for (size_t face = 0; face < mesh.face_sizes.size(); start += mesh.face_sizes[face], ++face) {
+        check_face(mesh, result.where, face, start);
+        const uint32_t size = mesh.face_sizes[face];
+        result.starts.push_back(uint32_t(result.points.size()));
+        for (uint32_t k = 0; k < size; ++k) {
+            const uint32_t point = mesh.position_indices[start + k];
+            const uint32_t previous = mesh.position_indices[start + (k + size - 1) % size];
+            // A face whose corners all coincide loses them all and has zero area.
+            if (result.positions[point] == result.positions[previous]) continue;
+            result.points.push_back(representatives.empty() ? point : representatives[point]);
+            if (!mesh.uv_indices.empty()) result.uvs.push_back(mesh.uvs[mesh.uv_indices[start + k]]);
+            if (!mesh.normal_indices.empty())
+                result.normals.push_back(mesh.normals[mesh.normal_indices[start + k]]);
+            if (!mesh.tangents.empty()) result.tangents.push_back(mesh.tangents[start + k]);
+        }
+        result.source_faces.push_back(uint32_t(face));
+    }
+    result.starts.push_back(uint32_t(result.points.size()));
+    for (uint32_t face = 0; face < result.face_count(); ++face) check_area(result, face);
+    return result;
+}
+
+} // namespace relief

@@ -1,0 +1,86 @@
+// Polygons as OpenSubdiv sees them: refined topology, and the limit surface of each face (Catmull and Clark
+// 1978; semi-sharp creases after DeRose, Kass and Truong 1998). The only door to OpenSubdiv.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "math/vec.h"
+#include "surface/mesh/polygons.h"
+
+namespace relief {
+
+using Vec3d = Vec3<double>;
+
+/// Where a quad lies: its corners on a face of the mesh, or on the part of a polygon beside its corner
+/// `part`.
+struct QuadPlace {
+    uint32_t face = 0, part = 0;
+    std::array<Vec2<double>, 4> corners;
+};
+
+/// Quads of a mesh refined to its level.
+struct RefinedMesh {
+    uint32_t point_count = 0;
+    std::vector<std::array<uint32_t, 4>> points; ///< one a quad
+    std::vector<std::array<Vec2f, 4>> uvs;       ///< one a quad, or empty
+    std::vector<QuadPlace> places;               ///< one a quad; those of a face follow one another
+    std::vector<std::array<uint32_t, 4>> edges;  ///< one a quad: numbers of its sides
+    std::vector<uint32_t> first_quads;           ///< lowest quad of each edge
+    std::vector<bool> is_sharp;                  ///< one an edge: a boundary, or a crease that stays
+    std::vector<float> semi_sharpness;           ///< one an edge: what is left of a crease that wears off
+    std::vector<float> point_sharpness; ///< one a point: what is left of a sharp point that wears off
+    std::vector<bool> is_bent;          ///< one an edge: no cubic, though between regular points
+    std::vector<bool> is_regular;       ///< one a point: the limit is bicubic in the quads around it
+    std::vector<bool> is_straight;      ///< one a point: regular but for a semi-sharp crease straight through
+    std::vector<Vec3d> limit_normals;   ///< one a point: where it is irregular and smooth, else (0, 0, 0)
+
+    uint32_t quad_count() const { return uint32_t(points.size()); }
+};
+
+/// Limit position and derivatives in the parameters of a face or part.
+struct LimitSample {
+    Vec3d position, du, dv, duv;
+};
+
+/// The limit surface of one face; for one thread.
+class LimitFace {
+  public:
+    struct Surface;
+    explicit LimitFace(std::unique_ptr<Surface> surface);
+    LimitFace(LimitFace&&) noexcept;
+    ~LimitFace();
+
+    /// At (u, v) in [0, 1]^2 of the face, or of the part of a polygon beside corner `part`.
+    LimitSample evaluate(uint32_t part, double u, double v) const;
+
+  private:
+    std::unique_ptr<Surface> surface_;
+};
+
+/// Immutable; its faces may be made by any thread.
+class SubdivisionMesh {
+  public:
+    /// The scheme must not be `none`. Throws bad_input with mesh and points for edges of more than two faces
+    /// or of faces that are turned against each other, for creases along no edge, and for what OpenSubdiv
+    /// refuses.
+    SubdivisionMesh(const Polygons& polygons, const Subdivision& subdivision);
+    ~SubdivisionMesh();
+
+    /// Levels that the mesh is refined by: at least 1 where a face is no quad.
+    int level() const;
+    /// Patches at that level.
+    uint64_t quad_count() const;
+    RefinedMesh refine();
+    /// Points after `level` steps, not on the limit; after refine().
+    std::vector<Vec3f> compute_points() const;
+    LimitFace make_face(uint32_t face) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace relief

@@ -1,0 +1,28 @@
+#include "surface/mesh/uv_topology.h"
+
+namespace relief {
+
+UvTopology join_uvs(const Polygons& polygons) {
+    struct Link {
+        Vec2f uv;
+        uint32_t next;
+    };
+    std::vector<Link> links;
+    std::vector<uint32_t> first(polygons.positions.size(), kNoIndex);
+    UvTopology result;
+    for (size_t corner = 0; corner < polygons.uvs.size(); ++corner) {
+        uint32_t* link = &first[polygons.points[corner]];
+        while (*link != kNoIndex && !(links[*link].uv == polygons.uvs[corner])) link = &links[*link].next;
+        if (*link == kNoIndex) {
+            *link = uint32_t(links.size());
+            result.indices.push_back(int(links.size()));
+            links.push_back({polygons.uvs[corner], kNoIndex});
+        } else {
+            result.indices.push_back(int(*link));
+        }
+    }
+    for (const Link& link : links) result.values.push_back(link.uv);
+    return result;
+}
+
+} // namespace relief

@@ -1,0 +1,118 @@
+#include "surface/patch/level_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "formulas/levels.h"
+#include "relief/render.h"
+#include "surface/patch/level_lines.h"
+#include "surface/patch/patch_samples.h"
+
+namespace relief {
+
+namespace {
+
+constexpr double kBicubicCells = 32; // a side, that bicubic patches may have on any map
+
+/// Level of a displaced line from its points, object space; `texels` is its length on the map.
+template <size_t N>
+int choose_level(const std::array<Vec3f, N>& line, double texels, const Affine& world_from_object,
+                 const LevelFieldConfig& config) {
+    const int cap = std::clamp(int(std::ceil(std::log2(std::max(texels, 1.0)))), 0, kMaxLevel);
+    double line_length = 0;
+    Box box;
+    std::array<Vec3f, N> points;
+    for (size_t k = 0; k < N; ++k) {
+        points[k] = transform_point(world_from_object, line[k]);
+        box.extend(points[k]);
+        if (k > 0) line_length += length(points[k] - points[k - 1]);
+    }
+    const Vec3f center = box.center();
+    double radius = 0;
+    for (const Vec3f& point : points) radius = std::max(radius, double(length(point - center)));
+    const double distance = length(config.camera - center) - radius;
+    if (!(line_length > 0)) return 0;
+    const double cell = double(config.pixel_error) * config.pixel_angle * distance;
+    // A camera among the points sees the line as near as can be.
+    if (!(cell > 0)) return cap;
+    return std::min(cap, int(std::clamp(std::ceil(std::log2(line_length / cell)), 0.0, double(kMaxLevel))));
+}
+
+/// Texels that a line runs over; a bicubic base bends where the map is smooth, too.
+double count_texels(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
+    const DisplacementMap& map = surface.map;
+    const double least = surface.controls.empty() ? 0 : kBicubicCells;
+    if (tile >= map.tiles.size()) return least;
+    const Texture& texture = *map.tiles[tile].texture;
+    return std::max(least,
+                    std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height));
+}
+
+/// Of an edge by itself, and of the lines through the middle: the map may stretch the inside more than the
+/// edges.
+PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& world_from_object,
+                          const LevelFieldConfig& config) {
+    const PatchSamples samples(surface, patch, PatchSamples::Filtering::none);
+    const LevelLines lines = evaluate_level_lines(surface, patch, samples);
+    PatchLevels levels{};
+    for (size_t direction = 0; direction < 2; ++direction) {
+        const auto blend = [&](float s) {
+            return direction == 0 ? blend_corners(samples.corners(), s, 0.5f)
+                                  : blend_corners(samples.corners(), 0.5f, s);
+        };
+        const VertexData a = blend(0), b = blend(1);
+        const int level = choose_level(lines.middles[direction], count_texels(surface, a.tile, a.uv, b.uv),
+                                       world_from_object, config);
+        levels.patch = std::max(levels.patch, uint8_t(level));
+    }
+    for (int edge = 0; edge < 4; ++edge) {
+        const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
+        const double texels = count_texels(surface, first.tile, first.uv, second.uv);
+        levels.edge[edge] =
+            uint8_t(choose_level(lines.edges[size_t(edge)], texels, world_from_object, config));
+        levels.patch = std::max(levels.patch, levels.edge[edge]);
+    }
+    return levels;
+}
+
+} // namespace
+
+LevelField LevelField::compute(const Surface& surface, const Affine& world_from_object,
+                               const LevelFieldConfig& config) {
+    LevelField field;
+    if (!surface.has_displacement) return field;
+    if (config.fixed_level >= 0) {
+        field.max_level_ = std::min(config.fixed_level, kMaxLevel);
+        field.fixed_ = scalar::pack_uniform_level(uint32_t(field.max_level_));
+        return field;
+    }
+    field.packed_.resize(surface.patch_count());
+    parallel_for("level field", field.packed_.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            field.packed_[patch] =
+                pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
+    });
+    field.find_max_level();
+    return field;
+}
+
+void LevelField::update(const Surface& surface, const Affine& world_from_object,
+                        const LevelFieldConfig& config, std::span<const uint8_t> is_changed) {
+    if (packed_.empty()) return;
+    parallel_for("level field of an edit", packed_.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t patch = begin; patch < end; ++patch)
+            if (is_changed[patch])
+                packed_[patch] =
+                    pack_levels(choose_levels(surface, uint32_t(patch), world_from_object, config));
+    });
+    find_max_level();
+}
+
+void LevelField::find_max_level() {
+    max_level_ = 0;
+    for (const uint32_t levels : packed_)
+        max_level_ = std::max(max_level_, int(scalar::packed_patch_level(levels)));
+}
+
+} // namespace relief

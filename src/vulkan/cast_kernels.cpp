@@ -1,0 +1,95 @@
+#include "vulkan/cast_kernels.h"
+#include "formulas/bottom_tree.h"
+#include "vulkan/layout/bindings.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace relief::vulkan {
+
+namespace {
+
+constexpr uint32_t kAll = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kGroup = 64; ///< invocations of kernels without barriers
+
+/// Mesa's lavapipe ends the loops of an invocation without a word after 65535 rounds in all. A ray visits at
+/// most the 1365 nodes of a tree; with a build before them 32 rays stay below.
+constexpr uint32_t kSafePairsPerLane = 32;
+
+/// Lanes that work on one tree of each bin. A program that runs lanes one after another keeps the state of a
+/// group at every barrier: small groups are the fast ones there.
+std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
+    if (is_cpu) return {4, 8, 8};
+    return {4, 16, 64};
+}
+
+/// Steps in which stacks grow, so that scenes of similar depth share a kernel. One entry stands
+/// for none.
+constexpr uint32_t kStackStep = 8;
+
+/// The deepest trees of each bin.
+constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
+
+/// Whether trees of a scene are in a bin; `is_coarser`: or coarser ones of the same patches.
+bool has_trees(uint32_t tree_levels, bool is_coarser, uint32_t bin) {
+    if (is_coarser && tree_levels != 0) tree_levels = 2 * std::bit_floor(tree_levels) - 1;
+    const uint32_t first = bin == 0 ? 0 : kDeepest[bin - 1] + 1;
+    return tree_levels >> first & ((2u << (kDeepest[bin] - first)) - 1);
+}
+
+/// A kernel that walks trees: a dispatch, or fragments over the full screen.
+Kernel make_walk(const Device& device, RenderMethod method, const TraversalKernel& kernel,
+                 std::vector<uint32_t> constants) {
+    if (method != RenderMethod::fragment)
+        return Kernel(device, {kernel.shader, std::move(constants), kernel.compute});
+    return Kernel(device, {kernel.shader + "_fragment", std::move(constants), kernel.fragment, kFullScreen});
+}
+
+} // namespace
+
+CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
+                         const TracerConfig& config, uint32_t stack_size) {
+    const bool is_cpu = device.is_cpu();
+    const uint32_t is_box = settings.leaf == LeafKind::box;
+    // Measured: docs/decisions/bottom-form.md.
+    is_fused = settings.bottom == BottomForm::fused;
+    if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
+    scene_traversal = make_walk(device, settings.method, scene.traversal_kernel(), {kGroup, stack_size});
+    find_jobs = Kernel(device, {"find_jobs", {kGroup}});
+    prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
+    bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
+    commit_round = Kernel(device, {"commit_round", {kGroup}});
+    finish_hits = Kernel(device, {"finish_hits", {kGroup, is_box}});
+
+    const std::array<uint32_t, scalar::kBuildBinCount> lanes = choose_lanes(is_cpu);
+    const uint32_t build_group = is_cpu ? 8 : 64;
+    arguments_push.group_size = kGroup;
+    const bool is_coarser = config.may_see_coarser || settings.lod == LodRule::ray;
+    for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {
+        if (!is_fused && has_trees(scene.tree_levels(), is_coarser, bin))
+            bottom_build[bin].emplace(
+                device, KernelConfig{"bottom_build", {build_group, lanes[bin], kDeepest[bin], bin}});
+        arguments_push.builds_per_group[bin] = build_group / lanes[bin];
+    }
+    if (!is_fused) {
+        patch_traversal =
+            make_walk(device, settings.method, {"patch_traversal", {}, {}}, {kGroup, 0, 0, 0, is_box, 0});
+        return;
+    }
+    const uint32_t most_pairs = is_cpu ? kGroup * kSafePairsPerLane : kAll;
+    fused_jobs_per_group = config.fused_jobs_per_group > 0 ? config.fused_jobs_per_group : is_cpu ? 1 : kAll;
+    fused_group_count = config.fused_group_count > 0 ? config.fused_group_count
+                        : is_cpu                     ? kAll
+                                                     : device.resident_group_count() * 256 / kGroup;
+    bottom_fused =
+        Kernel(device, {"bottom_fused",
+                        {kGroup, kGroup, scalar::kTreeLevels, 0, is_box, most_pairs, fused_jobs_per_group}});
+    has_leftover = most_pairs != kAll;
+    if (has_leftover) leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, most_pairs}});
+}
+
+} // namespace relief::vulkan

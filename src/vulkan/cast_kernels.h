@@ -1,0 +1,32 @@
+// The kernels of a cast, specialised for the device, the leaf and the form of the bottom level.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "vulkan/device/kernel.h"
+#include "vulkan/device_scene.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_rays.h"
+#include "vulkan/tracer.h"
+
+namespace relief::vulkan {
+
+struct CastKernels {
+    /// `stack_size`: entries for upper trees and tiles.
+    CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
+                const TracerConfig& config, uint32_t stack_size);
+
+    /// The fused form leaves pairs of large trees to `leftover`; only devices that bound the loops of an
+    /// invocation have any.
+    bool is_fused, has_leftover = false;
+    uint32_t fused_group_count = 0, fused_jobs_per_group = 0;
+    scalar::ArgumentsPush arguments_push; ///< for prepare_arguments
+
+    Kernel scene_traversal, find_jobs, prepare_arguments, bottom_cache, patch_traversal, bottom_fused,
+        leftover, commit_round, finish_hits;
+    /// Of the bins that trees of the scene can be in; none of the fused form.
+    std::array<std::optional<Kernel>, scalar::kBuildBinCount> bottom_build;
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,174 @@
+#include "vulkan/device/buffer.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "vulkan/device/device_internals.h"
+#include "vulkan/device/errors.h"
+
+namespace relief::vulkan {
+namespace {
+
+/// Smallest buffer: one texel of the widest format.
+constexpr uint64_t kLeastBytes = 16;
+
+vk::Format to_vulkan(TexelFormat format) {
+    switch (format) {
+    case TexelFormat::none:
+        return vk::Format::eUndefined;
+    case TexelFormat::r32_float:
+        return vk::Format::eR32Sfloat;
+    case TexelFormat::rg32_float:
+        return vk::Format::eR32G32Sfloat;
+    case TexelFormat::rgba32_float:
+        return vk::Format::eR32G32B32A32Sfloat;
+    case TexelFormat::rgba16_float:
+        return vk::Format::eR16G16B16A16Sfloat;
+    case TexelFormat::r32_uint:
+        return vk::Format::eR32Uint;
+    case TexelFormat::rg32_uint:
+        return vk::Format::eR32G32Uint;
+    case TexelFormat::rgba32_uint:
+        return vk::Format::eR32G32B32A32Uint;
+    }
+    return vk::Format::eUndefined;
+}
+
+uint64_t round_up(uint64_t bytes) {
+    return (std::max<uint64_t>(bytes, 1) + kLeastBytes - 1) / kLeastBytes * kLeastBytes;
+}
+
+/// Texel buffers may be larger than what one storage binding reaches.
+uint64_t find_largest(const Device::Implementation& device, TexelFormat format) {
+    if (format == TexelFormat::none) return device.max_buffer_bytes;
+    const uint64_t texels = uint64_t(device.limits.maxTexelBufferElements) * texel_bytes(format);
+    return std::min(texels, device.max_allocation_bytes);
+}
+
+void check_size(const Device::Implementation& device, const BufferConfig& config) {
+    const uint64_t largest = find_largest(device, config.format);
+    if (config.bytes <= largest && round_up(config.bytes) <= largest) return;
+    throw Error(ErrorKind::out_of_memory,
+                {fmt::format("{} needs {} bytes, one buffer of {} may have {}", config.name, config.bytes,
+                             device.description.name, largest),
+                 "Vulkan", kUseCpu});
+}
+
+vk::BufferUsageFlags choose_usage(const BufferConfig& config) {
+    using Usage = vk::BufferUsageFlagBits;
+    vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+    if (config.format != TexelFormat::none) usage |= Usage::eUniformTexelBuffer;
+    if (config.is_indirect) usage |= Usage::eIndirectBuffer;
+    return usage;
+}
+
+bool is_direct(const Buffer::Implementation& buffer) {
+    return buffer.memory.mapped() && (buffer.config.is_host_visible || !buffer.device.config.is_staged);
+}
+
+} // namespace
+
+uint32_t texel_bytes(TexelFormat format) {
+    switch (format) {
+    case TexelFormat::none:
+        return 0;
+    case TexelFormat::r32_float:
+    case TexelFormat::r32_uint:
+        return 4;
+    case TexelFormat::rg32_float:
+    case TexelFormat::rgba16_float:
+    case TexelFormat::rg32_uint:
+        return 8;
+    case TexelFormat::rgba32_float:
+    case TexelFormat::rgba32_uint:
+        return 16;
+    }
+    return 0;
+}
+
+Buffer::Implementation::Implementation(Device::Implementation& owner, const BufferConfig& wanted)
+    : device(owner), config(wanted) {
+    check_size(device, config);
+    check_vulkan(config.name, [&] {
+        buffer = vk::raii::Buffer(device.device,
+                                  vk::BufferCreateInfo({}, round_up(config.bytes), choose_usage(config)));
+        device.set_name(buffer, config.name);
+        const MemoryPlace place = config.is_host_visible ? MemoryPlace::host : MemoryPlace::device;
+        memory =
+            device.memory->allocate({config.name, buffer.getMemoryRequirements(), place, config.purpose});
+    });
+    try {
+        buffer.bindMemory(*memory.block->memory, memory.offset);
+        if (config.format != TexelFormat::none) {
+            texels = vk::raii::BufferView(device.device,
+                                          {{}, *buffer, to_vulkan(config.format), 0, VK_WHOLE_SIZE});
+            device.set_name(texels, config.name + " (texels)");
+        }
+    } catch (const vk::SystemError& error) {
+        device.memory->release(memory);
+        throw_vulkan_error(config.name, error);
+    }
+}
+
+Buffer::Implementation::~Implementation() {
+    texels.clear();
+    buffer.clear();
+    device.memory->release(memory);
+}
+
+Buffer::Buffer() noexcept = default;
+
+Buffer::Buffer(const Device& device, const BufferConfig& config)
+    : implementation_(std::make_unique<Implementation>(device.internals(), config)) {}
+Buffer::~Buffer() = default;
+Buffer::Buffer(Buffer&&) noexcept = default;
+Buffer& Buffer::operator=(Buffer&&) noexcept = default;
+
+uint64_t Buffer::byte_count() const { return implementation_ ? implementation_->config.bytes : 0; }
+
+void Buffer::upload(std::span<const std::byte> data, uint64_t offset) {
+    DCHECK(offset + data.size() <= byte_count());
+    if (data.empty()) return;
+    Implementation& own = *implementation_;
+    if (is_direct(own)) {
+        std::memcpy(own.memory.mapped() + offset, data.data(), data.size());
+        return;
+    }
+    Implementation& staging = own.device.staging();
+    for (uint64_t done = 0; done < data.size();) {
+        const uint64_t part = std::min<uint64_t>(data.size() - done, staging.config.bytes);
+        std::memcpy(staging.memory.mapped(), data.data() + done, part);
+        own.device.run_once("upload", [&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(*staging.buffer, *own.buffer, vk::BufferCopy(0, offset + done, part));
+        });
+        done += part;
+    }
+}
+
+void Buffer::download(std::span<std::byte> data, uint64_t offset) const {
+    DCHECK(offset + data.size() <= byte_count());
+    if (data.empty()) return;
+    const Implementation& own = *implementation_;
+    if (is_direct(own)) {
+        std::memcpy(data.data(), own.memory.mapped() + offset, data.size());
+        return;
+    }
+    Implementation& staging = own.device.staging();
+    for (uint64_t done = 0; done < data.size();) {
+        const uint64_t part = std::min<uint64_t>(data.size() - done, staging.config.bytes);
+        own.device.run_once("download", [&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(*own.buffer, *staging.buffer, vk::BufferCopy(offset + done, 0, part));
+        });
+        std::memcpy(data.data() + done, staging.memory.mapped(), part);
+        done += part;
+    }
+}
+
+void* Buffer::mapped() const {
+    DCHECK(implementation_->config.is_host_visible);
+    return implementation_->memory.mapped();
+}
+
+} // namespace relief::vulkan

@@ -1,0 +1,74 @@
+// Device memory with a name and a purpose: every byte is counted, and what does not fit is refused with its
+// size.
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vulkan/device/device.h"
+
+namespace relief::vulkan {
+
+enum class TexelFormat {
+    none,
+    r32_float,
+    rg32_float,
+    rgba32_float,
+    rgba16_float,
+    r32_uint,
+    rg32_uint,
+    rgba32_uint
+};
+
+/// Bytes of one texel; 0 for none.
+uint32_t texel_bytes(TexelFormat format);
+
+struct BufferConfig {
+    std::string name;   ///< debug name, and for messages
+    uint64_t bytes = 0; ///< 0 is allowed and makes the smallest buffer there is
+    Purpose purpose = Purpose::ray_buffers;
+    TexelFormat format = TexelFormat::none; ///< other than none: may also be read as a uniform texel buffer
+    bool is_indirect = false;               ///< holds arguments of indirect dispatches
+    bool is_host_visible = false;           ///< mapped and coherent: for counters that the host polls
+};
+
+/// A storage buffer. Movable; frees its memory at the end of its life, which the device must outlive.
+class Buffer {
+  public:
+    Buffer() noexcept;
+    /// Throws Error{out_of_memory} with the byte count when the device has no room for it, and when it is
+    /// larger than one buffer may be.
+    Buffer(const Device& device, const BufferConfig& config);
+    ~Buffer();
+    Buffer(Buffer&&) noexcept;
+    Buffer& operator=(Buffer&&) noexcept;
+
+    uint64_t byte_count() const; ///< asked for
+    explicit operator bool() const { return implementation_ != nullptr; }
+
+    /// Copies host memory to bytes [offset, + data.size()), through staging memory where needed; waits.
+    void upload(std::span<const std::byte> data, uint64_t offset = 0);
+    template <class T> void upload(const std::vector<T>& values, uint64_t offset = 0) {
+        upload(std::as_bytes(std::span(values)), offset);
+    }
+    /// Copies bytes [offset, + data.size()) to the host; waits.
+    void download(std::span<std::byte> data, uint64_t offset = 0) const;
+    template <class T> std::vector<T> download(size_t count, uint64_t offset = 0) const {
+        std::vector<T> values(count);
+        download(std::as_writable_bytes(std::span(values)), offset);
+        return values;
+    }
+    /// Host-visible buffers only; valid after a submission that was waited for.
+    void* mapped() const;
+
+    struct Implementation;
+    Implementation& internals() const { return *implementation_; }
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace relief::vulkan

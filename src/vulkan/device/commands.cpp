@@ -1,0 +1,277 @@
+#include "vulkan/device/commands.h"
+
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "vulkan/device/errors.h"
+#include "vulkan/device/kernel_internals.h"
+#include "vulkan/layout/bindings.h"
+
+namespace relief::vulkan {
+namespace {
+
+/// Changes of stage that one submission may have; one more runs what was recorded.
+constexpr uint32_t kMarkCount = 256;
+
+constexpr DrawSize kScreen = {scalar::kScreenColumns * scalar::kFragmentSquare,
+                              scalar::kScreenRows* scalar::kFragmentSquare};
+static_assert(kFragmentGroup == scalar::kFragmentSquare * scalar::kFragmentSquare);
+
+vk::PipelineStageFlags2 find_pipeline_stages(vk::ShaderStageFlags shaders) {
+    using Stage = vk::PipelineStageFlagBits2;
+    if (!(shaders & vk::ShaderStageFlagBits::eFragment)) return Stage::eComputeShader;
+    return Stage::eComputeShader | Stage::eVertexShader | Stage::eFragmentShader;
+}
+
+} // namespace
+
+void record_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders) {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    const vk::PipelineStageFlags2 work = find_pipeline_stages(shaders) | Stage::eAllTransfer;
+    const vk::MemoryBarrier2 barrier(work, Access::eShaderWrite | Access::eTransferWrite,
+                                     work | Stage::eDrawIndirect,
+                                     Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
+                                         Access::eTransferWrite | Access::eIndirectCommandRead);
+    commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
+}
+
+void record_host_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders) {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    const vk::MemoryBarrier2 barrier(find_pipeline_stages(shaders) | Stage::eAllTransfer,
+                                     Access::eShaderWrite | Access::eTransferWrite, Stage::eHost,
+                                     Access::eHostRead);
+    commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
+}
+
+struct Commands::Implementation {
+    Device::Implementation& device;
+    const BindingTable::Implementation& bindings;
+    vk::raii::CommandPool pool = nullptr;
+    vk::raii::CommandBuffer buffer = nullptr;
+    vk::raii::QueryPool queries = nullptr; ///< on devices with timestamps that are no CPU
+    std::optional<Stage> stage = {};
+    std::vector<std::optional<Stage>> marks = {}; ///< what follows each timestamp of this submission
+    std::set<std::string> kernel_names = {};      ///< of this submission
+    bool is_recording = false;
+    std::array<double, kStageCount> seconds{};
+    uint64_t dispatch_count = 0;
+
+    void start();
+    void mark(std::optional<Stage> next);
+    void prepare();
+    void bind_kernel(const Kernel& kernel, std::span<const std::byte> push);
+    void begin_drawing(DrawSize size);
+    void dispatch(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    void draw_full_screen(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    [[noreturn]] void refuse_size(const Kernel& kernel, uint64_t groups) const;
+    void read_marks();
+    void run();
+    std::string describe() const;
+};
+
+void Commands::Implementation::start() {
+    pool.reset();
+    if (*queries) queries.reset(0, kMarkCount);
+    marks.clear();
+    kernel_names.clear();
+    buffer.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    const auto bind = [&](vk::PipelineBindPoint point) {
+        buffer.bindDescriptorSets(point, *device.pipeline_layout, 0, *bindings.set, {});
+    };
+    bind(vk::PipelineBindPoint::eCompute);
+    if (device.shader_stages & vk::ShaderStageFlagBits::eFragment) bind(vk::PipelineBindPoint::eGraphics);
+    is_recording = true;
+}
+
+void Commands::Implementation::mark(std::optional<Stage> next) {
+    buffer.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries, uint32_t(marks.size()));
+    marks.push_back(next);
+}
+
+/// Before every command: starts a command buffer, notes a change of stage, and waits for what came before.
+void Commands::Implementation::prepare() {
+    // The last mark belongs to the end of the submission.
+    if (is_recording && marks.size() + 1 == kMarkCount && marks.back() != stage) run();
+    if (!is_recording) start();
+    record_barrier(buffer, device.shader_stages);
+    if (*queries && (marks.empty() || marks.back() != stage)) mark(stage);
+}
+
+void Commands::Implementation::bind_kernel(const Kernel& kernel, std::span<const std::byte> push) {
+    DCHECK(push.size() <= scalar::kMaxPushBytes && push.size() % 4 == 0);
+    const Kernel::Implementation& used = kernel.internals();
+    buffer.bindPipeline(used.is_drawn ? vk::PipelineBindPoint::eGraphics : vk::PipelineBindPoint::eCompute,
+                        **used.pipeline);
+    (*buffer).pushConstants(*device.pipeline_layout, device.shader_stages, 0, uint32_t(push.size()),
+                            push.data(), *buffer.getDispatcher());
+    kernel_names.insert(used.name);
+    ++dispatch_count;
+}
+
+void Commands::Implementation::begin_drawing(DrawSize size) {
+    const vk::Rect2D area({}, {size.width, size.height});
+    buffer.beginRendering(vk::RenderingInfo({}, area, 1));
+    buffer.setViewport(0, vk::Viewport(0, 0, float(size.width), float(size.height), 0, 1));
+    buffer.setScissor(0, area);
+}
+
+void Commands::Implementation::refuse_size(const Kernel& kernel, uint64_t groups) const {
+    throw Error(ErrorKind::failed, {fmt::format("{} cannot run {} groups of {} invocations at once",
+                                                kernel.internals().name, groups, kernel.group_size()),
+                                    "Vulkan", kUseCpu});
+}
+
+void Commands::Implementation::dispatch(const Kernel& kernel, uint64_t groups,
+                                        std::span<const std::byte> push) {
+    const uint64_t widest = device.limits.maxComputeWorkGroupCount[0];
+    const uint64_t rows = (groups + widest - 1) / widest;
+    if (rows > device.limits.maxComputeWorkGroupCount[1]) refuse_size(kernel, groups);
+    prepare();
+    bind_kernel(kernel, push);
+    buffer.dispatch(uint32_t((groups + rows - 1) / rows), uint32_t(rows), 1);
+}
+
+void Commands::Implementation::draw_full_screen(const Kernel& kernel, uint64_t groups,
+                                                std::span<const std::byte> push) {
+    if (groups > uint64_t(scalar::kScreenColumns) * scalar::kScreenRows) refuse_size(kernel, groups);
+    prepare();
+    bind_kernel(kernel, push);
+    begin_drawing(kScreen);
+    buffer.draw(uint32_t(groups), 1, 0, 0);
+    buffer.endRendering();
+}
+
+void Commands::Implementation::read_marks() {
+    const auto [result, ticks] = queries.getResults<uint64_t>(
+        0, uint32_t(marks.size()), marks.size() * sizeof(uint64_t), sizeof(uint64_t),
+        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    static_cast<void>(result);
+    for (size_t i = 0; i + 1 < marks.size(); ++i)
+        if (marks[i])
+            seconds[size_t(*marks[i])] +=
+                double((ticks[i + 1] - ticks[i]) & device.timestamp_mask) * device.timestamp_period_s;
+}
+
+std::string Commands::Implementation::describe() const {
+    return kernel_names.empty() ? "copies" : fmt::format("running {}", fmt::join(kernel_names, ", "));
+}
+
+void Commands::Implementation::run() {
+    if (!is_recording) return;
+    is_recording = false;
+    check_vulkan("running kernels", [&] {
+        if (*queries) mark(std::nullopt);
+        record_host_barrier(buffer, device.shader_stages);
+        buffer.end();
+        const auto begin = std::chrono::steady_clock::now();
+        device.submit_and_wait(buffer, [this] { return describe(); });
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        if (*queries)
+            read_marks();
+        else if (stage)
+            seconds[size_t(*stage)] += taken.count();
+    });
+}
+
+Commands::Commands(const Device& device, const BindingTable& bindings)
+    : implementation_(new Implementation{device.internals(), bindings.internals()}) {
+    Implementation& own = *implementation_;
+    check_vulkan("making a command buffer", [&] {
+        const vk::raii::Device& handle = own.device.device;
+        own.pool =
+            vk::raii::CommandPool(handle, {vk::CommandPoolCreateFlagBits::eTransient, own.device.family});
+        own.device.set_name(own.pool, "relief commands");
+        own.buffer = std::move(
+            vk::raii::CommandBuffers(handle, {*own.pool, vk::CommandBufferLevel::ePrimary, 1}).front());
+        own.device.set_name(own.buffer, "relief commands");
+        if (device.is_cpu() || own.device.timestamp_period_s == 0.0f) return;
+        own.queries = vk::raii::QueryPool(handle, {{}, vk::QueryType::eTimestamp, kMarkCount});
+        own.device.set_name(own.queries, "relief stages");
+    });
+}
+Commands::~Commands() = default;
+
+void Commands::begin_stage(Stage stage) {
+    if (implementation_->stage == stage) return;
+    if (!*implementation_->queries) run();
+    implementation_->stage = stage;
+}
+
+void Commands::dispatch_bytes(const Kernel& kernel, uint64_t invocations, std::span<const std::byte> push) {
+    if (invocations == 0) return;
+    Implementation& own = *implementation_;
+    const uint64_t groups = (invocations + kernel.group_size() - 1) / kernel.group_size();
+    check_vulkan("recording a dispatch", [&] {
+        if (kernel.is_drawn())
+            own.draw_full_screen(kernel, groups, push);
+        else
+            own.dispatch(kernel, groups, push);
+    });
+}
+
+void Commands::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
+                                       std::span<const std::byte> push) {
+    Implementation& own = *implementation_;
+    DCHECK(arguments.internals().config.is_indirect && offset % 4 == 0);
+    check_vulkan("recording a dispatch", [&] {
+        own.prepare();
+        own.bind_kernel(kernel, push);
+        if (!kernel.is_drawn()) {
+            own.buffer.dispatchIndirect(*arguments.internals().buffer, offset);
+            return;
+        }
+        own.begin_drawing(kScreen);
+        const uint64_t draw_offset = offset + scalar::kArgumentDrawWord * sizeof(uint32_t);
+        own.buffer.drawIndirect(*arguments.internals().buffer, draw_offset, 1, 0);
+        own.buffer.endRendering();
+    });
+}
+
+void Commands::draw_bytes(const Kernel& kernel, DrawSize size, uint32_t vertex_count,
+                          std::span<const std::byte> push) {
+    if (vertex_count == 0) return;
+    Implementation& own = *implementation_;
+    DCHECK(kernel.is_drawn() && size.width > 0 && size.height > 0);
+    check_vulkan("recording a draw", [&] {
+        own.prepare();
+        own.bind_kernel(kernel, push);
+        own.begin_drawing(size);
+        own.buffer.draw(vertex_count, 1, 0, 0);
+        own.buffer.endRendering();
+    });
+}
+
+void Commands::fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value) {
+    DCHECK(offset % 4 == 0 && bytes % 4 == 0 && offset + bytes <= buffer.byte_count());
+    if (bytes == 0) return;
+    check_vulkan("recording a fill", [&] {
+        implementation_->prepare();
+        implementation_->buffer.fillBuffer(*buffer.internals().buffer, offset, bytes, value);
+    });
+}
+
+void Commands::copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset,
+                    uint64_t bytes) {
+    DCHECK(from_offset + bytes <= from.byte_count() && to_offset + bytes <= to.byte_count());
+    if (bytes == 0) return;
+    check_vulkan("recording a copy", [&] {
+        implementation_->prepare();
+        implementation_->buffer.copyBuffer(*from.internals().buffer, *to.internals().buffer,
+                                           vk::BufferCopy(from_offset, to_offset, bytes));
+    });
+}
+
+void Commands::discard() { implementation_->is_recording = false; }
+void Commands::run() { implementation_->run(); }
+const std::array<double, kStageCount>& Commands::stage_seconds() const { return implementation_->seconds; }
+uint64_t Commands::dispatch_count() const { return implementation_->dispatch_count; }
+
+} // namespace relief::vulkan

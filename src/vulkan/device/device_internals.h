@@ -1,0 +1,84 @@
+// Vulkan's side of Device: the objects that all kernels and buffers share. Included by the files behind
+// device.h, buffer.h, kernel.h and commands.h only, because Vulkan's headers are slow to compile.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include "vulkan/device/buffer.h"
+#include "vulkan/device/device.h"
+#include "vulkan/device/instance.h"
+#include "vulkan/device/memory.h"
+#include "vulkan/device/pipeline_store.h"
+
+namespace relief::vulkan {
+
+struct Device::Implementation {
+    explicit Implementation(const Config& config);
+    ~Implementation();
+
+    /// Names an object for validation messages and debuggers.
+    template <class Handle> void set_name(const Handle& handle, const std::string& name) const {
+        if (!instance.has_debug_names) return;
+        const auto plain = static_cast<typename Handle::CType>(*handle);
+        device.setDebugUtilsObjectNameEXT(
+            {Handle::objectType, reinterpret_cast<uint64_t>(plain), name.c_str()});
+    }
+    /// Runs a recorded command buffer and waits. `describe` says what ran, for a lost device.
+    void submit_and_wait(const vk::raii::CommandBuffer& commands,
+                         const std::function<std::string()>& describe);
+    /// Records with `record`, runs and waits; for copies.
+    void run_once(const char* what, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+    /// Staging memory of kStagingBytes, made when first asked for.
+    Buffer::Implementation& staging();
+
+    static constexpr uint64_t kStagingBytes = 16u << 20;
+
+    Config config;
+    std::unique_ptr<MessageLog> messages; ///< null when not validated
+    Instance instance;
+    vk::raii::PhysicalDevice physical = nullptr;
+    DeviceDescription description;
+    vk::PhysicalDeviceLimits limits;
+    uint64_t max_buffer_bytes = 0;     ///< as a storage buffer
+    uint64_t max_allocation_bytes = 0; ///< of a buffer of any kind
+    uint32_t resident_group_count = 0;
+    float timestamp_period_s = 0; ///< 0: the queue has none
+    uint64_t timestamp_mask = 0;  ///< of the bits that a timestamp has
+    uint32_t family = 0;
+    vk::ShaderStageFlags shader_stages = vk::ShaderStageFlagBits::eCompute; ///< that kernels may have
+    vk::raii::Device device = nullptr;
+    vk::raii::Queue queue = nullptr;
+    vk::raii::PipelineCache pipeline_cache = nullptr;
+    size_t loaded_cache_bytes = 0;
+    vk::raii::DescriptorSetLayout set_layout = nullptr;
+    vk::raii::PipelineLayout pipeline_layout = nullptr;
+    PipelineStore<vk::raii::Pipeline> pipelines;
+    vk::raii::CommandPool pool = nullptr;
+    vk::raii::Fence fence = nullptr;
+    std::unique_ptr<MemoryAllocator> memory;
+    std::unique_ptr<Buffer::Implementation> staging_buffer;
+};
+
+struct Buffer::Implementation {
+    Implementation(Device::Implementation& device, const BufferConfig& config);
+    ~Implementation();
+
+    Device::Implementation& device;
+    BufferConfig config;
+    vk::raii::Buffer buffer = nullptr;
+    MemorySpan memory;
+    vk::raii::BufferView texels = nullptr; ///< only with a format
+};
+
+/// The device's memory barrier between any two commands: shaders of these stages, transfer and indirect
+/// arguments.
+void record_barrier(const vk::raii::CommandBuffer& commands,
+                    vk::ShaderStageFlags shaders = vk::ShaderStageFlagBits::eCompute);
+/// What the device wrote becomes visible to the host after the fence.
+void record_host_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders);
+
+} // namespace relief::vulkan

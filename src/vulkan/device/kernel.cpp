@@ -1,0 +1,112 @@
+#include "vulkan/device/kernel.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "vulkan/device/errors.h"
+#include "vulkan/device/kernel_internals.h"
+#include "vulkan/device/shader_table.h"
+
+namespace relief::vulkan {
+namespace {
+
+void check_config(const Device& device, const KernelConfig& config, std::span<const uint32_t> code) {
+    if (code.empty())
+        throw Error(ErrorKind::failed, {fmt::format("there is no shader {}", config.shader), "Vulkan", ""});
+    if (config.constants.empty() || config.constants[0] == 0 || config.constants[0] > device.max_group_size())
+        throw Error(ErrorKind::failed, {fmt::format("kernel {}: constant 0 is the group size, 1 to {}",
+                                                    config.shader, device.max_group_size()),
+                                        "Vulkan", ""});
+    DCHECK(config.vertex_shader.empty() || device.method() != RenderMethod::compute);
+    DCHECK(config.vertex_shader != kFullScreen || config.constants[0] == kFragmentGroup);
+}
+
+vk::raii::ShaderModule make_module(const Device::Implementation& device, const std::string& name,
+                                   std::span<const uint32_t> code) {
+    vk::raii::ShaderModule module(device.device,
+                                  vk::ShaderModuleCreateInfo({}, code.size_bytes(), code.data()));
+    device.set_name(module, name);
+    return module;
+}
+
+/// Points of the full screen, or triangles of either winding, without attachments; where they lie is set when
+/// they are drawn.
+vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
+                                       const vk::PipelineShaderStageCreateInfo& fragment_stage) {
+    const vk::raii::ShaderModule module =
+        make_module(device, config.vertex_shader, find_shader(config.vertex_shader));
+    const std::array stages = {
+        vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *module, "main"),
+        fragment_stage};
+    const vk::PipelineVertexInputStateCreateInfo no_input;
+    const vk::PipelineInputAssemblyStateCreateInfo topology({}, config.vertex_shader == kFullScreen
+                                                                    ? vk::PrimitiveTopology::ePointList
+                                                                    : vk::PrimitiveTopology::eTriangleList);
+    const vk::PipelineViewportStateCreateInfo one_viewport({}, 1, nullptr, 1, nullptr);
+    vk::PipelineRasterizationStateCreateInfo raster;
+    raster.lineWidth = 1;
+    const vk::PipelineMultisampleStateCreateInfo one_sample({}, vk::SampleCountFlagBits::e1);
+    const std::array dynamic = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+    const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
+    const vk::PipelineColorBlendStateCreateInfo no_colors;
+    const vk::PipelineRenderingCreateInfo no_attachments;
+    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
+                                        &one_sample, nullptr, &no_colors, &dynamic_state,
+                                        *device.pipeline_layout);
+    info.pNext = &no_attachments;
+    return {device.device, device.pipeline_cache, info};
+}
+
+vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const KernelConfig& config,
+                                 std::span<const uint32_t> code) {
+    const vk::raii::ShaderModule module = make_module(device, config.shader, code);
+    std::vector<vk::SpecializationMapEntry> entries;
+    for (uint32_t i = 0; i < config.constants.size(); ++i)
+        entries.emplace_back(i, uint32_t(i * sizeof(uint32_t)), sizeof(uint32_t));
+    const vk::SpecializationInfo constants(uint32_t(entries.size()), entries.data(),
+                                           config.constants.size() * sizeof(uint32_t),
+                                           config.constants.data());
+    const bool is_drawn = !config.vertex_shader.empty();
+    const vk::PipelineShaderStageCreateInfo stage(
+        {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
+        "main", &constants);
+    vk::raii::Pipeline pipeline =
+        is_drawn ? make_drawn_pipeline(device, config, stage)
+                 : vk::raii::Pipeline(device.device, device.pipeline_cache,
+                                      vk::ComputePipelineCreateInfo({}, stage, *device.pipeline_layout));
+    device.set_name(pipeline, config.shader);
+    return pipeline;
+}
+
+/// The device's, or one of its own for a shader of somebody else.
+std::shared_ptr<const vk::raii::Pipeline>
+find_pipeline(Device::Implementation& device, const KernelConfig& config, std::span<const uint32_t> code) {
+    const auto make = [&] { return make_pipeline(device, config, code); };
+    if (!config.code.empty()) return std::make_shared<const vk::raii::Pipeline>(make());
+    return device.pipelines.find_or_make({config.shader, config.vertex_shader, config.constants}, make);
+}
+
+} // namespace
+
+Kernel::Kernel() noexcept = default;
+
+Kernel::Kernel(const Device& device, const KernelConfig& config)
+    : implementation_(std::make_unique<Implementation>()) {
+    const std::span<const uint32_t> code = config.code.empty() ? find_shader(config.shader) : config.code;
+    check_config(device, config, code);
+    implementation_->name = config.shader;
+    implementation_->group_size = config.constants[0];
+    implementation_->is_drawn = !config.vertex_shader.empty();
+    check_vulkan("compiling " + config.shader,
+                 [&] { implementation_->pipeline = find_pipeline(device.internals(), config, code); });
+}
+Kernel::~Kernel() = default;
+Kernel::Kernel(Kernel&&) noexcept = default;
+Kernel& Kernel::operator=(Kernel&&) noexcept = default;
+
+uint32_t Kernel::group_size() const { return implementation_->group_size; }
+bool Kernel::is_drawn() const { return implementation_->is_drawn; }
+
+} // namespace relief::vulkan

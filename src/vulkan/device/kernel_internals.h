@@ -1,0 +1,29 @@
+// Vulkan's side of Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp, commands.cpp
+// and tests only.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vulkan/device/device_internals.h"
+#include "vulkan/device/kernel.h"
+
+namespace relief::vulkan {
+
+struct Kernel::Implementation {
+    std::string name;
+    uint32_t group_size = 0;
+    bool is_drawn = false;
+    std::shared_ptr<const vk::raii::Pipeline> pipeline;
+};
+
+struct BindingTable::Implementation {
+    Device::Implementation* device = nullptr;
+    std::vector<Buffer> unbound; ///< zeros: one for storage, one for each format of texels
+    Buffer albedos;              ///< always bound at kBindAlbedos
+    vk::raii::DescriptorPool pool = nullptr;
+    vk::raii::DescriptorSet set = nullptr;
+};
+
+} // namespace relief::vulkan

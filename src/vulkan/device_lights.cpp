@@ -1,0 +1,91 @@
+#include "vulkan/device_lights.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "formulas/light_source.h"
+#include "prepare/environment_distribution.h"
+#include "prepare/light_sources.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_paths.h"
+#include "vulkan/layout/device_scene.h"
+
+namespace relief::vulkan {
+
+namespace {
+
+/// `values` as a buffer that kernels read.
+template <class T>
+Buffer make_table(const Device& device, const char* name, TexelFormat format, const std::vector<T>& values,
+                  Purpose purpose = Purpose::geometry) {
+    Buffer buffer(device,
+                  {.name = name, .bytes = values.size() * sizeof(T), .purpose = purpose, .format = format});
+    if (!values.empty()) buffer.upload(values);
+    return buffer;
+}
+
+std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
+                                                 const DeviceScene& device_scene) {
+    std::vector<scalar::MaterialData> result;
+    for (const Material& material : scene.materials)
+        result.push_back({material.base_color, material.roughness, material.emission, material.metallic,
+                          material.ior, device_scene.texture_index(material.base_color_texture.get()),
+                          device_scene.texture_index(material.roughness_texture.get())});
+    return result;
+}
+
+/// Emissive patches, then the ranges of their instances.
+std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table) {
+    std::vector<scalar::EmitterData> result;
+    for (uint32_t k = 0; k < table.size(); ++k)
+        result.push_back({uint32_t(std::ceil(table.cumulative[k + 1] * double(scalar::kEmitterParts))),
+                          std::bit_cast<uint32_t>(table.probability(k))});
+    for (const EmitterTable::Range& range : table.ranges) result.push_back({range.first, range.instance});
+    return result;
+}
+
+} // namespace
+
+DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene)
+    : materials_(make_table(device, "materials", TexelFormat::none, make_materials(scene, device_scene))) {
+    EnvironmentDistribution distribution;
+    if (scene.environment) {
+        distribution = make_environment_distribution(*scene.environment);
+        description_.environment = make_environment_data(*scene.environment, distribution);
+        description_.environment.texture_index = device_scene.texture_index(scene.environment->texture.get());
+        description_.has_environment = 1;
+    }
+    std::vector<float> cumulative = std::move(distribution.rows);
+    cumulative.insert(cumulative.end(), distribution.columns.begin(), distribution.columns.end());
+    // As large as the image that it is of, and counted with it: no geometry.
+    environment_ =
+        make_table(device, "environment", TexelFormat::r32_float, cumulative, Purpose::displacement);
+
+    const EmitterTable emitters = make_emitter_table(scene);
+    description_.emitter_count = emitters.size();
+    description_.emitter_range_count = uint32_t(emitters.ranges.size());
+    emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint, make_emitters(emitters));
+
+    const std::vector<scalar::LightSourceData> sources =
+        make_light_sources(scene, distribution.mean_luminance, emitters);
+    description_.source_count = uint32_t(sources.size());
+    sources_ = make_table(device, "light_sources", TexelFormat::none, sources);
+}
+
+void DeviceLights::bind(BindingTable& bindings) const {
+    bindings.bind(scalar::kBindMaterials, materials_);
+    bindings.bind(scalar::kBindSources, sources_);
+    bindings.bind(scalar::kBindEnvironment, environment_);
+    bindings.bind(scalar::kBindEmitters, emitters_);
+}
+
+void DeviceLights::describe(scalar::PathPush& push) const {
+    push.source_count = description_.source_count;
+    push.emitter_count = description_.emitter_count;
+    push.emitter_range_count = description_.emitter_range_count;
+    push.has_environment = description_.has_environment;
+    push.environment = description_.environment;
+}
+
+} // namespace relief::vulkan

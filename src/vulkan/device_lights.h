@@ -1,0 +1,28 @@
+// Materials and lights in device memory, for the kernels of the path tracer.
+#pragma once
+
+#include <vector>
+
+#include "prepare/prepared_scene.h"
+#include "vulkan/device/buffer.h"
+#include "vulkan/device/kernel.h"
+#include "vulkan/device_scene.h"
+#include "vulkan/layout/device_paths.h"
+
+namespace relief::vulkan {
+
+/// Immutable once made. Throws Error{out_of_memory}.
+class DeviceLights {
+  public:
+    DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
+
+    void bind(BindingTable& bindings) const;
+    /// Fills in what kernels are told about lights; the rest of `push` stays.
+    void describe(scalar::PathPush& push) const;
+
+  private:
+    Buffer materials_, sources_, environment_, emitters_;
+    scalar::PathPush description_{};
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,258 @@
+#include "vulkan/device_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bvh/tree_links.h"
+#include "formulas/bottom_tree.h"
+#include "formulas/levels.h"
+#include "formulas/mips.h"
+#include "prepare/scene_trees.h"
+#include "surface/map/mip_chain.h"
+#include "vulkan/device/shader_table.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_scene.h"
+#include "vulkan/texel_store.h"
+
+namespace relief::vulkan {
+
+namespace {
+
+using scalar::kNone;
+
+scalar::AffineData make_affine_data(const Affine& m) {
+    return {m.rows[0], m.rows[1], m.rows[2], m.translation};
+}
+
+template <class T, class U> uint32_t append(std::vector<T>& target, const std::vector<U>& values) {
+    if (values.empty()) return kNone;
+    const uint32_t first = uint32_t(target.size());
+    target.insert(target.end(), values.begin(), values.end());
+    return first;
+}
+
+uint32_t pack_kind(uint32_t kind, uint32_t count) { return kind << scalar::kNodeKindShift | count; }
+
+} // namespace
+
+/// What becomes texel buffers.
+struct DeviceScene::Arrays {
+    std::vector<Vec3f> positions;
+    std::vector<Vec2f> uvs;
+    std::vector<PackedFrame> frames;
+    std::vector<Quad> quads;
+    std::vector<uint32_t> dominants, levels, primitive_ids, override_bits;
+    std::vector<uint8_t> vertex_tiles;
+    std::vector<std::array<uint32_t, 4>> overrides;
+    std::vector<NodeTexels> nodes;
+    std::vector<Box> surface_boxes;
+    std::vector<uint32_t> surface_roots;
+    int deepest_surface = 0;
+
+    /// Appends a tree; `make_leaf` turns a leaf of the binary tree into (first, kind and count).
+    template <class MakeLeaf> uint32_t append_tree(const Bvh& bvh, MakeLeaf make_leaf) {
+        if (bvh.nodes.empty()) return kNone;
+        const uint32_t root = uint32_t(nodes.size());
+        for (const BvhNode& node : bvh.nodes) {
+            const auto [first, kind] = node.is_leaf()
+                                           ? make_leaf(node)
+                                           : std::pair(root + node.first, pack_kind(scalar::kNodeInner, 0));
+            nodes.push_back({node.lower, first, node.upper, kind});
+        }
+        return root;
+    }
+};
+
+DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene, const SceneWalk* walk) {
+    Arrays arrays;
+    add_textures(device, scene);
+    add_surfaces(scene, arrays);
+    if (walk)
+        add_walk(*walk, arrays);
+    else
+        add_trees(scene, arrays);
+    add_instances(scene, arrays);
+    upload(device, arrays);
+}
+
+void DeviceScene::bind(BindingTable& bindings) const {
+    for (const Binding& binding : buffers_) bindings.bind(binding.number, binding.buffer);
+    bindings.bind(scalar::kBindNodes, nodes_);
+}
+
+uint32_t DeviceScene::texture_index(const Texture* texture) const {
+    return texture ? texture_indices_.at(texture) : kNone;
+}
+
+void DeviceScene::add_textures(const Device& device, const PreparedScene& scene) {
+    TexelStore store;
+    const auto add = [&](const std::shared_ptr<const Texture>& texture) {
+        if (!texture || texture_indices_.contains(texture.get())) return;
+        texture_indices_[texture.get()] = uint32_t(tables_.textures.size());
+        tables_.textures.push_back(store.add(texture));
+    };
+    for (const Surface& surface : scene.surfaces)
+        for (const DisplacementMap::Tile& tile : surface.map.tiles) {
+            add(tile.texture);
+            for (uint32_t mip = 1; tile.mips && mip <= tile.mips->count(); ++mip)
+                add(tile.mips->copy(mip).texture);
+        }
+    for (const Material& material : scene.materials) {
+        add(material.base_color_texture);
+        add(material.roughness_texture);
+    }
+    if (scene.environment) add(scene.environment->texture);
+    buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
+    buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
+}
+
+void DeviceScene::add_map(const Surface& surface) {
+    const DisplacementMap& map = surface.map;
+    scalar::MapData data{};
+    data.row0 = map.matrix[0], data.row1 = map.matrix[1], data.row2 = map.matrix[2];
+    data.midlevel = map.midlevel;
+    data.wrap = uint32_t(map.wrap);
+    data.flip_v = map.flip_v;
+    data.is_tangent = map.is_tangent;
+    // Tiles of a map follow one another, so those that another map has too are listed again.
+    data.first_tile = uint32_t(tables_.textures.size());
+    data.tile_count = uint32_t(map.tiles.size());
+    for (uint32_t mip = 0; mip <= (map.is_filtered ? scalar::kMaxMip : 0); ++mip)
+        for (size_t tile = 0; tile < map.tiles.size(); ++tile) {
+            const Texture& image = map.image(uint8_t(tile), mip).texture;
+            const scalar::TextureData texture = tables_.textures[texture_index(&image)];
+            tables_.textures.push_back(texture);
+        }
+    tables_.maps.push_back(data);
+}
+
+void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
+    for (const Surface& surface : scene.surfaces) {
+        scalar::SurfaceData data{};
+        data.first_vertex = uint32_t(arrays.positions.size());
+        for (uint32_t v = 0; v < surface.vertex_count(); ++v) arrays.positions.push_back(surface.position(v));
+        data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
+        for (const InnerControls& controls : surface.controls)
+            arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
+        data.first_derivative = surface.derivatives.empty() ? kNone : uint32_t(arrays.positions.size());
+        for (const std::array<Vec3f, 2>& derivatives : surface.derivatives)
+            arrays.positions.insert(arrays.positions.end(), derivatives.begin(), derivatives.end());
+        data.first_uv = append(arrays.uvs, surface.uvs);
+        data.first_frame = append(arrays.frames, surface.frames);
+        data.first_dominant = surface.copies.empty() ? kNone : uint32_t(arrays.dominants.size());
+        for (uint32_t v = 0; v < surface.vertex_count() && !surface.copies.empty(); ++v)
+            arrays.dominants.push_back(surface.dominant(v));
+        data.first_vertex_tile = append(arrays.vertex_tiles, surface.vertex_tiles);
+        data.first_quad = uint32_t(arrays.quads.size());
+        for (const Quad quad : surface.quads) arrays.quads.push_back(quad);
+        data.first_override = uint32_t(arrays.overrides.size());
+        data.override_count = uint32_t(surface.overrides.size());
+        for (const EdgeOverride& o : surface.overrides.list())
+            arrays.overrides.push_back({o.patch_edge, o.first, o.second, 0});
+        data.first_override_word = surface.overrides.empty() ? kNone : uint32_t(arrays.override_bits.size());
+        for (const uint64_t word : surface.overrides.bits()) {
+            arrays.override_bits.push_back(uint32_t(word));
+            arrays.override_bits.push_back(uint32_t(word >> 32));
+        }
+        data.first_mip = append(arrays.override_bits, surface.mips);
+        data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
+        if (surface.has_displacement) add_map(surface);
+        tables_.surfaces.push_back(data);
+    }
+    patch_count_ = uint32_t(arrays.quads.size());
+}
+
+void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
+    for (const Surface& surface : scene.surfaces) {
+        const Bvh bvh = build_surface_bvh(surface, compute_patch_boxes(surface));
+        arrays.deepest_surface = std::max(arrays.deepest_surface, compute_depth(bvh));
+        const uint32_t first_id = uint32_t(arrays.primitive_ids.size());
+        if (!surface.has_displacement) append(arrays.primitive_ids, bvh.primitive_ids);
+        arrays.surface_roots.push_back(arrays.append_tree(bvh, [&](const BvhNode& node) {
+            return surface.has_displacement
+                       ? std::pair(bvh.primitive_ids[node.first], pack_kind(scalar::kNodePatch, 1))
+                       : std::pair(first_id + node.first,
+                                   pack_kind(scalar::kNodePolygons, node.primitive_count));
+        }));
+        arrays.surface_boxes.push_back(bvh.nodes.empty() ? Box{} : bvh.nodes[0].box());
+    }
+    const Bvh instances = build_instance_bvh(scene, arrays.surface_boxes);
+    root_ = arrays.append_tree(instances, [&](const BvhNode& node) {
+        return std::pair(instances.primitive_ids[node.first], pack_kind(scalar::kNodeInstance, 1));
+    });
+    // Nearest first, each step down leaves one sibling behind.
+    stack_size_ = uint32_t(compute_depth(instances) + arrays.deepest_surface + 4);
+    node_count_ = arrays.nodes.size();
+}
+
+void DeviceScene::add_walk(const SceneWalk& walk, Arrays& arrays) {
+    traversal_kernel_ = walk.kernel;
+    arrays.nodes = walk.nodes, arrays.primitive_ids = walk.words;
+    for (const uint8_t has_patches : walk.has_patches)
+        arrays.surface_roots.push_back(has_patches ? 0 : kNone);
+    root_ = walk.has_instances ? 0 : kNone;
+    stack_size_ = 1; // walks have no use for it; tiles add theirs
+    node_count_ = arrays.nodes.size();
+}
+
+void DeviceScene::add_tree_levels(const Surface& surface, const LevelField& levels) {
+    const uint32_t count = levels.is_uniform() ? std::min(1u, surface.patch_count()) : surface.patch_count();
+    for (uint32_t patch = 0; patch < count; ++patch) {
+        const uint32_t level = scalar::packed_patch_level(levels.packed_at(patch));
+        tree_levels_ |= 1u << std::min(level, scalar::kTreeLevels);
+    }
+}
+
+void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
+    for (const Instance& instance : scene.instances) {
+        const Surface& surface = scene.surfaces[instance.surface];
+        scalar::InstanceData data{};
+        data.object_from_world = make_affine_data(instance.object_from_world);
+        data.world_from_object = make_affine_data(instance.world_from_object);
+        data.surface = instance.surface;
+        data.material = instance.material;
+        data.root = arrays.surface_roots[instance.surface];
+        data.is_mirrored = instance.is_mirrored;
+        data.first_level = kNone;
+        if (instance.levels->is_uniform()) {
+            data.levels = surface.patch_count() > 0 ? instance.levels->packed_at(0) : 0;
+        } else {
+            data.first_level = uint32_t(arrays.levels.size());
+            for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
+                arrays.levels.push_back(instance.levels->packed_at(patch));
+        }
+        if (surface.has_displacement) add_tree_levels(surface, *instance.levels);
+        tables_.instances.push_back(data);
+    }
+}
+
+void DeviceScene::upload(const Device& device, Arrays& arrays) {
+    const auto add = [&](uint32_t number, const char* name, TexelFormat format, const auto& values,
+                         Purpose purpose = Purpose::geometry) {
+        const auto bytes = std::as_bytes(std::span(values));
+        Buffer buffer(device, {name, bytes.size(), purpose, format});
+        buffer.upload(bytes);
+        buffers_.push_back({number, std::move(buffer)});
+    };
+    arrays.vertex_tiles.resize((arrays.vertex_tiles.size() + 3) / 4 * 4);
+    add(scalar::kBindInstances, "instances", TexelFormat::none, tables_.instances);
+    add(scalar::kBindSurfaces, "surfaces", TexelFormat::none, tables_.surfaces);
+    add(scalar::kBindMaps, "maps", TexelFormat::none, tables_.maps);
+    add(scalar::kBindTextures, "textures", TexelFormat::none, tables_.textures);
+    add(scalar::kBindPositions, "positions", TexelFormat::r32_float, arrays.positions);
+    add(scalar::kBindUvs, "uvs", TexelFormat::rg32_float, arrays.uvs);
+    add(scalar::kBindFrames, "frames", TexelFormat::rg32_uint, arrays.frames);
+    add(scalar::kBindQuads, "quads", TexelFormat::rgba32_uint, arrays.quads);
+    add(scalar::kBindDominants, "dominant vertices", TexelFormat::r32_uint, arrays.dominants);
+    add(scalar::kBindVertexTiles, "vertex tiles", TexelFormat::r32_uint, arrays.vertex_tiles);
+    add(scalar::kBindOverrides, "edge overrides", TexelFormat::rgba32_uint, arrays.overrides);
+    add(scalar::kBindOverrideBits, "override bits", TexelFormat::r32_uint, arrays.override_bits);
+    add(scalar::kBindLevels, "levels", TexelFormat::r32_uint, arrays.levels);
+    add(scalar::kBindPrimitiveIds, "primitive ids", TexelFormat::r32_uint, arrays.primitive_ids,
+        Purpose::structures);
+    nodes_ = Buffer(device, {"nodes", arrays.nodes.size() * sizeof(NodeTexels), Purpose::structures,
+                             TexelFormat::rgba32_uint});
+    nodes_.upload(arrays.nodes);
+}
+
+} // namespace relief::vulkan

@@ -1,0 +1,74 @@
+// The prepared scene in device memory: tables, geometry, upper trees and texels, in the layout of
+// vulkan/layout/device_scene.h.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "formulas/constants.h"
+#include "prepare/prepared_scene.h"
+#include "vulkan/device/buffer.h"
+#include "vulkan/device/kernel.h"
+#include "vulkan/layout/device_scene.h"
+#include "vulkan/scene_walk.h"
+
+namespace relief::vulkan {
+
+/// Every displaced and plain surface, and every texture of maps, materials and the environment. Immutable
+/// once made. Throws Error{out_of_memory} with the byte count for what the device cannot hold.
+class DeviceScene {
+  public:
+    /// `walk` takes the place of the engine's own trees, unless it is null. Read while the scene is made.
+    DeviceScene(const Device& device, const PreparedScene& scene, const SceneWalk* walk = nullptr);
+
+    void bind(BindingTable& bindings) const;
+
+    /// Node of the tree of instances; scalar::kNone without anything to be seen.
+    uint32_t root() const { return root_; }
+    /// Number of the first patch of a surface among all; trees of tiles are numbered from patch_count() on.
+    uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
+    uint32_t patch_count() const { return patch_count_; }
+    /// The kernel that walks the upper trees, and the entries that its stack needs for them.
+    const TraversalKernel& traversal_kernel() const { return traversal_kernel_; }
+    uint32_t stack_size() const { return stack_size_; }
+    /// Bit k: patches, or tiles of finer ones, have level k.
+    uint32_t tree_levels() const { return tree_levels_; }
+    uint32_t node_count() const { return uint32_t(node_count_); }
+    const Buffer& nodes() const { return nodes_; }
+    /// Index into the table of textures; scalar::kNone for null.
+    uint32_t texture_index(const Texture* texture) const;
+
+  private:
+    struct Tables {
+        std::vector<scalar::InstanceData> instances;
+        std::vector<scalar::SurfaceData> surfaces;
+        std::vector<scalar::MapData> maps;
+        std::vector<scalar::TextureData> textures;
+    };
+    struct Arrays;
+    void add_textures(const Device& device, const PreparedScene& scene);
+    void add_map(const Surface& surface);
+    void add_surfaces(const PreparedScene& scene, Arrays& arrays);
+    void add_instances(const PreparedScene& scene, Arrays& arrays);
+    void add_tree_levels(const Surface& surface, const LevelField& levels);
+    void add_trees(const PreparedScene& scene, Arrays& arrays);
+    void add_walk(const SceneWalk& walk, Arrays& arrays);
+    void upload(const Device& device, Arrays& arrays);
+
+    Tables tables_;
+    std::map<const Texture*, uint32_t> texture_indices_;
+    TraversalKernel traversal_kernel_{"scene_traversal", {}, {}};
+    uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
+    size_t node_count_ = 0;
+    struct Binding {
+        uint32_t number;
+        Buffer buffer;
+    };
+    std::vector<Binding> buffers_;
+    Buffer nodes_;
+};
+
+} // namespace relief::vulkan

@@ -1,0 +1,75 @@
+// Paths on a device: what they carry between the kernels of one depth. Path p has ray p; its shadow ray is
+// ray capacity + p. Scalar block layout, members of 4 bytes.
+#ifndef RELIEF_DEVICE_PATHS_H
+#define RELIEF_DEVICE_PATHS_H
+#include "formulas/camera.h"
+#include "formulas/environment_data.h"
+
+#include "formulas/begin.h"
+
+/// One sample of one pixel.
+struct PathData {
+    Vec3 throughput;
+    float bsdf_pdf; ///< with which its ray was drawn
+    Vec3 previous;  ///< the vertex that the ray left
+    uint pixel_seed;
+    Vec3 radiance;
+    float cost;        ///< rays so far
+    Vec3 contribution; ///< of its shadow ray, if nothing is in the way
+};
+
+/// A hit made ready for shading, world space; normals on the viewer's side.
+struct SurfacePointData {
+    Vec3 position;
+    float position_error;
+    Vec3 geometric_normal;
+    float area_per_uv;
+    Vec3 bent_normal; ///< shading normal, bent (bend_normal)
+    float roughness;
+    Vec3 base_color;
+    uint is_flipped; ///< the viewer is on the side opposite to the winding
+};
+
+/// Sums over the samples of one pixel in one launch. All but radiance, squares and cost are of first hits.
+struct FilmSumsData {
+    Vec3 radiance;
+    Vec3 squares; ///< of radiance
+    float cost;
+    float hit_count;
+    Vec3 shading_normal, geometric_normal, position, albedo;
+    Vec2 uv;
+    float depth; ///< least
+    uint id;     ///< of the least depth: 1 + instance; the lowest among equals; 0: nothing was hit
+};
+
+/// Emissive patch `index`: of 2^24 equal parts of [0, 1), the count of those that draw it or one before it.
+/// The random number has 24 bits, so that integers decide as the sums themselves, in double precision, would.
+struct EmitterData {
+    uint end;
+    uint probability; ///< bits of a float
+};
+
+const float kEmitterParts = 16777216.0f;
+
+/// Pixels [first_pixel, first_pixel + count) of a window in the order of place_pixel; path k is the k-th.
+struct CameraPush {
+    CameraFrame camera;
+    uint x0, y0, width, height;
+    uint first_pixel, count;
+    uint sample_index, seed;
+};
+
+/// What the other kernels of a depth are told.
+struct PathPush {
+    uint count; ///< paths of the list, or shadow rays, or pixels
+    uint capacity;
+    uint depth, last_depth;
+    uint sample_index;
+    uint source_count;
+    uint emitter_count, emitter_range_count;
+    uint has_environment;
+    EnvironmentData environment;
+};
+
+#include "formulas/end.h"
+#endif

@@ -1,0 +1,213 @@
+#include "vulkan/path_tracer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "base/check.h"
+#include "base/timer.h"
+#include "formulas/pixel_order.h"
+#include "prepare/camera_frame.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_paths.h"
+#include "vulkan/layout/device_rays.h"
+#include "vulkan/work_sums.h"
+
+namespace relief::vulkan {
+
+namespace {
+
+constexpr uint32_t kGroupSize = 64;
+
+static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
+static_assert(sizeof(scalar::PathData) == 60 && sizeof(scalar::SurfacePointData) == 64);
+static_assert(sizeof(scalar::FilmSumsData) == 96);
+static_assert(offsetof(scalar::CounterData, shadow_count) ==
+              offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
+
+Kernel make_kernel(const Device& device, const char* shader) {
+    return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
+}
+
+template <class T>
+Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint64_t least_bytes = 0) {
+    return Buffer(device, {.name = name,
+                           .bytes = std::max<uint64_t>(count * sizeof(T), least_bytes),
+                           .purpose = Purpose::ray_buffers});
+}
+
+FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
+    FilmSums sums;
+    sums.count = uint32_t(sample_count);
+    sums.hit_count = uint32_t(data.hit_count);
+    sums.radiance = data.radiance, sums.squares = data.squares;
+    sums.cost = data.cost;
+    sums.shading_normal = data.shading_normal, sums.geometric_normal = data.geometric_normal;
+    sums.position = data.position, sums.albedo = data.albedo;
+    sums.uv = data.uv;
+    sums.depth = data.depth, sums.id = data.id;
+    return sums;
+}
+
+} // namespace
+
+PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
+    : tracer_(tracer),
+      settings_(settings),
+      camera_(make_camera_frame(tracer.scene())),
+      capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
+      lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
+    DCHECK(capacity_ > 0);
+    const Device& device = tracer.device();
+    camera_kernel_ = make_kernel(device, "camera");
+    background_ = make_kernel(device, "background");
+    surface_point_ = make_kernel(device, "surface_point");
+    shading_normal_ = make_kernel(device, "shading_normal");
+    light_sample_ = make_kernel(device, "light_sample");
+    bounce_ = make_kernel(device, "bounce");
+    shadow_light_ = make_kernel(device, "shadow_light");
+    film_ = make_kernel(device, "film");
+    make_buffers();
+    if (settings.method == RenderMethod::hybrid)
+        rasteriser_ =
+            std::make_unique<Rasteriser>(tracer, RasterBuffers{.vertices = &points_, .items = &shadow_list_});
+}
+
+void PathTracer::make_buffers() {
+    const Device& device = tracer_.device();
+    // First hits by drawing borrow what only shading needs.
+    const bool is_lent = settings_.method == RenderMethod::hybrid;
+    paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
+    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
+                                                    is_lent ? RasterBuffers::kLeastVertexBytes : 0);
+    film_sums_ = make_buffer<scalar::FilmSumsData>(device, "film_sums", capacity_);
+    path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
+    next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_,
+                                            is_lent ? capacity_ * RasterBuffers::kNearestBytes : 0);
+    shadow_list_ =
+        make_buffer<uint32_t>(device, "shadow_list", capacity_, is_lent ? RasterBuffers::kLeastItemBytes : 0);
+    BindingTable& bindings = tracer_.bindings();
+    lights_.bind(bindings);
+    bindings.bind(scalar::kBindPaths, paths_);
+    bindings.bind(scalar::kBindPoints, points_);
+    bindings.bind(scalar::kBindFilm, film_sums_);
+    bindings.bind(scalar::kBindPathList, path_list_);
+    bindings.bind(scalar::kBindNextPathList, next_path_list_);
+    bindings.bind(scalar::kBindShadowList, shadow_list_);
+}
+
+void PathTracer::trace_samples(Film& film, PixelRange pixels, SampleRange samples) {
+    for (uint64_t done = 0; done < pixels.count; done += capacity_) {
+        const PixelRange batch{pixels.first + done, std::min<uint64_t>(capacity_, pixels.count - done)};
+        for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
+            trace_batch(film, batch, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)});
+    }
+}
+
+void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples) {
+    Commands& commands = tracer_.commands();
+    batch_casts_.clear();
+    commands.begin_stage(Stage::film);
+    commands.fill(film_sums_, 0, pixels.count * sizeof(scalar::FilmSumsData), 0);
+    for (int k = 0; k < samples.count; ++k) trace_sample(film, pixels, uint32_t(samples.first + k));
+    commands.run();
+    const Timer timer;
+    add_to_film(film, pixels, samples.count);
+    film_s_ += timer.seconds();
+    // Not before: a batch that an error ends is traced again, and its rays count once.
+    for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
+}
+
+scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
+    scalar::PathPush push{};
+    lights_.describe(push);
+    push.capacity = capacity_;
+    push.last_depth = uint32_t(settings_.bounces);
+    push.sample_index = sample_index;
+    return push;
+}
+
+void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index) {
+    Commands& commands = tracer_.commands();
+    const Window& window = film.window();
+    const scalar::CameraPush camera{camera_,
+                                    uint32_t(window.x0),
+                                    uint32_t(window.y0),
+                                    uint32_t(window.x1 - window.x0),
+                                    uint32_t(window.y1 - window.y0),
+                                    uint32_t(pixels.first),
+                                    uint32_t(pixels.count),
+                                    sample_index,
+                                    settings_.seed};
+    commands.begin_stage(Stage::shade);
+    commands.dispatch(camera_kernel_, pixels.count, camera);
+    scalar::PathPush push = make_push(sample_index);
+    push.count = uint32_t(pixels.count);
+    for (; push.count > 0; ++push.depth) {
+        CastStatistics cast = rasteriser_ && push.depth == 0 ? rasteriser_->first_hits(camera)
+                                                             : tracer_.closest_hits(path_list_, push.count);
+        cast.depth = int(push.depth);
+        add_cast(batch_casts_, cast);
+        const NextRays next = shade_depth(push);
+        trace_shadow_rays(push, next.shadow_count);
+        push.count = next.path_count;
+        if (push.count > 0)
+            commands.copy(next_path_list_, 0, path_list_, 0, uint64_t(push.count) * sizeof(uint32_t));
+    }
+    commands.begin_stage(Stage::film);
+    push.count = uint32_t(pixels.count);
+    commands.dispatch(film_, pixels.count, push);
+}
+
+/// Light that rays met, the surfaces that they hit, what is drawn there.
+PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    commands.fill(tracer_.counter_buffer(), offsetof(scalar::CounterData, path_count), 2 * sizeof(uint32_t),
+                  0);
+    commands.dispatch(background_, push.count, push);
+    commands.dispatch(surface_point_, push.count, push);
+    commands.dispatch(shading_normal_, push.count, push);
+    commands.dispatch(light_sample_, push.count, push);
+    if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
+    const scalar::CounterData& counters = tracer_.read_counters();
+    return {counters.path_count, counters.shadow_count};
+}
+
+void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
+    if (shadow_count == 0) return;
+    CastStatistics cast = tracer_.any_hits(shadow_list_, shadow_count);
+    cast.depth = int(push.depth);
+    add_cast(batch_casts_, cast);
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    push.count = shadow_count;
+    commands.dispatch(shadow_light_, shadow_count, push);
+}
+
+void PathTracer::add_to_film(Film& film, PixelRange pixels, int sample_count) const {
+    const std::vector<scalar::FilmSumsData> sums =
+        film_sums_.download<scalar::FilmSumsData>(size_t(pixels.count));
+    const Window& window = film.window();
+    const uint32_t width = uint32_t(window.x1 - window.x0), height = uint32_t(window.y1 - window.y0);
+    for (size_t k = 0; k < sums.size(); ++k) {
+        const scalar::PixelPlace pixel = scalar::place_pixel(uint32_t(pixels.first + k), width, height);
+        film.add_sums(window.x0 + int(pixel.x), window.y0 + int(pixel.y), make_sums(sums[k], sample_count));
+    }
+}
+
+void PathTracer::add_statistics(Statistics& statistics) const {
+    Statistics work;
+    work.film_s = film_s_;
+    work.casts = casts_;
+    for (const CastStatistics& cast : casts_) {
+        if (cast.is_shadow)
+            work.shadow_rays += cast.rays;
+        else
+            (cast.depth == 0 ? work.camera_rays : work.bounce_rays) += cast.rays;
+    }
+    add_work(statistics, work);
+}
+
+} // namespace relief::vulkan

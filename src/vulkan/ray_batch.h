@@ -1,0 +1,31 @@
+// Rays of other programs on the device: spans in, hits out, in batches.
+#pragma once
+
+#include <span>
+
+#include "relief/intersect.h"
+#include "vulkan/tracer.h"
+
+namespace relief::vulkan {
+
+/// One thread at a time. Binds its lists whenever it is called, so that it can share a tracer.
+class RayBatch {
+  public:
+    /// The tracer must outlive it. Throws Error{out_of_memory}.
+    explicit RayBatch(Tracer& tracer);
+
+    /// Spans of equal length, any length.
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits);
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits);
+
+  private:
+    /// Rays of one batch, at most capacity_ of them.
+    void upload(std::span<const Ray> rays);
+
+    Tracer& tracer_;
+    uint32_t capacity_;
+    Kernel geometric_normal_;
+    Buffer list_, points_;
+};
+
+} // namespace relief::vulkan

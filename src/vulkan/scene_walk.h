@@ -1,0 +1,38 @@
+// A traversal of the scene that takes the place of the engine's own on a device. The laboratory (src/lab) has
+// those of papers 2 and 3.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace relief::vulkan {
+
+/// A node of a scene tree: two texels.
+struct NodeTexels {
+    Vec3f lower;
+    uint32_t first;
+    Vec3f upper;
+    uint32_t kind_and_count;
+};
+static_assert(sizeof(NodeTexels) == 32);
+
+/// A shader with its SPIR-V; empty: the one of that name in vulkan/shaders.
+struct TraversalKernel {
+    std::string shader;
+    std::span<const uint32_t> compute, fragment;
+};
+
+/// Trees and the kernel that walks them.
+struct SceneWalk {
+    std::vector<NodeTexels> nodes;    ///< for kBindNodes
+    std::vector<uint32_t> words;      ///< for kBindPrimitiveIds
+    std::vector<uint8_t> has_patches; ///< one a surface
+    bool has_instances = false;
+    TraversalKernel kernel;
+};
+
+} // namespace relief::vulkan

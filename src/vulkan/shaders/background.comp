@@ -1,0 +1,42 @@
+// Light of the environment, suns and point lights that rays meet by themselves.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/environment_light.glsl"
+#include "vulkan/shaders/lights.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+/// Each light weighted against its chance of being drawn from the vertex that the ray left.
+vec3 gather_light(PathData path, vec3 direction, float distance) {
+    vec3 sum = vec3(0.0);
+    float total = total_irradiance(push.source_count, path.previous);
+    for (uint k = 0u; k < push.source_count; ++k) {
+        LightSourceData source = sources[k];
+        LightSeen seen = meet_light(source, path.previous, direction, distance);
+        if (source.kind == kSourceEnvironment && distance == make_infinity()) {
+            seen.radiance = environment_radiance(push.environment, direction);
+            seen.pdf = environment_pdf(push.environment, direction);
+        }
+        if (seen.radiance == vec3(0.0)) continue;
+        float share = total > 0.0 ? estimate_irradiance(source, path.previous) / total : 0.0;
+        sum += seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
+    }
+    return sum;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = path_list[index];
+    HitData hit = hits[path_index];
+    vec3 direction = rays[path_index].direction;
+    if (push.depth > 0u) {
+        PathData path = paths[path_index];
+        float distance = is_hit(hit) ? hit.t : make_infinity();
+        paths[path_index].radiance = path.radiance + path.throughput * gather_light(path, direction, distance);
+    } else if (!is_hit(hit) && push.has_environment != 0u) {
+        paths[path_index].radiance += environment_radiance(push.environment, direction);
+    }
+}

@@ -1,0 +1,61 @@
+// One job: is its tree in the pool, deep enough and not about to be overwritten? If not, it gets a place. The pool
+// is a ring that is filled on and on; a tree lives until the ring comes round. What finds no room in this wave
+// keeps its need and waits for the next one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/rays.glsl"
+#include "formulas/bottom_tree.h"
+
+layout(scalar, push_constant) uniform Push { CastPush push; };
+
+const uint kLevelBits = 63u;
+
+bool is_alive(TreeRecord record) {
+    if (push.is_cached == 0u || record.coverage == 0u) return false;
+    return push.pool_start + push.pool_budget - record.address <= push.pool_capacity;
+}
+
+bool does_cover(uint coverage, uint need) {
+    if (findMSB(coverage & kLevelBits) < findMSB(need & kLevelBits)) return false;
+    return (need & ~coverage & ~kLevelBits) == 0u;
+}
+
+/// Place of `units` units in one piece; kNone: this wave has no room left.
+uint allocate(uint units) {
+    for (uint attempt = 0u; attempt < 4u; ++attempt) {
+        uint address = atomicAdd(counters.pool_head, units);
+        if (address + units - push.pool_start > push.pool_budget) return kNone;
+        if (address % push.pool_capacity + units <= push.pool_capacity) return address;
+    }
+    return kNone;
+}
+
+void main() {
+    uint place = invocation_index();
+    if (place >= counters.job_count) return;
+    uint tree = jobs[place];
+    TreeRecord record = trees[tree];
+    if (record.need == 0u) return;
+    bool is_kept = is_alive(record);
+    if (is_kept && does_cover(record.coverage, record.need)) {
+        atomicAdd(counters.reused, 1u);
+    } else {
+        uint coverage = record.need | (is_kept ? record.coverage : 0u);
+        uint level = uint(findMSB(coverage & kLevelBits));
+        uint address = allocate(count_tree_units(level));
+        if (address == kNone) {
+            atomicAdd(counters.deferred_count, 1u);
+            return;
+        }
+        trees[tree].coverage = coverage;
+        trees[tree].address = address;
+        trees[tree].build_wave = push.wave;
+        uint bin = level <= 1u ? 0u : level <= 3u ? 1u : 2u;
+        builds[bin * push.builds_stride + atomicAdd(counters.build_count[bin], 1u)] = tree;
+        atomicAdd(counters.built[level], 1u);
+    }
+    trees[tree].need = 0u;
+    trees[tree].ready_wave = push.wave;
+    atomicAdd(counters.jobs_done, 1u);
+}

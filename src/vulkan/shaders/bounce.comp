@@ -1,0 +1,43 @@
+// The next ray of each path, or its end.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/surface_point.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+/// Sets the next ray; false where the path ends.
+bool continue_path(uint path_index, HitData hit) {
+    PathData path = paths[path_index];
+    SurfacePointData point = points[path_index];
+    RayData ray = rays[path_index];
+    vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
+    vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
+    vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
+    Scattering scattering = make_scattering(point, materials[instances[hit.instance].material], -ray.direction);
+    BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, pick.y, u);
+    vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
+    if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return false;
+    vec3 throughput = path.throughput * drawn.weight;
+    float probability = survival_probability(push.depth, throughput);
+    if (!is_finite(throughput) || last.x >= probability) return false;
+    paths[path_index].throughput = throughput * (1.0 / probability);
+    paths[path_index].previous = point.position;
+    paths[path_index].bsdf_pdf = drawn.pdf;
+    paths[path_index].cost = path.cost + 1.0;
+    vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
+    RayData next = {origin, 0.0, direction, make_infinity(), ray.bias};
+    rays[path_index] = next;
+    return true;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = path_list[index];
+    HitData hit = hits[path_index];
+    uint count = is_hit(hit) && continue_path(path_index, hit) ? 1u : 0u;
+    uint place = atomicAdd(counters.path_count, count);
+    if (count > 0u) next_path_list[place] = path_index;
+}

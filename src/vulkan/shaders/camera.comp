@@ -1,0 +1,28 @@
+// Starts one path a pixel: its camera ray, through a random point of the pixel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+
+layout(scalar, push_constant) uniform Push { CameraPush push; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    PixelPlace pixel = place_pixel(push.first_pixel + index, push.width, push.height);
+    uint x = push.x0 + pixel.x;
+    uint y = push.y0 + pixel.y;
+    PathData path;
+    path.throughput = vec3(1.0);
+    path.bsdf_pdf = 0.0;
+    path.previous = vec3(0.0);
+    path.pixel_seed = make_pixel_seed(push.seed, x, y);
+    path.radiance = vec3(0.0);
+    path.cost = 1.0;
+    path.contribution = vec3(0.0);
+    CameraRay start = start_camera_ray(push.camera, vec2(x, y), path.pixel_seed, push.sample_index);
+    RayData ray = {start.origin, 0.0, start.direction, make_infinity(), 0u};
+    paths[index] = path;
+    rays[index] = ray;
+    path_list[index] = index;
+}

@@ -1,0 +1,80 @@
+// The environment as a light: radiance by direction, and directions drawn by brightness. The table holds the
+// cumulative probabilities of the rows, then those of the cells of each row.
+#ifndef RELIEF_ENVIRONMENT_LIGHT_GLSL
+#define RELIEF_ENVIRONMENT_LIGHT_GLSL
+
+#include "vulkan/shaders/textures.glsl"
+#include "formulas/warp.h"
+#include "formulas/light.h"
+#include "formulas/environment.h"
+
+layout(set = 0, binding = kBindEnvironment) uniform samplerBuffer environment_table;
+
+/// A direction drawn, with its place in the image; density per solid angle.
+struct EnvironmentDraw {
+    vec3 direction;
+    float pdf;
+    vec2 position;
+};
+
+float load_cumulative(uint first, uint index) { return texelFetch(environment_table, int(first + index)).x; }
+
+/// First entry of the cells of a row.
+uint find_row(EnvironmentData e, uint row) { return e.cells_y + 1u + row * (e.cells_x + 1u); }
+
+/// Interval of a cumulative distribution of `count` intervals that u falls into; never one of zero width.
+uint find_interval(uint first, uint count, float u) {
+    uint low = 0u;
+    uint high = count - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (load_cumulative(first, middle + 1u) > u)
+            high = middle;
+        else
+            low = middle + 1u;
+    }
+    return low;
+}
+
+float cell_density(EnvironmentData e, uint column, uint row, vec3 direction) {
+    uint cells = find_row(e, row);
+    float in_row = load_cumulative(cells, column + 1u) - load_cumulative(cells, column);
+    float probability = in_row * (load_cumulative(0u, row + 1u) - load_cumulative(0u, row));
+    return environment_cell_density(e, probability, direction);
+}
+
+EnvironmentDraw draw_environment_direction(EnvironmentData e, vec2 u) {
+    if (e.texture_index == kNone) {
+        EnvironmentDraw uniform_draw = {square_to_sphere(u), sphere_pdf(), vec2(0.0)};
+        return uniform_draw;
+    }
+    uint row = find_interval(0u, e.cells_y, u.y);
+    uint cells = find_row(e, row);
+    uint column = find_interval(cells, e.cells_x, u.x);
+    float x = locate_in_interval(u.x, load_cumulative(cells, column), load_cumulative(cells, column + 1u));
+    float y = locate_in_interval(u.y, load_cumulative(0u, row), load_cumulative(0u, row + 1u));
+    EnvironmentDraw drawn;
+    drawn.position = vec2((float(column) + x) / float(e.cells_x), (float(row) + y) / float(e.cells_y));
+    drawn.direction = turn_out_of_environment(e, latlong_to_direction(drawn.position));
+    drawn.pdf = cell_density(e, column, row, drawn.direction);
+    return drawn;
+}
+
+/// Radiance at a place of the image.
+vec3 environment_radiance_at(EnvironmentData e, vec2 position) {
+    return e.texture_index == kNone ? e.scale : fetch_latlong(e.texture_index, position) * e.scale;
+}
+
+vec3 environment_radiance(EnvironmentData e, vec3 direction) {
+    return environment_radiance_at(e, locate_in_environment(e, direction));
+}
+
+/// Density with which a direction is drawn.
+float environment_pdf(EnvironmentData e, vec3 direction) {
+    if (e.texture_index == kNone) return sphere_pdf();
+    vec2 position = locate_in_environment(e, direction);
+    return cell_density(e, uint(locate_environment_cell(position.x, float(e.cells_x))),
+                        uint(locate_environment_cell(position.y, float(e.cells_y))), direction);
+}
+
+#endif

@@ -1,0 +1,13 @@
+// The screen in squares, for fragments that stand for the invocations of a kernel (GRAPP 2019, section 3.3, fragment
+// shaders): a point as large as a square takes the place of a work group. Not two triangles: along their common edge
+// fragments that only complete blocks would run as well, and lavapipe's loops wait for those.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "formulas/lang.h"
+#include "vulkan/layout/bindings.h"
+
+void main() {
+    uvec2 square = uvec2(uint(gl_VertexIndex) % kScreenColumns, uint(gl_VertexIndex) / kScreenColumns);
+    gl_Position = vec4((vec2(square) + 0.5) / vec2(kScreenColumns, kScreenRows) * 2.0 - 1.0, 0.0, 1.0);
+    gl_PointSize = float(kFragmentSquare);
+}

@@ -1,0 +1,20 @@
+// Geometric normals of hits, on the side of the winding, for programs that bring their own rays.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/surface_point.glsl"
+
+layout(push_constant) uniform Push { uint ray_count; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= ray_count) return;
+    HitData hit = hits[index];
+    if (!is_hit(hit)) return;
+    InstanceData instance = instances[hit.instance];
+    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
+    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    points[index].geometric_normal = found.triangle.normal;
+}

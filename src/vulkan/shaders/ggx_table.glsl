@@ -1,0 +1,14 @@
+// The table of formulas/ggx_table.h in memory: compilers for devices copy a constant array to each place that indexes
+// it, which costs some of them minutes. Kernels find the table bound (vulkan/device/binding_table.cpp).
+#ifndef RELIEF_GGX_TABLE_GLSL
+#define RELIEF_GGX_TABLE_GLSL
+
+#include "formulas/ggx_table.h"
+#include "vulkan/layout/bindings.h"
+
+layout(binding = kBindAlbedos) uniform samplerBuffer ggx_albedo_table;
+
+/// Scale and bias of an entry.
+Vec2 read_ggx_table(uint i) { return texelFetch(ggx_albedo_table, int(i)).xy; }
+
+#endif

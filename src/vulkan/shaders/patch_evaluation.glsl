@@ -1,0 +1,292 @@
+// Vertices of a displaced patch: the operations of evaluate_vertex (surface/patch/patch_samples.cpp) on formulas/displace.h.
+#ifndef RELIEF_PATCH_EVALUATION_GLSL
+#define RELIEF_PATCH_EVALUATION_GLSL
+
+#include "vulkan/shaders/scene.glsl"
+
+/// What is interpolated over a patch; the frame is zero unless the map is tangent.
+struct VertexData {
+    vec3 position;
+    vec2 uv;
+    vec3 t, b, n;
+    uint tile;
+};
+
+/// Not for surfaces without frames.
+TangentFrame load_frame(SurfaceData s, uint vertex) {
+    if (s.first_derivative != kNone)
+        return TangentFrame(load_position_at(s.first_derivative + 2u * vertex),
+                            load_position_at(s.first_derivative + 2u * vertex + 1u), load_normal(s, vertex));
+    uvec2 packed_frame = texelFetch(frames, int(s.first_frame + vertex)).xy;
+    return unpack_tangent_frame(packed_frame.x, packed_frame.y);
+}
+
+VertexData load_vertex(SurfaceData s, uint vertex) {
+    VertexData data;
+    data.position = load_position(s, vertex);
+    data.uv = s.first_uv == kNone ? vec2(0.0) : load_uv(s, vertex);
+    data.t = data.b = data.n = vec3(0.0);
+    if (s.map != kNone && s.first_frame != kNone && maps[s.map].is_tangent != 0u) {
+        TangentFrame frame = load_frame(s, vertex);
+        data.t = frame.t;
+        data.b = frame.b;
+        data.n = frame.n;
+    }
+    data.tile = load_vertex_tile(s, vertex);
+    return data;
+}
+
+/// Texel for a bilinear fetch; the black outside counts as no displacement.
+vec3 load_wrapped_texel(TextureData texture_data, MapData map, int column, int row) {
+    return column < 0 || row < 0 ? map.midlevel : load_texel(texture_data, uint(column), uint(row)).xyz;
+}
+
+vec3 decode_displacement(MapData map, vec3 value) {
+    precise vec3 raw = value - map.midlevel;
+    return vec3(decode_row(raw.x, raw.y, raw.z, map.row0.x, map.row0.y, map.row0.z),
+                decode_row(raw.x, raw.y, raw.z, map.row1.x, map.row1.y, map.row1.z),
+                decode_row(raw.x, raw.y, raw.z, map.row2.x, map.row2.y, map.row2.z));
+}
+
+/// Displacement at a local uv of copy `mip` of a tile, bilinear; zero where the tile has no map.
+vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
+    if (tile >= map.tile_count) return vec3(0.0);
+    TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
+    int width = int(texture_data.width);
+    int height = int(texture_data.height);
+    precise float x = uv.x * float(width) - 0.5;
+    precise float y = (map.flip_v != 0u ? uv.y : 1.0 - uv.y) * float(height) - 0.5;
+    // Beyond 2^30 texels a float is far from naming one.
+    float x0 = clamp(floor_texel(x), -1073741824.0, 1073741760.0);
+    float y0 = clamp(floor_texel(y), -1073741824.0, 1073741760.0);
+    precise float fx = x - x0;
+    precise float fy = y - y0;
+    int left = wrap_texel(int(x0), width, map.wrap);
+    int right = wrap_texel(int(x0) + 1, width, map.wrap);
+    int top = wrap_texel(int(y0), height, map.wrap);
+    int bottom = wrap_texel(int(y0) + 1, height, map.wrap);
+    vec3 t00 = load_wrapped_texel(texture_data, map, left, top);
+    vec3 t10 = load_wrapped_texel(texture_data, map, right, top);
+    vec3 t01 = load_wrapped_texel(texture_data, map, left, bottom);
+    vec3 t11 = load_wrapped_texel(texture_data, map, right, bottom);
+    vec3 value = vec3(filter_texels(t00.x, t10.x, t01.x, t11.x, fx, fy),
+                      filter_texels(t00.y, t10.y, t01.y, t11.y, fx, fy),
+                      filter_texels(t00.z, t10.z, t01.z, t11.z, fx, fy));
+    return decode_displacement(map, value);
+}
+
+/// The displaced point of interpolated values, by copy `mip` of the map.
+vec3 displace(SurfaceData s, VertexData base, uint mip) {
+    if (s.map == kNone) return base.position;
+    MapData map = maps[s.map];
+    vec3 d = fetch_displacement(map, base.tile, mip, base.uv);
+    if (map.is_tangent == 0u) return add_exact(base.position, d);
+    vec3 offset = vec3(carry_through_frame(d.x, d.y, d.z, base.t.x, base.b.x, base.n.x),
+                       carry_through_frame(d.x, d.y, d.z, base.t.y, base.b.y, base.n.y),
+                       carry_through_frame(d.x, d.y, d.z, base.t.z, base.b.z, base.n.z));
+    return add_exact(base.position, offset);
+}
+
+vec3 blend_vectors(vec3 a, vec3 b, float s) { return vec3(blend(a.x, b.x, s), blend(a.y, b.y, s), blend(a.z, b.z, s)); }
+vec3 blend_quad_vectors(vec3 a, vec3 b, vec3 c, vec3 d, float u, float v) {
+    return vec3(blend_quad(a.x, b.x, c.x, d.x, u, v), blend_quad(a.y, b.y, c.y, d.y, u, v),
+                blend_quad(a.z, b.z, c.z, d.z, u, v));
+}
+
+VertexData blend_line(VertexData a, VertexData b, float s) {
+    VertexData result;
+    result.position = blend_vectors(a.position, b.position, s);
+    result.uv = vec2(blend(a.uv.x, b.uv.x, s), blend(a.uv.y, b.uv.y, s));
+    result.t = blend_vectors(a.t, b.t, s);
+    result.b = blend_vectors(a.b, b.b, s);
+    result.n = blend_vectors(a.n, b.n, s);
+    result.tile = a.tile;
+    return result;
+}
+
+/// The four corners of a patch, its own vertices.
+struct PatchCorners {
+    uvec4 quad;
+    uint mips; ///< packed
+    VertexData corner[4];
+};
+
+PatchCorners load_corners(SurfaceData s, uint patch_index) {
+    PatchCorners corners;
+    corners.quad = load_quad(s, patch_index);
+    corners.mips = load_mips(s, patch_index);
+    for (uint k = 0u; k < 4u; ++k) corners.corner[k] = load_vertex(s, corners.quad[k]);
+    return corners;
+}
+
+VertexData blend_corners(VertexData c0, VertexData c1, VertexData c2, VertexData c3, float u, float v) {
+    VertexData result;
+    result.position = blend_quad_vectors(c0.position, c1.position, c2.position, c3.position, u, v);
+    result.uv = vec2(blend_quad(c0.uv.x, c1.uv.x, c2.uv.x, c3.uv.x, u, v),
+                     blend_quad(c0.uv.y, c1.uv.y, c2.uv.y, c3.uv.y, u, v));
+    result.t = blend_quad_vectors(c0.t, c1.t, c2.t, c3.t, u, v);
+    result.b = blend_quad_vectors(c0.b, c1.b, c2.b, c3.b, u, v);
+    result.n = blend_quad_vectors(c0.n, c1.n, c2.n, c3.n, u, v);
+    result.tile = c0.tile;
+    return result;
+}
+
+bool is_bicubic(SurfaceData s) { return s.first_control != kNone; }
+
+/// Control point of a bicubic patch (formulas/control_points.h).
+vec3 load_control(SurfaceData s, uvec4 quad, uint patch_index, uint number) {
+    if (number < 4u) return load_position(s, quad[number]);
+    return load_position_at(s.first_control + kInnerControlCount * patch_index + number - 4u);
+}
+
+vec3 blend_cubic_vectors(vec3 a, vec3 b, vec3 c, vec3 d, CubicWeights weights) {
+    return vec3(blend_cubic(a.x, b.x, c.x, d.x, weights), blend_cubic(a.y, b.y, c.y, d.y, weights),
+                blend_cubic(a.z, b.z, c.z, d.z, weights));
+}
+
+/// Point (u, v) of a bicubic base.
+vec3 evaluate_base(SurfaceData s, uvec4 quad, uint patch_index, float u, float v) {
+    CubicWeights across = weigh_cubic(v);
+    vec3 point[4];
+    for (uint column = 0u; column < 4u; ++column) {
+        vec3 control[4];
+        for (uint row = 0u; row < 4u; ++row)
+            control[row] = load_control(s, quad, patch_index, find_control_point(column, row));
+        point[column] = blend_cubic_vectors(control[0], control[1], control[2], control[3], across);
+    }
+    return blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_cubic(u));
+}
+
+/// Derivative of a bicubic base along u, or along v where `direction` is 1.
+vec3 differentiate_base(SurfaceData s, uvec4 quad, uint patch_index, vec2 at, uint direction) {
+    CubicWeights weights = weigh_cubic(direction == 0u ? at.y : at.x);
+    vec3 difference[3];
+    for (uint k = 0u; k < 3u; ++k) {
+        vec3 control[4];
+        for (uint c = 0u; c < 4u; ++c) {
+            uint low = direction == 0u ? find_control_point(k, c) : find_control_point(c, k);
+            uint high = direction == 0u ? find_control_point(k + 1u, c) : find_control_point(c, k + 1u);
+            control[c] = load_control(s, quad, patch_index, high) - load_control(s, quad, patch_index, low);
+        }
+        difference[k] = blend_cubic_vectors(control[0], control[1], control[2], control[3], weights);
+    }
+    float along = direction == 0u ? at.x : at.y;
+    return vec3(blend_slope(difference[0].x, difference[1].x, difference[2].x, along),
+                blend_slope(difference[0].y, difference[1].y, difference[2].y, along),
+                blend_slope(difference[0].z, difference[1].z, difference[2].z, along));
+}
+
+struct EdgeLine {
+    uint first, second;
+    bool is_reversed;
+};
+
+/// Ends of the line at a seam: those of the side that is lower numbered.
+uvec2 find_override(SurfaceData s, uint patch_edge) {
+    uint low = s.first_override;
+    uint high = s.first_override + s.override_count - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (texelFetch(overrides, int(middle)).x < patch_edge)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return texelFetch(overrides, int(low)).yz;
+}
+
+EdgeLine find_edge_line(SurfaceData s, uvec4 quad, uint patch_index, uint edge) {
+    uint first = quad[edge];
+    uint second = quad[(edge + 1u) & 3u];
+    if (is_seam(s, patch_index, edge)) {
+        uvec2 ends = find_override(s, 4u * patch_index + edge);
+        first = ends.x;
+        second = ends.y;
+    }
+    uint first_dominant = load_dominant(s, first);
+    uint second_dominant = load_dominant(s, second);
+    bool is_reversed =
+        second_dominant < first_dominant || (second_dominant == first_dominant && second < first);
+    if (is_reversed) return EdgeLine(second, first, true);
+    return EdgeLine(first, second, false);
+}
+
+/// A bit for each edge whose line runs against the patch's direction.
+uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
+    uint reversed = 0u;
+    for (uint edge = 0u; edge < 4u; ++edge)
+        if (find_edge_line(s, quad, patch_index, edge).is_reversed) reversed |= 1u << edge;
+    return reversed;
+}
+
+/// What a sample of the boundary is interpolated from: the ends of a line and the place between them. A corner is
+/// its dominant vertex alone.
+struct LinePlace {
+    uint first, second;
+    float s;
+    uint control;     ///< inner control point beside `first` where the base is bicubic; kNone at a corner
+    uint end_control; ///< beside `second`
+    uint mip_place;   ///< of the patch's mips
+};
+
+LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
+    uint vertex = load_dominant(s, quad[k]);
+    return LinePlace(vertex, vertex, 0.0, kNone, kNone, kMipCorners + k);
+}
+
+/// A sample of edge i_j_edge.z that is not a corner before it moves.
+LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uvec3 i_j_edge) {
+    uint level = packed_patch_level(packed_levels);
+    uint n = 1u << level;
+    uint edge = i_j_edge.z;
+    EdgeLine line = find_edge_line(s, quad, patch_index, edge);
+    uint k = move_line_sample(find_line_sample(i_j_edge.x, i_j_edge.y, level, edge, line.is_reversed),
+                              level - packed_edge_level(packed_levels, edge));
+    if (k == 0u || k == n) return find_corner(s, quad, (k == 0u) == line.is_reversed ? (edge + 1u) & 3u : edge);
+    uint control = 4u + 2u * edge;
+    return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)), control + (line.is_reversed ? 1u : 0u),
+                     control + (line.is_reversed ? 0u : 1u), kMipEdges + edge);
+}
+
+/// A sample of the boundary before it is displaced.
+VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace place) {
+    VertexData first = load_vertex(s, place.first);
+    VertexData second = load_vertex(s, place.second);
+    VertexData base = blend_line(first, second, place.s);
+    if (is_bicubic(s) && place.control != kNone)
+        base.position = blend_cubic_vectors(first.position, load_control(s, quad, patch_index, place.control),
+                                            load_control(s, quad, patch_index, place.end_control), second.position,
+                                            weigh_cubic(place.s));
+    return base;
+}
+
+/// Sample (i, j) of a patch whose corners are at hand.
+vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packed_levels, uint i, uint j) {
+    uint level = packed_patch_level(packed_levels);
+    uint n = 1u << level;
+    bool is_on_u_edge = j == 0u || j == n;
+    bool is_on_v_edge = i == 0u || i == n;
+    VertexData base;
+    uint mip_place = kMipInside;
+    if (is_on_u_edge || is_on_v_edge) {
+        LinePlace place;
+        if (is_on_u_edge && is_on_v_edge)
+            place = find_corner(s, c.quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
+        else
+            place = find_edge_place(s, c.quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
+        base = evaluate_place(s, c.quad, patch_index, place);
+        mip_place = place.mip_place;
+    } else {
+        float cell = 1.0 / float(n);
+        base = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], float(i) * cell, float(j) * cell);
+        if (is_bicubic(s)) base.position = evaluate_base(s, c.quad, patch_index, float(i) * cell, float(j) * cell);
+    }
+    return displace(s, base, packed_mip(c.mips, mip_place));
+}
+
+/// Sample (i, j) of a patch at its levels, object space: the definition of the surface.
+vec3 evaluate_vertex(SurfaceData s, uint patch_index, uint packed_levels, uint i, uint j) {
+    return evaluate_sample(s, load_corners(s, patch_index), patch_index, packed_levels, i, j);
+}
+
+#endif

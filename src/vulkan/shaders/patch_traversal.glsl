@@ -1,0 +1,191 @@
+// One ray in the bottom tree of one patch or tile: nodes in the order of their Morton numbers, turned so that the
+// ray meets near ones first; no stack and no links, since the tree is complete (Harada 2015, listing 1.1, whose
+// table of links follows from the numbers). A ray that sees the patch at a lower level stops early.
+#ifndef RELIEF_PATCH_TRAVERSAL_GLSL
+#define RELIEF_PATCH_TRAVERSAL_GLSL
+
+#include "vulkan/shaders/rays.glsl"
+#include "formulas/quantise.h"
+#include "formulas/bottom_tree.h"
+
+#ifndef POOL_DECLARED
+layout(scalar, set = 0, binding = kBindPool) readonly buffer Pool { uint pool[]; };
+#endif
+
+layout(constant_id = 4) const uint kIsBoxLeaf = 0; ///< a micro-quad is hit where the ray enters its box
+
+/// A tree with a ray inside.
+struct PatchVisit {
+    uint base;
+    uint tree_level, ray_level; ///< of the tree, and at which the ray sees it
+    uint levels;                ///< packed, of the whole patch
+    uint reversed;
+    uint cell_x, cell_y; ///< first cell of a tile
+    bool has_moved_edges;
+    vec3 origin, scale;
+    ObjectRay ray;
+    float t_min;
+    float t; ///< nearest so far
+    uint cell;
+    bool has_hit;
+};
+
+vec3 read_tree_vertex(PatchVisit visit, uint i, uint j) {
+    uint finer = visit.tree_level - visit.ray_level;
+    if (visit.has_moved_edges) {
+        uint edge = find_sample_edge(i, j, visit.ray_level);
+        if (edge < 4u) {
+            uint shift = packed_patch_level(visit.levels) - packed_edge_level(visit.levels, edge);
+            GridSample moved = move_boundary_sample(i, j, visit.ray_level, edge, shift, visit.reversed);
+            i = moved.i;
+            j = moved.j;
+        }
+    }
+    uint side = (1u << visit.tree_level) + 1u;
+    uint word = visit.base + first_vertex_word(visit.tree_level) + 3u * ((j << finer) * side + (i << finer));
+    return vec3(uintBitsToFloat(pool[word]), uintBitsToFloat(pool[word + 1u]), uintBitsToFloat(pool[word + 2u]));
+}
+
+void offer_micro_hit(inout PatchVisit visit, float t, uint cell) {
+    if (t > visit.t || (t == visit.t && visit.has_hit && cell > visit.cell)) return;
+    visit.t = t;
+    visit.cell = cell;
+    visit.has_hit = true;
+}
+
+void intersect_micro_quad(inout PatchVisit visit, uint i, uint j) {
+    vec3 p00 = read_tree_vertex(visit, i, j);
+    vec3 p10 = read_tree_vertex(visit, i + 1u, j);
+    vec3 p11 = read_tree_vertex(visit, i + 1u, j + 1u);
+    vec3 p01 = read_tree_vertex(visit, i, j + 1u);
+    uint column = visit.cell_x + i;
+    uint row = visit.cell_y + j;
+    if (kIsBoxLeaf != 0u) {
+        BoxInterval interval = cross_box(visit.ray, min(min(p00, p10), min(p11, p01)),
+                                         max(max(p00, p10), max(p11, p01)), visit.t_min, visit.t);
+        // A ray that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
+        if (is_box_met(interval) && interval.entry > visit.t_min)
+            offer_micro_hit(visit, interval.entry, make_cell_rank(column, row, 0u));
+        return;
+    }
+    vec3 a = shear_vertex(visit.ray, p00);
+    vec3 b = shear_vertex(visit.ray, p10);
+    vec3 c = shear_vertex(visit.ray, p11);
+    vec3 d = shear_vertex(visit.ray, p01);
+    float lower = intersect_sheared(visit.ray, a, b, c, visit.t_min, visit.t).t;
+    if (lower != kInfinity) offer_micro_hit(visit, lower, make_cell_rank(column, row, 0u));
+    float upper = intersect_sheared(visit.ray, a, c, d, visit.t_min, visit.t).t;
+    if (upper != kInfinity) offer_micro_hit(visit, upper, make_cell_rank(column, row, 1u));
+}
+
+bool is_node_met(PatchVisit visit, uint node) {
+    uint word = visit.base + kTreeHeaderWords + kTreeNodeWords * node;
+    vec3 lower, upper;
+    for (uint k = 0u; k < 3u; ++k) {
+        uint codes = pool[word + k];
+        lower[k] = decode_bound(visit.origin[k], visit.scale[k], codes & 0xffffu);
+        upper[k] = decode_bound(visit.origin[k], visit.scale[k], codes >> 16u);
+    }
+    return is_box_met(cross_box(visit.ray, lower, upper, visit.t_min, visit.t));
+}
+
+/// Numbers of the nodes xor this walk them nearest first where the patch is not folded.
+uint choose_order(PatchVisit visit) {
+    uint n = 1u << visit.ray_level;
+    vec3 corner = read_tree_vertex(visit, 0u, 0u);
+    vec3 along_u = read_tree_vertex(visit, n, 0u) - corner;
+    vec3 along_v = read_tree_vertex(visit, 0u, n) - corner;
+    return make_order_mask(dot(along_u, visit.ray.direction) < 0.0, dot(along_v, visit.ray.direction) < 0.0);
+}
+
+/// False where a device ends the loop before all is done, as lavapipe does after 65535 rounds: no node is visited
+/// twice, so none of the ways out below is left untaken.
+bool walk_tree(inout PatchVisit visit, bool is_any) {
+    uint order = choose_order(visit);
+    uint level = 0u;
+    uint place = 0u; // in the order of the walk, within the level
+    for (uint visited = 0u; visited < count_nodes_above(kTreeLevels + 1u); ++visited) {
+        uint number = place ^ (order & ((1u << (2u * level)) - 1u));
+        if (is_node_met(visit, count_nodes_above(level) + number)) {
+            if (level < visit.ray_level) {
+                ++level;
+                place <<= 2u;
+                continue;
+            }
+            intersect_micro_quad(visit, morton_column(number), morton_row(number));
+            if (is_any && visit.has_hit) return true;
+        }
+        // The next one on this level, or of the nearest ancestor that has one.
+        ++place;
+        uint up = min(uint(findLSB(place)) >> 1u, level);
+        place >>= 2u * up;
+        level -= up;
+        if (level == 0u) return true;
+    }
+    return false;
+}
+
+/// Rank among the patches that the ray offers in this round: by (instance, patch), tiles of one patch alike.
+uint find_slot_rank(uint candidate_index, uint slots) {
+    CandidateData own = candidates[candidate_index];
+    uint first = candidate_index / slots * slots;
+    uint rank = 0u;
+    for (uint k = first; k < first + slots; ++k) {
+        uint instance = candidates[k].instance;
+        if (instance != kNone && (instance < own.instance ||
+                                  (instance == own.instance && candidates[k].patch_index < own.patch_index)))
+            ++rank;
+    }
+    return rank;
+}
+
+PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint patch_count, uint pool_capacity) {
+    PatchVisit visit;
+    visit.base = trees[tree].address % pool_capacity * kPoolUnitWords;
+    visit.tree_level = pool[visit.base + kTreeLevel];
+    visit.reversed = pool[visit.base + kTreeReversed];
+    visit.levels = candidate.levels;
+    visit.cell_x = visit.cell_y = 0u;
+    visit.ray_level = packed_patch_level(candidate.levels);
+    visit.has_moved_edges = candidate.levels != pack_uniform_level(visit.ray_level);
+    if (tree >= patch_count) {
+        TileRecord tile = tile_records[tree - patch_count];
+        visit.cell_x = tile.cell_x;
+        visit.cell_y = tile.cell_y;
+        visit.ray_level = kTreeLevels;
+        visit.has_moved_edges = false; // built as they are
+    }
+    for (uint k = 0u; k < 3u; ++k) {
+        visit.origin[k] = uintBitsToFloat(pool[visit.base + kTreeOrigin + k]);
+        visit.scale[k] = uintBitsToFloat(pool[visit.base + kTreeScale + k]);
+    }
+    visit.ray = enter_object(world, instances[candidate.instance]);
+    visit.t_min = world.t_min;
+    visit.has_hit = false;
+    visit.cell = 0u;
+    return visit;
+}
+
+/// Traces one pair, whose tree is in the pool.
+void trace_pair(uvec2 pair, CastPush push) {
+    uint place = pair.y / push.slots;
+    float t = nearest_distance(nearest[place]);
+    CandidateData candidate = candidates[pair.y];
+    if (candidate.entry > t * kBoxSlack) {
+        atomicAdd(counters.pairs_done, 1u);
+        return;
+    }
+    RayData world = rays[active_rays[push.first + place]];
+    PatchVisit visit = enter_tree(pair.x, candidate, world, push.patch_count, push.pool_capacity);
+    visit.t = t;
+    if (walk_tree(visit, push.is_any != 0u)) {
+        atomicAdd(counters.pairs_done, 1u);
+    }
+    if (!visit.has_hit) return;
+    atomicAdd(counters.pairs_with_hit, 1u);
+    uint64_t found = push.is_any != 0u ? make_nearest(-kInfinity, 0u)
+                                       : make_nearest(visit.t, find_slot_rank(pair.y, push.slots) << kCellBits | visit.cell);
+    atomicMin(nearest[place], found);
+}
+
+#endif

@@ -1,0 +1,50 @@
+// Paths as the kernels of the path tracer see them.
+#ifndef RELIEF_PATHS_GLSL
+#define RELIEF_PATHS_GLSL
+
+#include "vulkan/shaders/scene.glsl"
+#include "formulas/sobol.h"
+#include "formulas/warp.h"
+#include "formulas/picture_plane.h"
+#include "formulas/camera.h"
+#include "vulkan/shaders/ggx_table.glsl"
+#include "formulas/ggx_albedo.h"
+#include "formulas/bsdf.h"
+#include "formulas/light.h"
+#include "formulas/environment.h"
+#include "formulas/path.h"
+#include "formulas/surface_point.h"
+#include "vulkan/layout/device_rays.h"
+#include "formulas/pixel_order.h"
+#include "vulkan/layout/device_paths.h"
+
+layout(scalar, set = 0, binding = kBindMaterials) readonly buffer Materials { MaterialData materials[]; };
+layout(scalar, set = 0, binding = kBindRays) buffer Rays { RayData rays[]; };
+layout(scalar, set = 0, binding = kBindHits) buffer Hits { HitData hits[]; };
+layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData counters; };
+layout(scalar, set = 0, binding = kBindPaths) buffer Paths { PathData paths[]; };
+layout(scalar, set = 0, binding = kBindPoints) buffer Points { SurfacePointData points[]; };
+layout(scalar, set = 0, binding = kBindFilm) buffer FilmSums { FilmSumsData film[]; };
+layout(scalar, set = 0, binding = kBindPathList) buffer PathList { uint path_list[]; };
+layout(scalar, set = 0, binding = kBindNextPathList) buffer NextPathList { uint next_path_list[]; };
+layout(scalar, set = 0, binding = kBindShadowList) buffer ShadowList { uint shadow_list[]; };
+
+bool is_hit(HitData hit) { return hit.instance != kNone; }
+
+/// The surface as seen from one direction: what it scatters, in a frame of its own.
+struct Scattering {
+    Basis basis;
+    vec3 wo_local;
+    Bsdf bsdf;
+};
+
+Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 wo) {
+    Scattering result;
+    result.basis = make_basis(point.bent_normal);
+    result.wo_local = lift_viewer(to_local(result.basis, wo));
+    BsdfParameters parameters = {point.base_color, point.roughness, material.metallic, material.ior};
+    result.bsdf = make_bsdf(parameters, result.wo_local.z);
+    return result;
+}
+
+#endif

@@ -1,0 +1,15 @@
+// Camera rays before anything is drawn: no hit.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/rays.glsl"
+#include "vulkan/shaders/raster.glsl"
+
+layout(scalar, set = 0, binding = kBindRasterNearest) writeonly buffer RasterNearest { uint64_t raster_nearest[]; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    hits[index] = HitData(kInfinity, kNone, kNone, 0.0, 0.0, 0u, 0u);
+    raster_nearest[index] = make_nearest(rays[index].t_max, 0xffffffffu);
+}

@@ -1,0 +1,43 @@
+// The vertices of a wave of items: those of the surface that camera rays see, or the corners of polygons.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/patch_evaluation.glsl"
+#include "vulkan/shaders/raster.glsl"
+
+layout(scalar, set = 0, binding = kBindRasterVertices) writeonly buffer Vertices { vec3 raster_vertices[]; };
+
+RasterItem find_item_of_vertex(uint vertex) {
+    uint low = 0u;
+    uint high = push.item_count - 1u;
+    while (low < high) {
+        uint middle = (low + high + 1u) / 2u;
+        if (items[middle].first_vertex <= vertex)
+            low = middle;
+        else
+            high = middle - 1u;
+    }
+    return items[low];
+}
+
+/// The upper triangle of a polygon with three corners is flat: no ray meets it.
+vec3 load_polygon_corner(SurfaceData s, uint patch_index, uint i, uint j) {
+    return load_position(s, load_quad(s, patch_index)[j == 0u ? i : 3u - i]);
+}
+
+void main() {
+    uint vertex = invocation_index();
+    if (vertex >= push.vertex_count) return;
+    RasterItem item = find_item_of_vertex(vertex);
+    SurfaceData s = surfaces[instances[item.instance].surface];
+    uint stride = count_columns(item) + 1u;
+    uint place = vertex - item.first_vertex;
+    uint i = place % stride;
+    uint j = item.first_row + place / stride;
+    vec3 p;
+    if (s.map == kNone)
+        p = load_polygon_corner(s, item.patch_index, i, j);
+    else
+        p = evaluate_vertex(s, item.patch_index, item.levels, i, j);
+    raster_vertices[vertex] = p;
+}

@@ -1,0 +1,51 @@
+// Rays, hits, and what passes between the stages of a cast.
+#ifndef RELIEF_RAYS_GLSL
+#define RELIEF_RAYS_GLSL
+
+#include "vulkan/shaders/scene.glsl"
+#include "formulas/object_ray.h"
+#include "formulas/quantise.h"
+#include "vulkan/layout/device_rays.h"
+
+layout(scalar, set = 0, binding = kBindRays) buffer Rays { RayData rays[]; };
+layout(scalar, set = 0, binding = kBindHits) buffer Hits { HitData hits[]; };
+layout(scalar, set = 0, binding = kBindActive) buffer Active { uint active_rays[]; };
+layout(scalar, set = 0, binding = kBindNextActive) buffer NextActive { uint next_active_rays[]; };
+layout(scalar, set = 0, binding = kBindCursors) buffer Cursors { CursorData cursors[]; };
+layout(scalar, set = 0, binding = kBindCandidates) buffer Candidates { CandidateData candidates[]; };
+layout(scalar, set = 0, binding = kBindPairs) buffer Pairs { uvec2 pairs[]; };
+layout(scalar, set = 0, binding = kBindTrees) buffer Trees { TreeRecord trees[]; };
+layout(scalar, set = 0, binding = kBindNearest) buffer Nearest { uint64_t nearest[]; };
+layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData counters; };
+layout(scalar, set = 0, binding = kBindJobs) buffer Jobs { uint jobs[]; };
+layout(scalar, set = 0, binding = kBindBuilds) buffer Builds { uint builds[]; };
+
+ObjectRay enter_object(RayData ray, InstanceData instance) {
+    return make_object_ray(transform_point(instance.object_from_world, ray.origin),
+                           transform_vector(instance.object_from_world, ray.direction));
+}
+
+uint64_t make_nearest(float t, uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }
+float nearest_distance(uint64_t packed_hit) { return unorder_float(uint(packed_hit >> 32)); }
+
+/// Ties go to the lower instance, then the lower patch, then the lower cell.
+bool is_better(HitData a, HitData b) {
+    if (b.instance == kNone || a.t != b.t) return b.instance == kNone || a.t < b.t;
+    if (a.instance != b.instance) return a.instance < b.instance;
+    if (a.patch_index != b.patch_index) return a.patch_index < b.patch_index;
+    return a.cell < b.cell;
+}
+
+/// Place in a cell of weights (b, c) of its lower triangle 00 10 11 or its upper one 00 11 01.
+vec2 place_in_cell(vec2 weights, uint is_upper) {
+    return is_upper != 0u ? vec2(weights.x, weights.x + weights.y) : vec2(weights.x + weights.y, weights.y);
+}
+
+/// Place on a patch of `level` of a place in one of its cells.
+vec2 place_on_patch(uint cell, uint level, vec2 within) {
+    precise float cell_size = 1.0 / float(1u << level);
+    precise vec2 uv = (vec2(cell_column(cell), cell_row(cell)) + within) * cell_size;
+    return uv;
+}
+
+#endif

@@ -1,0 +1,100 @@
+// The scene as kernels see it: tables, texel buffers, and the functions that read them.
+#ifndef RELIEF_SCENE_GLSL
+#define RELIEF_SCENE_GLSL
+
+#include "formulas/lang.h"
+#include "formulas/constants.h"
+#include "formulas/exact.h"
+#include "formulas/levels.h"
+#include "formulas/mips.h"
+#include "formulas/frame.h"
+#include "formulas/texel.h"
+#include "formulas/displace.h"
+#include "formulas/control_points.h"
+#include "vulkan/layout/bindings.h"
+#include "vulkan/layout/device_scene.h"
+
+layout(scalar, set = 0, binding = kBindInstances) readonly buffer Instances { InstanceData instances[]; };
+layout(scalar, set = 0, binding = kBindSurfaces) readonly buffer Surfaces { SurfaceData surfaces[]; };
+layout(scalar, set = 0, binding = kBindMaps) readonly buffer Maps { MapData maps[]; };
+layout(scalar, set = 0, binding = kBindTextures) readonly buffer Textures { TextureData textures[]; };
+layout(scalar, set = 0, binding = kBindTileRecords) readonly buffer TileRecords { TileRecord tile_records[]; };
+
+layout(set = 0, binding = kBindPositions) uniform samplerBuffer positions;
+layout(set = 0, binding = kBindUvs) uniform samplerBuffer uvs;
+layout(set = 0, binding = kBindFrames) uniform usamplerBuffer frames;
+layout(set = 0, binding = kBindQuads) uniform usamplerBuffer quads;
+layout(set = 0, binding = kBindDominants) uniform usamplerBuffer dominants;
+layout(set = 0, binding = kBindVertexTiles) uniform usamplerBuffer vertex_tiles;
+layout(set = 0, binding = kBindOverrides) uniform usamplerBuffer overrides;
+layout(set = 0, binding = kBindOverrideBits) uniform usamplerBuffer override_bits;
+layout(set = 0, binding = kBindLevels) uniform usamplerBuffer field_levels;
+layout(set = 0, binding = kBindFloatTexels) uniform samplerBuffer float_texels;
+layout(set = 0, binding = kBindHalfTexels) uniform samplerBuffer half_texels;
+
+#define kInfinity uintBitsToFloat(0x7f800000u)
+const uint kNoTile = 255u;
+
+vec3 load_position_at(uint place) {
+    int first = int(3u * place);
+    return vec3(texelFetch(positions, first).x, texelFetch(positions, first + 1).x,
+                texelFetch(positions, first + 2).x);
+}
+
+vec3 load_position(SurfaceData s, uint vertex) { return load_position_at(s.first_vertex + vertex); }
+
+vec2 load_uv(SurfaceData s, uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
+
+uvec4 load_quad(SurfaceData s, uint patch_index) { return texelFetch(quads, int(s.first_quad + patch_index)); }
+
+bool is_triangle(uvec4 quad) { return quad.w == quad.z; }
+
+/// Unit normal; not for surfaces without frames.
+vec3 load_normal(SurfaceData s, uint vertex) {
+    return unpack_unit_normal(texelFetch(frames, int(s.first_frame + vertex)).x);
+}
+
+uint load_dominant(SurfaceData s, uint vertex) {
+    return s.first_dominant == kNone ? vertex : texelFetch(dominants, int(s.first_dominant + vertex)).x;
+}
+
+uint load_vertex_tile(SurfaceData s, uint vertex) {
+    if (s.first_vertex_tile == kNone) return 0u;
+    uint place = s.first_vertex_tile + vertex;
+    return (texelFetch(vertex_tiles, int(place >> 2u)).x >> (8u * (place & 3u))) & 255u;
+}
+
+bool is_seam(SurfaceData s, uint patch_index, uint edge) {
+    if (s.first_override_word == kNone) return false;
+    uint patch_edge = 4u * patch_index + edge;
+    uint word = texelFetch(override_bits, int(s.first_override_word + (patch_edge >> 5u))).x;
+    return ((word >> (patch_edge & 31u)) & 1u) != 0u;
+}
+
+/// Which copies of its map a patch reads.
+uint load_mips(SurfaceData s, uint patch_index) {
+    return s.first_mip == kNone ? 0u : texelFetch(override_bits, int(s.first_mip + patch_index)).x;
+}
+
+/// Packed levels of a patch of an instance, bias 0.
+uint find_levels(InstanceData instance, uint patch_index) {
+    if (instance.first_level == kNone) return instance.levels;
+    return texelFetch(field_levels, int(instance.first_level + patch_index)).x;
+}
+
+/// Texel (x, y), inside the texture.
+vec4 load_texel(TextureData texture_data, uint x, uint y) {
+    int place = int(texture_data.first_texel + y * texture_data.width + x);
+    return texture_data.is_half != 0u ? texelFetch(half_texels, place) : texelFetch(float_texels, place);
+}
+
+vec3 transform_vector(AffineData a, vec3 v) {
+    return vec3(dot_exact(a.x, v), dot_exact(a.y, v), dot_exact(a.z, v));
+}
+vec3 transform_point(AffineData a, vec3 p) { return add_exact(transform_vector(a, p), a.t); }
+/// Not normalised.
+vec3 transform_normal(AffineData object_from_world, vec3 n) {
+    return object_from_world.x * n.x + object_from_world.y * n.y + object_from_world.z * n.z;
+}
+
+#endif

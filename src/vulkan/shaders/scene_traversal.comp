@@ -1,0 +1,51 @@
+// One ray through the two upper levels, nearest first: polygons are hit at once, displaced patches are offered to
+// the bottom level, the nearest few of those that come after the ray's cursor (Harada 2015, section 1.5.3, in
+// rounds). Rays that wait for tiles run the round again: it changes nothing but hits, which only come nearer.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+
+const bool kMayOfferTwice = false;
+#include "vulkan/shaders/scene_candidates.glsl"
+
+#include "vulkan/shaders/node_stack.glsl"
+
+/// Tiles are walked on the same stack.
+void enter_tiles(uint root, float entry) { push_node(root, entry); }
+
+/// False where a device ends the loop before the stack is empty.
+bool walk() {
+    uint world_size = 0u; // entries of the stack that wait outside the instance
+    push_node(push.root, world.t_min);
+    leave_instance();
+    for (uint popped = 0u; popped < 0xffffffffu; ++popped) {
+        if (stack_size == 0u) return true;
+        --stack_size;
+        if (instance_index != kNone && stack_size < world_size) leave_instance();
+        float entry = stack_entry[stack_size];
+        if (entry > find_limit()) continue;
+        uint node = stack_node[stack_size];
+        uint first = texelFetch(nodes, 2 * int(node)).w;
+        uint kind_and_count = texelFetch(nodes, 2 * int(node) + 1).w;
+        uint kind = kind_and_count >> kNodeKindShift;
+        if (kind == kNodeInner)
+            enter_inner(first, entry);
+        else if (kind == kNodeInstance) {
+            if (instances[first].root == kNone) continue;
+            world_size = stack_size;
+            enter_instance(first);
+            push_node(instance.root, entry);
+        } else if (kind == kNodePatch)
+            enter_patch(first, entry);
+        else if (kind == kNodeTile)
+            offer_candidate(first, tile_records[first - push.patch_count].levels, entry);
+        else {
+            uint count = kind_and_count & ((1u << kNodeKindShift) - 1u);
+            for (uint k = 0u; k < count; ++k) intersect_polygon(texelFetch(primitive_ids, int(first + k)).x);
+            if (push.is_any != 0u && best.instance != kNone) return true;
+        }
+    }
+    return false;
+}
+
+void main() { trace_round(); }

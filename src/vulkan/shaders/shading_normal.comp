@@ -1,0 +1,74 @@
+// How the surface looks where rays met it: shading normal, and material with its textures. First hits go into the
+// layers.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/textures.glsl"
+#include "vulkan/shaders/shading_normal.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+struct Appearance {
+    vec3 shading_normal; ///< on the viewer's side
+    vec2 uv;
+    vec3 base_color;
+    float roughness;
+};
+
+vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
+    if (s.first_uv == kNone) return vec2(0.0);
+    return s.map != kNone ? blend_patch_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at)
+                          : blend_polygon_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at);
+}
+
+void apply_material(MaterialData material, inout Appearance appearance) {
+    vec3 color = vec3(1.0);
+    float roughness = 1.0;
+    uint indices[2] = {material.color_texture, material.roughness_texture};
+    // A loop keeps one copy of the look-up.
+    for (uint k = 0u; k < 2u; ++k) {
+        if (indices[k] == kNone) continue;
+        vec3 value = fetch_texture(indices[k], appearance.uv);
+        if (k == 0u)
+            color = value;
+        else
+            roughness = value.x;
+    }
+    appearance.base_color = limit_color(material.base_color * color);
+    appearance.roughness = clamp(material.roughness * roughness, 0.0, 1.0);
+}
+
+Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
+    InstanceData instance = instances[hit.instance];
+    SurfaceData s = surfaces[instance.surface];
+    PatchCorners corners = load_corners(s, hit.patch_index);
+    vec2 at = vec2(hit.u, hit.v);
+    uint level = packed_patch_level(hit.levels);
+    vec3 interpolated = compute_shading_normal(s, corners, hit.patch_index, level, at);
+    vec3 normal = orient_shading_normal(transform_normal(instance.object_from_world, interpolated), geometric_normal);
+    Appearance appearance;
+    appearance.shading_normal = is_flipped ? -normal : normal;
+    appearance.uv = interpolate_uv(s, corners, at);
+    apply_material(materials[instance.material], appearance);
+    return appearance;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = path_list[index];
+    HitData hit = hits[path_index];
+    if (!is_hit(hit)) return;
+    vec3 geometric_normal = points[path_index].geometric_normal;
+    bool is_flipped = points[path_index].is_flipped != 0u;
+    Appearance appearance = find_appearance(hit, is_flipped ? -geometric_normal : geometric_normal, is_flipped);
+    points[path_index].bent_normal =
+        bend_normal(appearance.shading_normal, geometric_normal, -rays[path_index].direction);
+    points[path_index].base_color = appearance.base_color;
+    points[path_index].roughness = appearance.roughness;
+    if (push.depth > 0u) return;
+    film[path_index].shading_normal += appearance.shading_normal;
+    film[path_index].albedo += appearance.base_color;
+    film[path_index].uv += appearance.uv;
+}

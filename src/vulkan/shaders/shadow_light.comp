@@ -1,0 +1,15 @@
+// Adds the light of shadow rays that nothing was in the way of.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint ray_index = shadow_list[index];
+    uint path_index = ray_index - push.capacity;
+    if (!is_hit(hits[ray_index])) paths[path_index].radiance += paths[path_index].contribution;
+}

@@ -1,0 +1,42 @@
+// Where rays met surfaces: position, geometric normal, area. First hits go into the layers.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/surface_point.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+void make_point(uint path_index, HitData hit) {
+    InstanceData instance = instances[hit.instance];
+    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
+    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    bool is_flipped = dot(found.triangle.normal, rays[path_index].direction) > 0.0;
+    points[path_index].position = found.triangle.position;
+    points[path_index].position_error = found.position_error;
+    points[path_index].geometric_normal = is_flipped ? -found.triangle.normal : found.triangle.normal;
+    points[path_index].area_per_uv = found.triangle.area_per_uv;
+    points[path_index].is_flipped = is_flipped ? 1u : 0u;
+}
+
+void record_first_hit(uint pixel, HitData hit) {
+    film[pixel].hit_count += 1.0;
+    film[pixel].geometric_normal += points[pixel].geometric_normal;
+    film[pixel].position += points[pixel].position;
+    FilmSumsData sums = film[pixel];
+    uint id = hit.instance + 1u;
+    if (sums.id != 0u && (hit.t > sums.depth || (hit.t == sums.depth && id >= sums.id))) return;
+    film[pixel].depth = hit.t;
+    film[pixel].id = id;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = path_list[index];
+    HitData hit = hits[path_index];
+    if (!is_hit(hit)) return;
+    make_point(path_index, hit);
+    if (push.depth == 0u) record_first_hit(path_index, hit);
+}

@@ -1,0 +1,61 @@
+// Points of the surface as shading sees them.
+#ifndef RELIEF_SURFACE_POINT_GLSL
+#define RELIEF_SURFACE_POINT_GLSL
+
+#include "vulkan/shaders/patch_evaluation.glsl"
+#include "formulas/warp.h"
+#include "formulas/surface_point.h"
+#include "formulas/cell_place.h"
+#include "formulas/shading_normal.h"
+#include "vulkan/layout/device_rays.h"
+
+/// Micro-triangle of a patch at packed levels, and the point on it.
+struct CellPoint {
+    TrianglePoint triangle;
+    float position_error;
+};
+
+float bound_error(AffineData world_from_object, vec3 a, vec3 b, vec3 c, vec3 position) {
+    float corner = max(max(largest_coordinate(a), largest_coordinate(b)), largest_coordinate(c));
+    float row = max(max(sum_magnitudes(world_from_object.x), sum_magnitudes(world_from_object.y)),
+                    sum_magnitudes(world_from_object.z));
+    return bound_position_error(corner, row, largest_coordinate(world_from_object.t), largest_coordinate(position));
+}
+
+CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_index, uint packed_levels,
+                        CellPlace place) {
+    SurfaceData s = surfaces[instance.surface];
+    vec3 corner[3];
+    // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper one. A loop keeps one copy of the evaluation.
+    for (uint k = 0u; k < 3u; ++k) {
+        uint around = k + (place.is_upper && k > 0u ? 1u : 0u);
+        if (s.map == kNone) {
+            corner[k] = load_position(s, corners.quad[around]);
+            continue;
+        }
+        uint i = place.i + (around == 1u || around == 2u ? 1u : 0u);
+        uint j = place.j + (around >= 2u ? 1u : 0u);
+        corner[k] = evaluate_sample(s, corners, patch_index, packed_levels, i, j);
+    }
+    float side = float(1u << packed_patch_level(packed_levels));
+    AffineData m = instance.world_from_object;
+    vec3 local = blend_corners(corner[0], corner[1], corner[2], weigh_corners(place, side));
+    CellPoint point;
+    point.triangle =
+        make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
+                            transform_vector(m, corner[2] - corner[0]), instance.is_mirrored != 0u ? -1.0 : 1.0,
+                            triangle_uv_area(is_triangle(corners.quad), side));
+    point.position_error = bound_error(m, corner[0], corner[1], corner[2], point.triangle.position);
+    return point;
+}
+
+/// Point (u, v) of a patch on surface M_bias.
+CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint bias) {
+    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), bias);
+    PatchCorners corners = load_corners(surfaces[instance.surface], patch_index);
+    uint side = 1u << packed_patch_level(packed_levels);
+    CellPlace place = locate_cell(is_triangle(corners.quad), side, uv.x, uv.y);
+    return evaluate_cell(instance, corners, patch_index, packed_levels, place);
+}
+
+#endif

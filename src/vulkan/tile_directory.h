@@ -1,0 +1,61 @@
+// Patches above level 5 are worked in tiles of 32 x 32 cells. The tree over the tiles of a patch is made by
+// the host when a ray asks for it first: only what rays look at is ever bounded.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formulas/bottom_tree.h"
+#include "vulkan/device/commands.h"
+#include "vulkan/device_scene.h"
+#include "vulkan/layout/device_rays.h"
+#include "vulkan/layout/device_scene.h"
+
+namespace relief::vulkan {
+
+/// One thread at a time. Directories are kept as long as this lives; after an error it is of no more use.
+class TileDirectories {
+  public:
+    TileDirectories(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
+
+    void bind(BindingTable& bindings) const;
+
+    /// Makes the directories asked for that are not there yet and binds the buffers that grew.
+    void build(std::span<const scalar::RequestData> requests, Commands& commands, BindingTable& bindings);
+
+    /// Tiles so far: their trees are numbered from DeviceScene::patch_count() on.
+    uint32_t tile_count() const { return uint32_t(tiles_.size()); }
+    /// Entries of the hash table - 1.
+    uint32_t directory_mask() const { return uint32_t(table_.size()) - 1; }
+    /// True when a patch may have tiles at all.
+    bool is_needed() const { return finest_level_ > int(scalar::kTreeLevels); }
+    /// Entries that a ray's stack needs beyond those of the upper trees.
+    uint32_t stack_size() const {
+        return is_needed() ? 2 * (uint32_t(finest_level_) - scalar::kTreeLevels) + 2 : 0;
+    }
+
+  private:
+    struct Boxes;
+    Boxes compute_boxes(const scalar::RequestData& request) const;
+    uint32_t append_tree(const Boxes& boxes, uint32_t first_tree);
+    void append_node(const Boxes& boxes, uint32_t place, uint32_t first_tree,
+                     const std::array<uint32_t, 3>& square);
+    void insert(const scalar::DirectoryData& directory);
+    void grow_table();
+    void upload_nodes(uint32_t first_node, Commands& commands);
+    void upload_tiles(size_t first_tile);
+
+    const Device& device_;
+    const PreparedScene& scene_;
+    const DeviceScene& device_scene_;
+    int finest_level_ = 0;
+    std::vector<scalar::TileRecord> tiles_;
+    std::vector<scalar::DirectoryData> table_; ///< open addressing, a power of two
+    uint32_t directory_count_ = 0;
+    std::vector<NodeTexels> new_nodes_; ///< made in this call
+    uint32_t node_count_ = 0;           ///< on the device
+    uint64_t node_capacity_ = 0;
+    Buffer nodes_, tile_buffer_, table_buffer_;
+};
+
+} // namespace relief::vulkan

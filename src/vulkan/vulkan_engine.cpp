@@ -1,0 +1,191 @@
+// The Vulkan engine: passes over the picture, batch by batch; rays for other programs.
+#include "vulkan/vulkan_engine.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/timer.h"
+#include "relief/error.h"
+#include "vulkan/path_tracer.h"
+#include "vulkan/ray_batch.h"
+#include "vulkan/station.h"
+
+namespace relief {
+
+namespace vulkan {
+
+namespace {
+
+constexpr uint32_t kMostPaths = 1u << 20;
+constexpr uint32_t kLeastPaths = 1u << 12; ///< below it a device has no room for a picture
+constexpr uint32_t kRaysOfABatch = 1u << 17;
+constexpr uint32_t kSlots = 4;
+
+class VulkanEngine final : public Engine {
+  public:
+    VulkanEngine(std::unique_ptr<Device> device, std::shared_ptr<const PreparedScene> scene,
+                 const RenderSettings& settings, const std::optional<SceneWalk>& walk)
+        : scene_(std::move(scene)),
+          settings_(settings),
+          device_(std::move(device)),
+          device_scene_(*device_, *scene_, walk ? &*walk : nullptr) {}
+
+    /// Texels and trees lie on the device, as they were uploaded.
+    bool follow(std::span<const SurfaceChange>) override { return false; }
+    bool render(Film& film, RenderObserver* observer) override;
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override;
+    void add_statistics(Statistics& statistics) const override;
+
+  private:
+    std::unique_ptr<Tracer> make_tracer(uint32_t rays, uint32_t share) const;
+    Station<RayBatch>& batches() const;
+    uint64_t count_rays() const;
+    void require_drawable(const Window& window) const;
+    bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
+
+    std::shared_ptr<const PreparedScene> scene_;
+    RenderSettings settings_;
+    std::unique_ptr<Device> device_;
+    DeviceScene device_scene_;
+    Station<PathTracer> paths_;
+    mutable std::mutex mutex_;
+    mutable Station<RayBatch> batches_;
+    Progress progress_;
+    uint64_t done_ = 0; ///< pixel samples
+    Timer timer_;
+    double set_up_s_ = 0, first_image_s_ = 0;
+};
+
+/// Of `rays` places one in `share` is cast at a time.
+std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share) const {
+    TracerConfig config;
+    config.ray_capacity = rays;
+    config.slots = kSlots;
+    config.pair_capacity = rays / share * kSlots;
+    return std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
+}
+
+/// Before the hybrid method draws into a window.
+void VulkanEngine::require_drawable(const Window& window) const {
+    const uint32_t most = device_->max_draw_size();
+    if (settings_.method != RenderMethod::hybrid ||
+        (uint32_t(window.x1 - window.x0) <= most && uint32_t(window.y1 - window.y0) <= most))
+        return;
+    throw Error(ErrorKind::usage,
+                {fmt::format("the hybrid method draws at most {} pixels a side on this device", most),
+                 device_->description().name, "--crop or --tile, or --method compute or fragment"});
+}
+
+bool VulkanEngine::render(Film& film, RenderObserver* observer) {
+    const Window& window = film.window();
+    require_drawable(window);
+    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
+    const Timer set_up;
+    // Every path has a ray and a shadow ray.
+    paths_ = {}; // makes room
+    paths_ = {{2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
+               2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths))},
+              [this](uint32_t rays) { return make_tracer(rays, 2); },
+              [this](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); }};
+    set_up_s_ += set_up.seconds();
+    timer_ = {};
+    progress_ = {};
+    progress_.samples_total = settings_.spp;
+    done_ = 0;
+    int done = 0;
+    for (int length = 1; done < settings_.spp; length = std::min(2 * length, PathTracer::kSamplesPerLaunch)) {
+        const int count = std::min(length, settings_.spp - done);
+        if (!render_pass(film, {settings_.first_sample + done, count}, observer)) return false;
+        done += count;
+        progress_.samples_done = done;
+        if (first_image_s_ == 0) first_image_s_ = timer_.seconds();
+    }
+    if (observer) observer->on_progress(progress_);
+    return true;
+}
+
+/// False after a cancellation.
+bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* observer) {
+    const Window& window = film.window();
+    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
+    for (uint64_t first = 0, count = 0; first < pixels; first += count) {
+        if (observer && observer->is_cancelled()) return false;
+        paths_.run([&](PathTracer& worker) {
+            count = std::min<uint64_t>(worker.capacity(), pixels - first);
+            worker.trace_samples(film, {first, count}, samples);
+        });
+        done_ += count * uint64_t(samples.count);
+        progress_.fraction = double(done_) / (double(pixels) * settings_.spp);
+        progress_.rays = count_rays();
+        progress_.elapsed_s = timer_.seconds();
+        if (observer) observer->on_progress(progress_);
+    }
+    return true;
+}
+
+uint64_t VulkanEngine::count_rays() const {
+    Statistics work;
+    paths_.add_statistics(work);
+    return work.camera_rays + work.shadow_rays + work.bounce_rays;
+}
+
+Station<RayBatch>& VulkanEngine::batches() const {
+    if (!batches_)
+        batches_ = {{kRaysOfABatch, kLeastPaths},
+                    [this](uint32_t rays) { return make_tracer(rays, 1); },
+                    [](Tracer& tracer) { return std::make_unique<RayBatch>(tracer); }};
+    return batches_;
+}
+
+void VulkanEngine::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const {
+    const std::lock_guard lock(mutex_);
+    batches().run([&](RayBatch& worker) { worker.closest_hits(rays, hits); });
+}
+
+void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const {
+    const std::lock_guard lock(mutex_);
+    batches().run([&](RayBatch& worker) { worker.any_hits(rays, hits); });
+}
+
+void VulkanEngine::add_statistics(Statistics& statistics) const {
+    statistics.engine = "vulkan";
+    statistics.device = device_->description().name;
+    statistics.isa = device_->description().driver;
+    // Making kernels and buffers is no part of a frame.
+    statistics.prepare_s += set_up_s_;
+    statistics.render_s -= set_up_s_;
+    statistics.first_image_s += first_image_s_;
+    paths_.add_statistics(statistics);
+    statistics.geometry_bytes += device_->peak_bytes(Purpose::geometry);
+    statistics.structures_bytes += device_->peak_bytes(Purpose::structures);
+    statistics.displacement_bytes += device_->peak_bytes(Purpose::displacement);
+    statistics.bottom_cache_bytes += device_->peak_bytes(Purpose::bottom_cache);
+    statistics.ray_buffers_bytes +=
+        device_->peak_bytes(Purpose::ray_buffers) + device_->peak_bytes(Purpose::staging);
+}
+
+} // namespace
+
+std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
+                                       std::shared_ptr<const PreparedScene> scene,
+                                       const RenderSettings& settings, const std::optional<SceneWalk>& walk) {
+    return std::make_unique<VulkanEngine>(std::move(device), std::move(scene), settings, walk);
+}
+
+} // namespace vulkan
+
+std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
+                                           const RenderSettings& settings,
+                                           const std::optional<vulkan::SceneWalk>& walk) {
+    const vulkan::Device::Config config{
+        .index = settings.device, .method = settings.method, .pipeline_cache = settings.pipeline_cache};
+    return vulkan::make_engine_on(std::make_unique<vulkan::Device>(config), std::move(scene), settings, walk);
+}
+
+} // namespace relief

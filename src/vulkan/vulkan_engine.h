@@ -1,0 +1,30 @@
+// The engine that runs on a Vulkan device.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "engine/engine.h"
+#include "vulkan/device/device.h"
+#include "vulkan/scene_walk.h"
+
+namespace relief {
+
+namespace vulkan {
+
+/// `walk` takes the place of the engine's own traversal of the scene, unless it is empty. Throws
+/// Error{out_of_memory} for a scene that the device cannot hold.
+std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
+                                       std::shared_ptr<const PreparedScene> scene,
+                                       const RenderSettings& settings,
+                                       const std::optional<SceneWalk>& walk = {});
+
+} // namespace vulkan
+
+/// The same on the device that the settings name. Throws Error{device_missing} too: no driver, no such
+/// device, or one that lacks what is named.
+std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
+                                           const RenderSettings& settings,
+                                           const std::optional<vulkan::SceneWalk>& walk = {});
+
+} // namespace relief

@@ -1,0 +1,92 @@
+// Many threads over one small cache: trees are evicted, retired and freed while others walk them. The thread
+// sanitizer watches the same test.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <thread>
+
+#include "cpu/tracer.h"
+#include "support/bodies.h"
+
+namespace relief {
+
+namespace {
+
+constexpr size_t kThreads = 8;
+constexpr int kRounds = 3;
+constexpr size_t kBatch = 48;
+
+/// Rays at a body of radius about 1, runs of sixteen from one point; levels are mixed, so trees of all sizes
+/// are.
+std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
+    std::mt19937 random(17);
+    std::normal_distribution<float> normal;
+    const auto draw = [&] { return Vec3f{normal(random), normal(random), normal(random)}; };
+    std::vector<cpu::TraceRay> rays;
+    for (uint32_t k = 0; k < count; ++k) {
+        cpu::TraceRay ray;
+        ray.origin = k % 16 ? rays.back().origin : normalize(draw()) * 3.0f;
+        ray.direction = draw() * 0.4f - ray.origin;
+        ray.bias = k / 16 % 5;
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+std::shared_ptr<const PreparedScene> prepare_torus(RenderSettings& settings) {
+    settings.level = 7;
+    const Displacement displacement =
+        test::make_displacement(test::make_random_map(64, 64, 0.1f, 5), DisplacementSpace::tangent);
+    return prepare_scene(test::make_body_scene(test::make_torus(6, 9), displacement), settings);
+}
+
+/// Traces all batches a few times, each thread in an order of its own; returns how many hits differ.
+size_t count_differences(const cpu::Tracer& tracer, const std::vector<cpu::TraceRay>& rays,
+                         const std::vector<cpu::TraceHit>& expected, size_t thread) {
+    size_t differences = 0;
+    const size_t batches = rays.size() / kBatch;
+    std::vector<cpu::TraceHit> hits(kBatch);
+    for (int round = 0; round < kRounds; ++round)
+        for (size_t k = 0; k < batches; ++k) {
+            const size_t batch = (thread % 2 ? batches - 1 - k : k + thread * batches / kThreads) % batches;
+            tracer.closest_hits(std::span(rays).subspan(batch * kBatch, kBatch), hits);
+            for (size_t r = 0; r < kBatch; ++r) {
+                const cpu::TraceHit &a = hits[r], &b = expected[batch * kBatch + r];
+                differences += a.t != b.t || a.patch != b.patch || a.u != b.u || a.v != b.v;
+            }
+        }
+    return differences;
+}
+
+class BottomCache : public testing::TestWithParam<size_t> {};
+
+TEST_P(BottomCache, gives_the_same_hits_to_many_threads_that_evict_each_others_trees) {
+    RenderSettings settings;
+    const auto prepared = prepare_torus(settings);
+    const std::vector<cpu::TraceRay> rays = make_mixed_rays(20 * kBatch);
+    settings.bottom_cache_bytes = 0;
+    std::vector<cpu::TraceHit> expected(rays.size());
+    cpu::Tracer(prepared, settings).closest_hits(rays, expected);
+
+    settings.bottom_cache_bytes = GetParam();
+    const cpu::Tracer tracer(prepared, settings);
+    std::vector<size_t> differences(kThreads);
+    std::vector<std::thread> threads;
+    for (size_t k = 0; k < kThreads; ++k)
+        threads.emplace_back([&, k] { differences[k] = count_differences(tracer, rays, expected, k); });
+    for (std::thread& thread : threads) thread.join();
+
+    for (size_t k = 0; k < kThreads; ++k) EXPECT_EQ(differences[k], 0u) << "thread " << k;
+    Statistics statistics;
+    tracer.add_statistics(statistics);
+    EXPECT_LE(statistics.bottom_cache_bytes, GetParam());
+    EXPECT_GT(statistics.bottom_reused, 0u);
+    // 54 patches of 4 tiles at the full level, and fewer at each bias: more were built than there are.
+    EXPECT_GT(statistics.bottom_built, 54u * (4 + 4));
+}
+
+INSTANTIATE_TEST_SUITE_P(Caps, BottomCache, testing::Values(size_t(60000), size_t(250000), size_t(1000000)));
+
+} // namespace
+
+} // namespace relief

@@ -1,0 +1,217 @@
+// The SIMD evaluation of tiles is the definition of the surface, bit for bit, and every box holds what is
+// below it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <set>
+
+#include "cpu/traversal/kernels.h"
+#include "prepare/prepared_scene.h"
+#include "support/bodies.h"
+#include "support/isas.h"
+
+namespace relief {
+
+namespace {
+
+struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+};
+
+/// The same texels as binary16: normal numbers only, rounded toward zero.
+std::shared_ptr<Texture> to_halves(const Texture& source) {
+    auto result = std::make_shared<Texture>(source);
+    result->floats.clear();
+    for (const float value : source.floats) {
+        const uint32_t bits = std::bit_cast<uint32_t>(value);
+        const int exponent = int(bits >> 23 & 255) - 112;
+        result->halves.push_back(exponent <= 0 ? 0
+                                               : uint16_t((bits >> 16 & 0x8000) | uint32_t(exponent) << 10 |
+                                                          (bits >> 13 & 0x3ff)));
+    }
+    return result;
+}
+
+void expect_tree_of_definition(const Surface& surface, uint32_t patch, const PatchLevels& levels,
+                               const cpu::Kernels& kernels) {
+    const std::unique_ptr<void, Free> memory(
+        std::aligned_alloc(64, cpu::BottomTree::size_bytes(cpu::kTileLevel)));
+    const int depth = std::max(0, int(levels.patch) - cpu::kTileLevel);
+    for (uint32_t tile : {0u, (1u << 2 * depth) - 1}) {
+        auto* tree = new (memory.get()) cpu::BottomTree;
+        tree->key.patch = patch;
+        tree->level = uint32_t(levels.patch - depth);
+        tree->cell_x = (tile & ((1u << depth) - 1)) << cpu::kTileLevel;
+        tree->cell_y = (tile >> depth) << cpu::kTileLevel;
+        kernels.build_tree(surface, levels, *tree);
+        const uint32_t side = 1u << tree->level;
+        for (uint32_t b = 0; b < cpu::BottomTree::block_count(int(tree->level)); ++b) {
+            uint32_t column = 0, row = 0;
+            cpu::BottomTree::block_cell(int(tree->level), b, column, row);
+            for (uint32_t v = 0; v < 15; ++v) {
+                const uint32_t i = tree->cell_x + std::min(column + v % 5, side),
+                               j = tree->cell_y + std::min(row + v / 5, side);
+                const Vec3f expected = evaluate_vertex(surface, patch, levels, i, j);
+                const uint32_t number = cpu::BottomTree::find_first_vertex(int(tree->level), b) +
+                                        v / 5 * cpu::BottomTree::column_count(int(tree->level)) + v % 5;
+                const Vec3f found{tree->vertices(0)[number], tree->vertices(1)[number],
+                                  tree->vertices(2)[number]};
+                ASSERT_EQ(found, expected)
+                    << kernels.name << " patch " << patch << " vertex " << i << " " << j;
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float value = tree->vertices(axis)[number];
+                    if (tree->level == 6) {
+                        EXPECT_LE(tree->root().bounds[axis][b / 32], value);
+                        EXPECT_GE(tree->root().bounds[3 + axis][b / 32], value);
+                        EXPECT_LE(tree->wide_group(int(b / 32)).bounds[axis][b / 2 % 16], value);
+                        EXPECT_GE(tree->wide_group(int(b / 32)).bounds[3 + axis][b / 2 % 16], value);
+                    } else if (tree->level == 5) {
+                        EXPECT_LE(tree->root().bounds[axis][b / 8], value);
+                        EXPECT_GE(tree->root().bounds[3 + axis][b / 8], value);
+                        EXPECT_LE(tree->group(int(b / 8)).bounds[axis][b % 8], value);
+                        EXPECT_GE(tree->group(int(b / 8)).bounds[3 + axis][b % 8], value);
+                    } else if (tree->level == 4) {
+                        EXPECT_LE(tree->root().bounds[axis][b / 2], value);
+                        EXPECT_GE(tree->root().bounds[3 + axis][b / 2], value);
+                    } else if (tree->level == 3) {
+                        EXPECT_LE(tree->group(0).bounds[axis][b], value);
+                        EXPECT_GE(tree->group(0).bounds[3 + axis][b], value);
+                    }
+                }
+            }
+        }
+    }
+}
+
+void expect_definition(const Displacement& displacement, SubdivisionScheme scheme = SubdivisionScheme::none,
+                       bool has_mips = false) {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
+    scene.camera.from = {1.6f, 0.1f, 0.1f};
+    scene.meshes[0].subdivision.scheme = scheme;
+    scene.meshes[0].subdivision.level = 0;
+    if (displacement.frame == FrameKind::file) test::add_flat_normals(scene.meshes[0]);
+    RenderSettings settings;
+    settings.level = has_mips ? kAutoLevel : 0;
+    settings.height = 60;
+    const auto prepared = prepare_scene(scene, settings);
+    const Surface& surface = prepared->surfaces[0];
+    if (has_mips) EXPECT_GT(std::set(surface.mips.begin(), surface.mips.end()).size(), 4u);
+    const PatchLevels cases[] = {{0, {0, 0, 0, 0}}, {1, {1, 0, 1, 0}}, {2, {2, 1, 0, 2}},
+                                 {3, {3, 1, 2, 0}}, {4, {2, 4, 3, 4}}, {5, {5, 3, 0, 4}},
+                                 {6, {4, 6, 5, 2}}, {7, {7, 7, 3, 6}}, {8, {8, 2, 7, 8}}};
+    for (const Isa isa : test::machine_isas())
+        for (const PatchLevels& levels : cases)
+            for (const uint32_t patch : {0u, 5u, 18u, 23u}) {
+                expect_tree_of_definition(surface, patch, levels, *cpu::find_kernels(isa));
+                if (testing::Test::HasFatalFailure()) return;
+            }
+}
+
+TEST(Evaluation, is_the_definition_in_every_space_and_wrap_mode) {
+    for (const DisplacementSpace space :
+         {DisplacementSpace::object, DisplacementSpace::tangent, DisplacementSpace::world})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat, WrapMode::mirror, WrapMode::black}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), space);
+            displacement.wrap = wrap;
+            displacement.midlevel = {0.01f, -0.02f, 0.03f};
+            displacement.scale = {1.5f, 0.5f, -1};
+            displacement.axes = {{2, 0, 1}, {1, -1, 1}};
+            displacement.flip_v = wrap == WrapMode::repeat;
+            expect_definition(displacement);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, is_the_definition_for_half_maps_height_maps_and_missing_tiles) {
+    const auto map = test::make_random_map(40, 30, 0.1f, 9);
+    Displacement displacement = test::make_displacement(to_halves(*map), DisplacementSpace::tangent);
+    expect_definition(displacement);
+    displacement = test::make_displacement(map, DisplacementSpace::tangent);
+    displacement.type = DisplacementType::height;
+    expect_definition(displacement);
+    displacement = test::make_displacement(map, DisplacementSpace::object);
+    displacement.is_udim = true;
+    displacement.tiles[0].udim = 1002; // the mesh lies on 1001: nothing is displaced
+    expect_definition(displacement);
+}
+
+TEST(Evaluation, is_the_definition_of_filtered_maps) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const SubdivisionScheme scheme : {SubdivisionScheme::none, SubdivisionScheme::catmark}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(510, 301, 0.1f, 3), space);
+            displacement.wrap = WrapMode::repeat, displacement.filter = MapFilter::mip;
+            expect_definition(displacement, scheme, true);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, is_the_definition_on_bicubic_patches) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::black}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), space);
+            displacement.wrap = wrap;
+            expect_definition(displacement, SubdivisionScheme::catmark);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, is_the_definition_through_every_kind_of_frame) {
+    Displacement displacement =
+        test::make_displacement(test::make_random_map(37, 23, 0.1f, 3), DisplacementSpace::tangent);
+    for (const FrameKind frame : {FrameKind::mikk, FrameKind::dpdu, FrameKind::file})
+        for (const FrameLengths lengths : {FrameLengths::absolute, FrameLengths::relative}) {
+            if (frame == FrameKind::file && lengths == FrameLengths::relative) continue;
+            displacement.frame = frame, displacement.lengths = lengths;
+            expect_definition(displacement);
+            if (frame != FrameKind::file) expect_definition(displacement, SubdivisionScheme::catmark);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_cells) {
+    for (const uint8_t level : {uint8_t(7), uint8_t(8), uint8_t(9)}) {
+        const Scene scene = test::make_body_scene(
+            test::make_torus(4, 6),
+            test::make_displacement(test::make_random_map(256, 192, 0.1f, 4), DisplacementSpace::tangent));
+        RenderSettings settings;
+        settings.level = 0;
+        const auto prepared = prepare_scene(scene, settings);
+        const Surface& surface = prepared->surfaces[0];
+        const PatchLevels levels{level, {level, 3, uint8_t(level - 1), 0}};
+        const uint32_t depth = level - cpu::kQuarterLevel;
+        const std::unique_ptr<void, Free> memory(
+            std::aligned_alloc(64, (cpu::TileDirectory::size_bytes(depth) + 63) / 64 * 64));
+        auto* directory = new (memory.get()) cpu::TileDirectory;
+        directory->key.patch = 7;
+        directory->depth = depth;
+        cpu::build_tile_directory(surface, levels, *directory);
+        const uint32_t steps = cpu::TileDirectory::step_count(depth);
+        for (uint32_t j = 0; j <= 1u << level; j += 3)
+            for (uint32_t i = 0; i <= 1u << level; i += 3) {
+                const Vec3f p = evaluate_vertex(surface, 7, levels, i, j);
+                const float value[3] = {p.x, p.y, p.z};
+                uint32_t x = std::min(i >> cpu::kQuarterLevel, (1u << depth) - 1),
+                         y = std::min(j >> cpu::kQuarterLevel, (1u << depth) - 1);
+                for (uint32_t step = steps; step-- > 0;) {
+                    const uint32_t fanout = cpu::TileDirectory::fanout(depth, step),
+                                   side = cpu::TileDirectory::step_side(depth, step);
+                    const uint32_t child = y % fanout * fanout + x % fanout;
+                    x /= fanout, y /= fanout;
+                    const cpu::Node16& node =
+                        directory->nodes()[cpu::TileDirectory::step_begin(depth, step) + y * side + x];
+                    for (int axis = 0; axis < 3; ++axis) {
+                        ASSERT_LE(node.bounds[axis][child], value[axis]);
+                        ASSERT_GE(node.bounds[3 + axis][child], value[axis]);
+                    }
+                }
+            }
+    }
+}
+
+} // namespace
+
+} // namespace relief

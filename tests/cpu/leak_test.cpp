@@ -1,0 +1,206 @@
+// Watertight: from inside a closed displaced body every ray hits, whatever the levels, biases, frames and
+// transforms. Many of the rays aim at vertices and edges of the micro-mesh, many go in packets.
+// RELIEF_LEAK_RAYS sets how many rays in all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <ostream>
+
+#include "base/parallel.h"
+#include "cpu/tracer.h"
+#include "math/affine.h"
+#include "support/bodies.h"
+#include "surface/smooth_shapes.h"
+
+namespace relief {
+
+namespace {
+
+constexpr uint64_t kDefaultRays = 10000000;
+constexpr uint64_t kBatch = 4096;
+
+enum class Body { sphere, torus, creased };
+enum class Placement { single, instances };
+
+struct Case {
+    const char* name;
+    Body body;
+    DisplacementSpace space;
+    int level;
+    Placement placement;
+    SubdivisionScheme scheme = SubdivisionScheme::none;
+    FrameKind frame = FrameKind::mikk;
+    FrameLengths lengths = FrameLengths::absolute;
+    MapFilter filter = MapFilter::none;
+};
+
+void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
+
+const Case kCases[] = {
+    {"sphere_object_level5", Body::sphere, DisplacementSpace::object, 5, Placement::single},
+    {"sphere_object_auto", Body::sphere, DisplacementSpace::object, kAutoLevel, Placement::single},
+    {"sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single},
+    {"sphere_tangent_auto_instances", Body::sphere, DisplacementSpace::tangent, kAutoLevel,
+     Placement::instances},
+    {"torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single},
+    {"torus_tangent_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single},
+    {"torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel, Placement::instances},
+    {"torus_object_level6", Body::torus, DisplacementSpace::object, 6, Placement::single},
+    {"torus_tangent_level7", Body::torus, DisplacementSpace::tangent, 7, Placement::single},
+    {"smooth_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark},
+    {"smooth_sphere_object_auto_instances", Body::sphere, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::catmark},
+    {"smooth_torus_tangent_level3", Body::torus, DisplacementSpace::tangent, 3, Placement::single,
+     SubdivisionScheme::catmark},
+    {"creased_cube_tangent_auto", Body::creased, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark},
+    {"creased_cube_object_level4", Body::creased, DisplacementSpace::object, 4, Placement::single,
+     SubdivisionScheme::catmark},
+    {"sphere_with_hard_edges_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::file},
+    {"sphere_relative_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::relative},
+    {"filtered_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
+    {"filtered_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
+};
+
+uint64_t ray_count() {
+    const char* text = std::getenv("RELIEF_LEAK_RAYS");
+    return (text ? std::strtoull(text, nullptr, 10) : kDefaultRays) / std::size(kCases);
+}
+
+/// Small, fast, seeded by the batch, so that a leak can be found again.
+struct Random {
+    uint64_t state;
+    float uniform() {
+        state = state * 6364136223846793005ull + 1442695040888963407ull;
+        return float(state >> 40) * 0x1p-24f;
+    }
+    Vec3f direction() {
+        const float z = 2 * uniform() - 1, angle = 6.2831853f * uniform(),
+                    r = std::sqrt(std::fmax(0.0f, 1 - z * z));
+        return {r * std::cos(angle), r * std::sin(angle), z};
+    }
+};
+
+Vec3f make_inner_point(Body body, Random& random) {
+    if (body != Body::torus) return random.direction() * (0.3f * random.uniform());
+    const float angle = 6.2831853f * random.uniform();
+    return Vec3f{std::cos(angle), 0, -std::sin(angle)} + random.direction() * (0.1f * random.uniform());
+}
+
+/// A vertex of the micro-mesh, or a point of one of its edges, in world space.
+Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t bias, Random& random) {
+    const Surface& surface = scene.surfaces[instance.surface];
+    const uint32_t patch = uint32_t(random.uniform() * float(surface.patch_count()));
+    const PatchLevels levels = instance.levels->at(patch).biased(bias);
+    const uint32_t side = 1u << levels.patch;
+    uint32_t i = uint32_t(random.uniform() * float(side + 1)),
+             j = uint32_t(random.uniform() * float(side + 1));
+    if (random.uniform() < 0.5f) (random.uniform() < 0.5f ? i : j) = random.uniform() < 0.5f ? 0 : side;
+    const Vec3f a = evaluate_vertex(surface, patch, levels, i, j);
+    const Vec3f b = evaluate_vertex(surface, patch, levels, std::min(i + 1, side), j);
+    const float s = random.uniform() < 0.5f ? 0 : random.uniform();
+    return transform_point(instance.world_from_object, a * (1 - s) + b * s);
+}
+
+Scene make_scene(const Case& c) {
+    const bool is_smooth = c.scheme != SubdivisionScheme::none;
+    Mesh mesh = c.body == Body::sphere    ? test::make_cube_sphere(is_smooth ? 2 : 4)
+                : c.body == Body::creased ? test::make_shape(test::Shape::tangled_cube)
+                                          : test::make_torus(8, 14);
+    mesh.subdivision.scheme = c.scheme;
+    mesh.subdivision.level = c.body == Body::sphere ? 1 : c.body == Body::creased ? 2 : 0;
+    Scene scene = test::make_body_scene(
+        std::move(mesh),
+        test::make_displacement(test::make_random_map(256, 192, c.body == Body::torus ? 0.06f : 0.12f, 21),
+                                c.space));
+    scene.displacements[0].filter = c.filter;
+    test::set_frames(scene, c.frame, c.lengths);
+    // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
+    scene.camera.from = c.body == Body::torus ? Vec3f{1.2f, 0.1f, 0.1f} : Vec3f{0.75f, 0.1f, 0.2f};
+    if (c.placement == Placement::instances)
+        for (int k = 1; k <= 2; ++k) {
+            Object copy = scene.objects[0];
+            copy.world_from_object = compose(make_translation({float(5 * k), 1, -2}),
+                                             compose(make_rotation_degrees({20.0f * float(k), 35, 50}),
+                                                     make_scale({k == 1 ? -1.2f : 0.8f, 0.7f, 1.3f})));
+            scene.objects.push_back(copy);
+        }
+    return scene;
+}
+
+/// Auto levels are worth a test only where patches differ and edges are coarser than their patches.
+void expect_mixed_levels(const PreparedScene& scene, const Case& c) {
+    if (c.level != kAutoLevel) return;
+    int lowest = kMaxLevel, highest = 0, coarse_edges = 0;
+    for (const Instance& instance : scene.instances)
+        for (uint32_t patch = 0; patch < scene.surfaces[instance.surface].patch_count(); ++patch) {
+            const PatchLevels levels = instance.levels->at(patch);
+            lowest = std::min<int>(lowest, levels.patch), highest = std::max<int>(highest, levels.patch);
+            for (const uint8_t edge : levels.edge) coarse_edges += edge < levels.patch;
+        }
+    EXPECT_GE(highest - lowest, 2);
+    EXPECT_GT(coarse_edges, 20);
+}
+
+class LeakTest : public testing::TestWithParam<Case> {};
+
+TEST_P(LeakTest, every_ray_from_inside_hits) {
+    const Case& c = GetParam();
+    RenderSettings settings;
+    settings.level = c.level;
+    settings.height = 96;
+    settings.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
+    expect_mixed_levels(*prepared, c);
+    const cpu::Tracer tracer(prepared, settings);
+    std::atomic<uint64_t> leaks{0};
+    const uint64_t batches = (ray_count() + kBatch - 1) / kBatch;
+    parallel_for("leaks", batches, 1, [&](size_t begin, size_t end) {
+        std::vector<cpu::TraceRay> rays(kBatch);
+        std::vector<cpu::TraceHit> hits(kBatch);
+        for (size_t batch = begin; batch < end; ++batch) {
+            Random random{batch * 0x9e3779b97f4a7c15ull + 1};
+            for (size_t k = 0; k < kBatch; ++k) {
+                const Instance& instance = prepared->instances[batch % prepared->instances.size()];
+                rays[k].bias = uint32_t(k / 1024);
+                rays[k].origin =
+                    transform_point(instance.world_from_object, make_inner_point(c.body, random));
+                if (k / 16 % 2 == 1 && k % 16 > 0) {
+                    // Every other run of sixteen is a narrow bundle: a packet.
+                    rays[k] = rays[k - k % 16];
+                    rays[k].direction += random.direction() * (0.1f * length(rays[k].direction));
+                } else {
+                    rays[k].direction =
+                        k % 2 ? make_target(*prepared, instance, rays[k].bias, random) - rays[k].origin
+                              : random.direction();
+                }
+            }
+            tracer.closest_hits(rays, hits);
+            for (size_t k = 0; k < kBatch; ++k) {
+                if (hits[k].is_hit()) continue;
+                if (leaks++ < 5)
+                    ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].bias;
+            }
+        }
+    });
+    EXPECT_EQ(leaks, 0u);
+    RecordProperty("rays", std::to_string(batches * kBatch));
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, LeakTest, testing::ValuesIn(kCases),
+                         [](const testing::TestParamInfo<Case>& info) {
+                             return std::string(info.param.name);
+                         });
+
+} // namespace
+
+} // namespace relief

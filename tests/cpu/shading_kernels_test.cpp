@@ -1,0 +1,288 @@
+// The SIMD kernels of shading beside what they do many at once: the same numbers on every instruction set.
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cpu/shading/lights.h"
+#include "cpu/shading/shading_kernels.h"
+#include "formulas/basis.h"
+#include "formulas/bsdf.h"
+#include "formulas/shading_normal.h"
+#include "formulas/sobol.h"
+#include "formulas/surface_point.h"
+#include "formulas/warp.h"
+#include "relief/render.h"
+#include "support/shading_scenes.h"
+
+namespace relief {
+namespace {
+
+constexpr size_t kMany = 150; ///< several rounds of four times sixteen, the last one not full
+
+/// Random numbers in [0, 1).
+class Numbers {
+  public:
+    float next() { return pair().x; }
+    Vec2f pair() {
+        ++count_;
+        return scalar::sobol_pair(17, count_ % 4096, count_ / 4096 + 2);
+    }
+    Vec3f direction() { return normalize(scalar::square_to_sphere(pair())); }
+
+  private:
+    uint32_t count_ = 0;
+};
+
+Environment make_sky(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = width, texture->height = height, texture->channel_count = channels;
+    for (uint32_t k = 0; k < 4 * width * height; ++k) {
+        const uint32_t value = scalar::hash_uint(k);
+        if (has_halves)
+            texture->halves.push_back(uint16_t(0x3000 + value % 0x1400));
+        else
+            texture->floats.push_back(float(value % 1000) * (value % 7 == 0 ? 1.0f : 1e-3f));
+    }
+    Environment environment;
+    environment.texture = texture;
+    environment.color = {1, 0.5f, 0.25f};
+    environment.rotate_degrees = 77;
+    return environment;
+}
+
+template <class T> void expect_same_bits(const T& a, const T& b, size_t k, const std::string& isa) {
+    ASSERT_EQ(std::memcmp(&a, &b, sizeof(T)), 0) << isa << ", number " << k;
+}
+
+void expect_kernels_of(const cpu::EnvironmentLight& light) {
+    Numbers numbers;
+    std::vector<Vec3f> directions{{0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}};
+    std::vector<Vec2f> pairs{{0, 0}, {0.99999994f, 0.99999994f}};
+    while (directions.size() < kMany) directions.push_back(numbers.direction());
+    while (pairs.size() < kMany) pairs.push_back(numbers.pair());
+    std::vector<cpu::EnvironmentLookup> found(kMany);
+    std::vector<cpu::DirectionSample> drawn(kMany);
+    std::vector<Vec3f> radiances(kMany);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const Vec3f nowhere{nan, nan, nan};
+    for (const std::string& isa : available_isas()) {
+        // Anything, from within the image.
+        light.look_up(cpu::find_shading_kernels(isa.c_str()), {&nowhere, 1}, found);
+        for (const size_t count : {size_t(1), size_t(16), size_t(37), kMany}) {
+            const cpu::ShadingKernels& kernels = cpu::find_shading_kernels(isa.c_str());
+            light.look_up(kernels, {directions.data(), count}, found);
+            light.draw_directions(kernels, {pairs.data(), count}, drawn);
+            light.fetch_radiance(kernels, {pairs.data(), count}, radiances);
+            for (size_t k = 0; k < count; ++k) {
+                expect_same_bits(found[k], light.look_up(directions[k]), k, isa);
+                expect_same_bits(drawn[k], light.draw_direction(pairs[k]), k, isa);
+                expect_same_bits(radiances[k], light.radiance(pairs[k]), k, isa);
+                if (testing::Test::HasFailure()) return;
+            }
+        }
+    }
+}
+
+TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
+    for (const bool has_halves : {false, true}) {
+        for (const uint32_t width : {1u, 2u, 7u, 300u})
+            expect_kernels_of(cpu::EnvironmentLight(make_sky(width, 1 + width / 2, 3, has_halves)));
+        expect_kernels_of(cpu::EnvironmentLight(make_sky(64, 32, 1, has_halves)));
+    }
+    // Cells of several texels; a lamp, dark rows and columns.
+    Environment large = make_sky(1500, 750, 3, false);
+    Texture lamps = *large.texture;
+    for (size_t k = 0; k < lamps.floats.size(); ++k)
+        if (k / 6000 % 3 == 0 || k / 4 % 5 == 0) lamps.floats[k] = 0;
+    lamps.floats[4 * (1500 * 200 + 1499)] = 1e6f;
+    expect_kernels_of(cpu::EnvironmentLight(large));
+    large.texture = std::make_shared<Texture>(lamps);
+    expect_kernels_of(cpu::EnvironmentLight(large));
+    Environment plain;
+    plain.color = {0.5f, 1, 2};
+    expect_kernels_of(cpu::EnvironmentLight(plain));
+}
+
+struct Case {
+    cpu::SurfacePoint point;
+    cpu::TraceRay ray;
+    scalar::BsdfParameters material;
+    Vec3f light;
+    float light_pdf;
+    Vec2f pick, u;
+};
+
+/// Every kind of material in one batch, points seen from both sides and at grazing angles, lights behind the
+/// surface and none at all.
+std::vector<Case> make_cases() {
+    Numbers numbers;
+    std::vector<Case> cases(16 * 40);
+    for (size_t k = 0; k < cases.size(); ++k) {
+        Case& c = cases[k];
+        c.point.position = numbers.direction() * 10.0f;
+        c.point.geometric_normal = numbers.direction();
+        c.point.shading_normal = normalize(c.point.geometric_normal + numbers.direction() * numbers.next());
+        c.point.position_error = 1e-5f * numbers.next();
+        c.ray.direction = numbers.direction();
+        if (k % 5 == 0)
+            c.ray.direction = normalize(cross(c.point.geometric_normal, c.ray.direction) +
+                                        c.point.geometric_normal * 1e-3f);
+        const bool is_diffuse = k / 16 % 4 == 0 || k % 3 == 0;
+        c.material = {{numbers.next(), numbers.next(), numbers.next()},
+                      numbers.next(),
+                      is_diffuse ? 0 : numbers.next(),
+                      is_diffuse ? 1 : 1 + numbers.next()};
+        c.light = numbers.direction();
+        c.light_pdf = k % 7 == 0 ? 0 : numbers.next() + 0.1f;
+        c.pick = numbers.pair(), c.u = numbers.pair();
+    }
+    return cases;
+}
+
+Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
+    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
+}
+
+void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
+    for (int axis = 0; axis < 3; ++axis) {
+        lanes.base_color[axis][lane] = get_component(c.material.base_color, axis);
+        lanes.light_direction[axis][lane] = get_component(c.light, axis);
+    }
+    lanes.roughness[lane] = c.material.roughness, lanes.metallic[lane] = c.material.metallic;
+    lanes.ior[lane] = c.material.ior, lanes.light_pdf[lane] = c.light_pdf;
+}
+
+/// The same with the formulas for one.
+void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
+    const Vec3f wo = -c.ray.direction;
+    const bool is_behind = dot(c.point.geometric_normal, wo) < 0;
+    const Vec3f geometric = is_behind ? -c.point.geometric_normal : c.point.geometric_normal;
+    const Vec3f shading = is_behind ? -c.point.shading_normal : c.point.shading_normal;
+    EXPECT_EQ(get_lane(lanes.geometric_normal, lane), geometric);
+    EXPECT_EQ(get_lane(lanes.shading_normal, lane), shading);
+    const scalar::Basis basis = scalar::make_basis(scalar::bend_normal(shading, geometric, wo));
+    const Vec3f wo_local = scalar::lift_viewer(scalar::to_local(basis, wo));
+    const scalar::Bsdf bsdf = scalar::make_bsdf(c.material, wo_local.z);
+
+    const scalar::BsdfValue value = scalar::evaluate_bsdf(bsdf, wo_local, scalar::to_local(basis, c.light));
+    const bool is_lit = c.light_pdf > 0 && dot(c.light, geometric) > 0 && !(value.value == Vec3f{});
+    ASSERT_EQ(lanes.is_lit >> lane & 1, is_lit);
+    EXPECT_EQ(get_lane(lanes.light_reflected, lane), value.value);
+    EXPECT_EQ(lanes.light_bsdf_pdf[lane], value.pdf);
+    const auto offset = [&](const Vec3f& direction) {
+        return scalar::offset_origin(c.point.position, geometric, c.point.position_error, direction);
+    };
+    EXPECT_EQ(get_lane(lanes.shadow_origin, lane), offset(c.light));
+
+    const scalar::BsdfSample drawn = scalar::sample_bsdf(bsdf, wo_local, c.pick.y, c.u);
+    const Vec3f direction = normalize(scalar::from_local(basis, drawn.direction));
+    const bool goes_on = !(drawn.weight == Vec3f{}) && dot(geometric, direction) > 0;
+    ASSERT_EQ(lanes.goes_on >> lane & 1, goes_on);
+    if (!goes_on) return;
+    EXPECT_EQ(get_lane(lanes.bounce_direction, lane), direction);
+    EXPECT_EQ(get_lane(lanes.bounce_weight, lane), drawn.weight);
+    EXPECT_EQ(lanes.bounce_pdf[lane], drawn.pdf);
+    EXPECT_EQ(get_lane(lanes.bounce_origin, lane), offset(direction));
+}
+
+TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_one) {
+    const std::vector<Case> cases = make_cases();
+    for (const std::string& isa : available_isas()) {
+        uint32_t lit = 0, going = 0;
+        for (size_t first = 0; first < cases.size(); first += 16) {
+            const size_t count = first % 3 == 0 ? 16 : 1 + first / 16 % 15;
+            std::array<cpu::SurfacePoint, 16> points;
+            std::array<cpu::TraceRay, 16> rays;
+            std::array<Vec2f, 16> picks, pairs;
+            cpu::VertexLanes lanes;
+            std::memset(&lanes, 0xff, sizeof lanes); // no numbers in the lanes beyond
+            for (size_t lane = 0; lane < count; ++lane) {
+                const Case& c = cases[first + lane];
+                points[lane] = c.point, rays[lane] = c.ray, picks[lane] = c.pick, pairs[lane] = c.u;
+                set_lane(c, lane, lanes);
+            }
+            cpu::find_shading_kernels(isa.c_str())
+                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data()}, lanes);
+            EXPECT_EQ((lanes.is_lit | lanes.goes_on) >> count, 0);
+            for (size_t lane = 0; lane < count; ++lane) {
+                expect_lane(cases[first + lane], lanes, lane);
+                ASSERT_FALSE(testing::Test::HasFailure()) << isa << ", case " << first + lane;
+            }
+            lit += uint32_t(std::popcount(lanes.is_lit)), going += uint32_t(std::popcount(lanes.goes_on));
+        }
+        EXPECT_GT(lit, 100);
+        EXPECT_GT(going, 250);
+    }
+}
+
+TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
+    const Case c = make_cases()[1];
+    for (const std::string& isa : available_isas()) {
+        cpu::VertexLanes lanes{};
+        set_lane(c, 0, lanes);
+        lanes.goes_on = 1;
+        cpu::find_shading_kernels(isa.c_str()).reflect({1, &c.point, &c.ray, nullptr, nullptr}, lanes);
+        EXPECT_EQ(lanes.goes_on, 0) << isa;
+    }
+}
+
+/// An environment, a sun, a small and a large lamp, a glowing quad.
+Scene make_lit_scene() {
+    Scene scene;
+    add_object(scene, make_floor(10), make_matte(0.5f));
+    Material glowing = make_matte(0);
+    glowing.emission = {300, 300, 300};
+    add_object(scene, make_floor(1), glowing);
+    scene.objects.back().world_from_object.translation = {2, 1, 0};
+    scene.environment = make_sky(64, 32, 3, false);
+    scene.lights.resize(3);
+    scene.lights[0].strength = 400;
+    for (int k = 1; k < 3; ++k) {
+        scene.lights[k].type = LightType::point, scene.lights[k].strength = 500;
+        scene.lights[k].position = {-1, 1.5f, 0}, scene.lights[k].radius = k == 1 ? 0.0f : 0.3f;
+    }
+    return scene;
+}
+
+TEST(Lights, are_drawn_for_many_points_as_for_each) {
+    RenderSettings settings;
+    const cpu::Tracer tracer(prepare_scene(make_lit_scene(), settings), settings);
+    const cpu::LightSet lights(tracer);
+    Numbers numbers;
+    std::vector<cpu::LightSet::Receiver> at(kMany);
+    std::vector<cpu::LightSet::RandomNumbers> random(kMany);
+    for (size_t k = 0; k < kMany; ++k) {
+        at[k] = {numbers.direction(), 0};
+        random[k] = {numbers.next(), numbers.next(), numbers.pair()};
+    }
+    std::vector<cpu::LightSample> drawn(kMany);
+    lights.draw(at, random, drawn);
+    std::vector<uint32_t> odd;
+    for (uint32_t k = 1; k < kMany; k += 2) odd.push_back(k);
+    lights.weigh(drawn, odd);
+    std::array<size_t, 4> counts{}; // environment, sun, lamps, quad
+    for (uint32_t k = 0; k < kMany; ++k) {
+        cpu::LightSample one;
+        const uint32_t first = 0;
+        lights.draw({&at[k], 1}, {&random[k], 1}, {&one, 1});
+        const bool is_environment = one.lacks_radiance;
+        counts[is_environment ? 0 : one.emitter ? 3 : std::isinf(one.distance) ? 1 : 2] += 1;
+        if (k % 2 == 1) lights.weigh({&one, 1}, {&first, 1});
+        EXPECT_EQ(drawn[k].lacks_radiance, is_environment && k % 2 == 0) << k;
+        EXPECT_EQ(drawn[k].direction, one.direction) << k;
+        EXPECT_EQ(drawn[k].distance, one.distance) << k;
+        EXPECT_EQ(drawn[k].weight, one.weight) << k;
+        EXPECT_EQ(drawn[k].pdf, one.pdf) << k;
+        EXPECT_EQ(drawn[k].emitter.has_value(), one.emitter.has_value()) << k;
+    }
+    for (const size_t count : counts) EXPECT_GT(count, 3u);
+}
+
+} // namespace
+} // namespace relief

@@ -1,0 +1,121 @@
+// What a scene is warned of when it is prepared.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "prepare/prepared_scene.h"
+#include "relief/error.h"
+#include "relief/render.h"
+#include "support/bodies.h"
+
+namespace relief {
+namespace {
+
+std::vector<std::string> prepare_with_crease(float sharpness, int level, CreaseRule rule) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(4, 6),
+        test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
+    scene.meshes[0].creases = {{0, 1, sharpness}, {1, 2, kInfiniteSharpness}};
+    scene.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
+    scene.meshes[0].subdivision.level = level;
+    scene.meshes[0].subdivision.creases = rule;
+    return prepare_scene(std::move(scene), {})->warnings;
+}
+
+TEST(Warnings, name_the_level_that_shows_a_semi_sharp_crease_as_it_is) {
+    const std::vector<std::string> warnings = prepare_with_crease(2.5f, 1, CreaseRule::obey);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("sharpness 2.5"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("level 2 shows"), std::string::npos) << warnings[0];
+    EXPECT_TRUE(prepare_with_crease(2.5f, 2, CreaseRule::obey).empty());
+    EXPECT_TRUE(prepare_with_crease(0.5f, 1, CreaseRule::obey).empty());
+    EXPECT_TRUE(prepare_with_crease(2.5f, 1, CreaseRule::ignore).empty());
+    EXPECT_TRUE(prepare_with_crease(0, 0, CreaseRule::obey).empty());
+    Scene plain = test::make_body_scene(test::make_torus(4, 6), {});
+    plain.environment.emplace();
+    plain.objects[0].displacement = kNoIndex, plain.displacements.clear();
+    plain.meshes[0].creases = {{0, 1, 2.5f}};
+    plain.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
+    plain.meshes[0].subdivision.level = 1;
+    EXPECT_TRUE(prepare_scene(std::move(plain), {})->warnings.empty()) << "no patch is fitted";
+    EXPECT_NE(prepare_with_crease(0.5f, 0, CreaseRule::obey)[0].find("level 1 shows"), std::string::npos);
+}
+
+TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
+    const auto prepare = [](const std::function<void(Scene&)>& change) {
+        Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+        scene.objects[0].displacement = kNoIndex, scene.displacements.clear();
+        scene.lights.clear(), scene.environment.reset();
+        scene.materials.assign(1, Material{}), scene.objects[0].material = 0;
+        change(scene);
+        return prepare_scene(std::move(scene), {})->warnings;
+    };
+    const auto expect_dark = [&](const std::function<void(Scene&)>& change, size_t count) {
+        const std::vector<std::string> warnings = prepare(change);
+        ASSERT_EQ(warnings.size(), count);
+        if (count > 0) EXPECT_NE(warnings[0].find("nothing in the scene gives light"), std::string::npos);
+    };
+    expect_dark([](Scene&) {}, 1);
+    expect_dark([](Scene& scene) { scene.objects[0].material = kNoIndex; }, 1);
+    expect_dark([](Scene& scene) { scene.materials[0].emission = {0, 0.1f, 0}; }, 0);
+    expect_dark([](Scene& scene) { scene.lights.emplace_back(); }, 0);
+    expect_dark([](Scene& scene) { scene.lights.emplace_back().strength = 0; }, 1);
+    expect_dark([](Scene& scene) { scene.environment.emplace(); }, 0);
+    expect_dark([](Scene& scene) { scene.environment.emplace().color = {0, 0, 0}; }, 1);
+    const std::vector<std::string> empty = prepare([](Scene& scene) { scene.objects.clear(); });
+    ASSERT_EQ(empty.size(), 1u);
+    EXPECT_NE(empty[0].find("no objects; only its environment"), std::string::npos);
+}
+
+TEST(Prepare, tells_the_pixel_of_a_nan_whatever_the_filter) {
+    for (const MapFilter filter : {MapFilter::none, MapFilter::mip}) {
+        auto map = test::make_random_map(64, 64, 0.1f, 1);
+        map->floats[4 * (50 * 64 + 40)] = NAN;
+        Scene scene = test::make_body_scene(test::make_torus(4, 6),
+                                            test::make_displacement(map, DisplacementSpace::object));
+        scene.displacements[0].filter = filter;
+        try {
+            prepare_scene(std::move(scene), {});
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("(40, 50)"), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(Prepare, leaves_detail_out_of_tessellated_surfaces) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(4, 6),
+        test::make_displacement(test::make_random_map(64, 64, 0.01f, 1), DisplacementSpace::object));
+    scene.environment = Environment{};
+    RenderSettings settings;
+    settings.width = settings.height = 24, settings.spp = 1, settings.level = 3, settings.layers = {"N"};
+    settings.surface = SurfaceMode::tessellated;
+    const Image plain = render(scene, settings).image;
+    scene.displacements[0].autobump = true;
+    EXPECT_EQ(render(scene, settings).image.pixels, plain.pixels);
+    settings.surface = SurfaceMode::direct;
+    EXPECT_NE(render(scene, settings).image.pixels, plain.pixels);
+}
+
+TEST(Warnings, name_the_tiles_that_have_no_file) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(4, 6),
+        test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
+    scene.displacements[0].is_udim = true;
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
+    for (Vec2f& uv : scene.meshes[0].uvs) uv.x *= 2;
+    const std::vector<std::string> warnings = prepare_scene(scene, {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("tile(s) 1002 of mesh 'torus'"), std::string::npos) << warnings[0];
+}
+
+} // namespace
+} // namespace relief
