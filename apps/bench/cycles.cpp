@@ -113,8 +113,8 @@ class CyclesSuite {
                         {"no command `blender` is found in PATH", "bench cycles",
                          "install Blender; on Debian: apt-get install --no-install-recommends blender"});
         blender_ = blender->string();
-        threads_ = options.settings.threads > 0 ? options.settings.threads
-                                                : int(std::thread::hardware_concurrency());
+        threads_ = options.settings.device.threads > 0 ? options.settings.device.threads
+                                                       : int(std::thread::hardware_concurrency());
     }
 
     Json run() {
@@ -129,7 +129,7 @@ class CyclesSuite {
     void make_head() {
         const RenderSettings& s = options_.settings;
         result_ = {{"suite", "cycles"}, {"build", describe_build()}, {"machine", describe_machine()}};
-        result_["settings"] = {{"width", s.width},         {"height", s.height},
+        result_["settings"] = {{"width", s.image.width},   {"height", s.image.height},
                                {"threads", threads_},      {"runs", options_.runs},
                                {"dicing_rate_pixels", 1},  {"importance_map", kImportanceMap},
                                {"scenes", options_.scenes}};
@@ -141,7 +141,7 @@ class CyclesSuite {
         return options_.folder / "scenes" / name / "scene.json";
     }
     std::string size() const {
-        return fmt::format("{}x{}", options_.settings.width, options_.settings.height);
+        return fmt::format("{}x{}", options_.settings.image.width, options_.settings.image.height);
     }
 
     void measure(const std::string& name) {
@@ -272,7 +272,7 @@ class CyclesSuite {
 std::vector<std::string> default_cycles_scenes() { return {"rock", "rocks", "pumpkin"}; }
 
 CyclesOptions make_quick_options(CyclesOptions options) {
-    options.settings.width = 64, options.settings.height = 36;
+    options.settings.image.width = 64, options.settings.image.height = 36;
     options.samples = 4;
     options.runs = 1;
     return options;

@@ -133,7 +133,7 @@ Json measure_edits(const Scene& scene, const RenderSettings& settings, const std
 Json measure_kind(const Kind& kind, const EditsOptions& options, const Scene& scene,
                   const std::vector<MapEdit>& edits) {
     RenderSettings settings = options.settings;
-    settings.spp = kind.samples, settings.bounces = kind.bounces;
+    settings.image.spp = kind.samples, settings.image.bounces = kind.bounces;
     Json entry = {{"name", kind.name}, {"samples", kind.samples}, {"bounces", kind.bounces}};
     entry["fresh"] = measure_fresh(options.folder / "pumpkin" / "scene.json", settings, options.runs);
     entry["edits"] = measure_edits(scene, settings, edits);
@@ -156,7 +156,7 @@ void add_goal(Json& goals, const std::string& name, double reached) {
 
 EditsOptions make_quick_options(EditsOptions options) {
     options.runs = 1;
-    options.settings.width = 64, options.settings.height = 36;
+    options.settings.image.width = 64, options.settings.image.height = 36;
     options.enlargement = 1, options.edge = 64;
     return options;
 }
@@ -172,9 +172,9 @@ Json run_edits(const EditsOptions& options, const Report& report) {
                    {"machine", describe_machine()},
                    {"settings",
                     {{"runs", options.runs},
-                     {"width", options.settings.width},
-                     {"height", options.settings.height},
-                     {"threads", options.settings.threads},
+                     {"width", options.settings.image.width},
+                     {"height", options.settings.image.height},
+                     {"threads", options.settings.device.threads},
                      {"map", {tile.texture->width, tile.texture->height}},
                      {"edge", options.edge},
                      {"edits", edits.size()}}},

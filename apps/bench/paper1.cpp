@@ -30,18 +30,18 @@ std::string format_level(int level) { return level == kAutoLevel ? "auto" : std:
 
 RenderSettings make_direct_light(const Paper1Options& options) {
     RenderSettings settings = options.settings;
-    settings.spp = 1, settings.bounces = 0;
-    settings.surface = SurfaceMode::direct;
+    settings.image.spp = 1, settings.image.bounces = 0;
+    settings.surface.mode = SurfaceMode::direct;
     return settings;
 }
 
 RenderSettings make_uncached(RenderSettings settings) {
-    settings.bottom_cache_bytes = 0;
+    settings.surface.cache_bytes = 0;
     return settings;
 }
 
 Json describe_tessellation(const Scene& scene, RenderSettings settings, int level) {
-    settings.level = level;
+    settings.surface.level = level;
     const TessellationCost cost = estimate_tessellation(scene, settings);
     return {{"level", format_level(level)},
             {"micro_quads", cost.micro_quads},
@@ -56,9 +56,9 @@ Json make_table_row(const std::string& name, const Scene& scene, const RenderSet
                     const Statistics& direct) {
     const uint64_t total = direct.geometry_bytes + direct.structures_bytes;
     Json tessellated = Json::array();
-    std::vector<int> levels = {settings.level};
+    std::vector<int> levels = {settings.surface.level};
     for (const int level : kTableLevels)
-        if (level != settings.level) levels.push_back(level);
+        if (level != settings.surface.level) levels.push_back(level);
     for (const int level : levels) tessellated.push_back(describe_tessellation(scene, settings, level));
     const auto paper = std::find_if(kPaperMemory.begin(), kPaperMemory.end(),
                                     [&](const PaperMemory& row) { return row.scene == name; });
@@ -80,7 +80,7 @@ Json make_table_row(const std::string& name, const Scene& scene, const RenderSet
 /// Tessellated, unless that is refused here: beyond the limit of the options.
 Variant make_tessellated(const Paper1Options& options, const RenderSettings& direct, uint64_t peak_bytes) {
     Variant variant{"tessellated", direct, {}, {}};
-    variant.settings.surface = SurfaceMode::tessellated;
+    variant.settings.surface.mode = SurfaceMode::tessellated;
     if (peak_bytes > options.tessellated_limit_bytes)
         variant.refusal = fmt::format("left out: making it takes {} bytes, the limit of this run is {}",
                                       peak_bytes, options.tessellated_limit_bytes);
@@ -106,7 +106,7 @@ constexpr std::pair<BottomForm, const char*> kBottomForms[] = {{BottomForm::spli
 /// The direct variants in both forms of the Vulkan engine's bottom level.
 void add_bottom_forms(RenderSettings cached, std::vector<Variant>& variants) {
     for (const auto& [form, name] : kBottomForms) {
-        cached.bottom = form;
+        cached.experiment.bottom = form;
         variants.push_back({fmt::format("{}, no cache", name), make_uncached(cached), {}, {}});
         variants.push_back({name, cached, {}, {}});
     }
@@ -127,7 +127,7 @@ Json make_bottom_forms(const std::string& name, std::span<const Variant> variant
 Json make_casts(const std::string& name, const std::vector<Variant>& variants) {
     Json entry = {{"scene", name}, {"variants", Json::array()}};
     for (const Variant& variant : variants)
-        if (variant.settings.surface == SurfaceMode::direct && !variant.runs.empty())
+        if (variant.settings.surface.mode == SurfaceMode::direct && !variant.runs.empty())
             entry["variants"].push_back({{"name", variant.name}, {"casts", describe_casts(variant.runs)}});
     return entry;
 }
@@ -172,7 +172,7 @@ class Paper1 {
                                          {"direct", cached, {}, {}},
                                          make_tessellated(options_, cached, peak_bytes)};
         const size_t figure_variants = variants.size();
-        if (cached.engine == EngineKind::vulkan) add_bottom_forms(cached, variants);
+        if (cached.device.engine == EngineKind::vulkan) add_bottom_forms(cached, variants);
         measure_in_turn(scene, options_.runs, variants, report);
         if (variants.size() > figure_variants) {
             const std::span<const Variant> forms = std::span(variants).subspan(figure_variants);
@@ -185,11 +185,11 @@ class Paper1 {
     }
 
     void measure_depths(const Scene& scene, RenderSettings settings, const Report& report) {
-        settings.bounces = options_.bounces;
+        settings.image.bounces = options_.bounces;
         std::vector<Variant> variants = {{"direct, no cache", make_uncached(settings), {}, {}},
                                          {"direct", settings, {}, {}}};
         measure_in_turn(make_white(scene), options_.runs, variants, [&](const std::string& line) {
-            report(fmt::format("{} bounces, {}", settings.bounces, line));
+            report(fmt::format("{} bounces, {}", settings.image.bounces, line));
         });
         result_["figure1_10"].push_back(make_casts("bark", variants));
     }
@@ -197,13 +197,13 @@ class Paper1 {
     /// `first` is the render that the process has made before any other.
     void measure_party_frame(const Scene& scene, RenderSettings settings, const Statistics& first,
                              const Report& report) {
-        settings.width = std::min(kPartyWidth, settings.width * kPartyWidth / 1280);
-        settings.height = std::min(kPartyHeight, settings.height * kPartyHeight / 720);
+        settings.image.width = std::min(kPartyWidth, settings.image.width * kPartyWidth / 1280);
+        settings.image.height = std::min(kPartyHeight, settings.image.height * kPartyHeight / 720);
         std::vector<Variant> variants = {{"party frame", settings, {}, {}}};
         measure_in_turn(scene, options_.runs, variants, report);
         result_["party"] = {{"peak_resident_bytes", first.peak_resident_bytes},
-                            {"width", settings.width},
-                            {"height", settings.height},
+                            {"width", settings.image.width},
+                            {"height", settings.image.height},
                             {"paper_frame_s", kPaperPartyFrameMilliseconds * 1e-3}};
         if (variants[0].refusal.empty()) result_["party"].update(describe_frames(variants[0].runs));
     }
@@ -214,11 +214,11 @@ class Paper1 {
         result_["build"] = describe_build();
         result_["machine"] = describe_machine();
         result_["device"] = describe_device(first);
-        result_["settings"] = {{"width", s.width},
-                               {"height", s.height},
-                               {"level", format_level(s.level)},
+        result_["settings"] = {{"width", s.image.width},
+                               {"height", s.image.height},
+                               {"level", format_level(s.surface.level)},
                                {"spp", 1},
-                               {"bottom_cache_bytes", s.bottom_cache_bytes},
+                               {"bottom_cache_bytes", s.surface.cache_bytes},
                                {"bounces_of_figure1_10", options_.bounces},
                                {"runs", options_.runs},
                                {"warm_up_runs", 1},
@@ -239,7 +239,7 @@ class Paper1 {
 } // namespace
 
 Paper1Options make_quick_options(Paper1Options options) {
-    options.settings.width = 64, options.settings.height = 36;
+    options.settings.image.width = 64, options.settings.image.height = 36;
     options.runs = 1;
     return options;
 }

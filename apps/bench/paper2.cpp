@@ -75,7 +75,8 @@ class MeshMeasure {
           doubts_(mesh_) {
         // Whatever tree comes first: all have to agree with it.
         trees_.build(TreeKind::sah);
-        sets_.push_back(make_primary_rays(scene.camera, options.settings.width, options.settings.height));
+        sets_.push_back(
+            make_primary_rays(scene.camera, options.settings.image.width, options.settings.image.height));
         expected_.push_back(find_hits({TraversalKind::stack}, sets_[0], {}));
         Vec3f to_light{0.5f, 0.8f, 0.35f};
         if (!scene.lights.empty() && scene.lights[0].type == LightType::sun) {
@@ -212,11 +213,11 @@ class MeshMeasure {
 Json make_head(const Paper2Options& options) {
     const RenderSettings& s = options.settings;
     Json head = {{"suite", "paper2"}, {"build", describe_build()}, {"machine", describe_machine()}};
-    head["settings"] = {{"engine", s.engine == EngineKind::cpu ? "cpu" : "vulkan"},
-                        {"device", s.device},
-                        {"threads", s.threads},
-                        {"width", s.width},
-                        {"height", s.height},
+    head["settings"] = {{"engine", s.device.engine == EngineKind::cpu ? "cpu" : "vulkan"},
+                        {"device", s.device.index},
+                        {"threads", s.device.threads},
+                        {"width", s.image.width},
+                        {"height", s.image.height},
                         {"runs", options.runs},
                         {"warm_up_runs", 1},
                         {"meshes", options.detail == MeshDetail::full ? "full" : "reduced"}};
@@ -239,7 +240,7 @@ Json make_head(const Paper2Options& options) {
 } // namespace
 
 Paper2Options make_quick_options(Paper2Options options) {
-    options.settings.width = 32, options.settings.height = 18;
+    options.settings.image.width = 32, options.settings.image.height = 18;
     options.runs = 1;
     options.detail = MeshDetail::reduced;
     return options;

@@ -69,22 +69,23 @@ struct Way {
 
 std::vector<Way> list_ways(const RenderSettings& base) {
     std::vector<RenderMethod> methods = {RenderMethod::compute};
-    if (base.engine == EngineKind::vulkan)
+    if (base.device.engine == EngineKind::vulkan)
         methods = {RenderMethod::compute, RenderMethod::fragment, RenderMethod::hybrid};
     std::vector<Way> ways;
     for (const Pair& pair : kPairs)
         for (const RenderMethod method : methods) {
             Way way{base, {}, {}, {}, {}};
-            way.settings.structure = pair.structure, way.settings.traversal = pair.traversal;
-            way.settings.method = method;
+            way.settings.experiment.structure = pair.structure,
+            way.settings.experiment.traversal = pair.traversal;
+            way.settings.experiment.method = method;
             ways.push_back(std::move(way));
         }
     return ways;
 }
 
 std::string describe(const RenderSettings& s) {
-    return fmt::format("{} {}, {}", structure_name(s.structure), traversal_name(s.traversal),
-                       method_name(s.method));
+    return fmt::format("{} {}, {}", structure_name(s.experiment.structure),
+                       traversal_name(s.experiment.traversal), method_name(s.experiment.method));
 }
 
 /// Runs below 0 warm up.
@@ -118,9 +119,9 @@ uint64_t count_different_pixels(const Way& way, const Way& reference) {
 }
 
 Json describe_way(const Way& way, const Way* reference) {
-    Json entry = {{"structure", structure_name(way.settings.structure)},
-                  {"traversal", traversal_name(way.settings.traversal)},
-                  {"method", method_name(way.settings.method)},
+    Json entry = {{"structure", structure_name(way.settings.experiment.structure)},
+                  {"traversal", traversal_name(way.settings.experiment.traversal)},
+                  {"method", method_name(way.settings.experiment.method)},
                   {"outcome", way.refusal.empty() ? "measured" : "refused"}};
     if (!way.refusal.empty()) {
         entry["reason"] = way.refusal;
@@ -157,9 +158,9 @@ Json make_goals(const Json& result) {
 Json make_head(const Paper3Options& options) {
     const RenderSettings& s = options.settings;
     Json head = {{"suite", "paper3"}, {"build", describe_build()}, {"machine", describe_machine()}};
-    head["settings"] = {{"engine", s.engine == EngineKind::cpu ? "cpu" : "vulkan"},
-                        {"width", s.width},
-                        {"height", s.height},
+    head["settings"] = {{"engine", s.device.engine == EngineKind::cpu ? "cpu" : "vulkan"},
+                        {"width", s.image.width},
+                        {"height", s.image.height},
                         {"spp", 1},
                         {"bounces", 0},
                         {"runs", options.runs},
@@ -204,8 +205,8 @@ class Paper3 {
     void measure(const std::string& name, Scene scene) {
         scene = light_once(std::move(scene));
         RenderSettings base = options_.settings;
-        base.spp = 1, base.bounces = 0;
-        base.sah_costs = SahCosts{}; // the paper's
+        base.image.spp = 1, base.image.bounces = 0;
+        base.experiment.sah_costs = SahCosts{}; // the paper's
         std::vector<Way> ways = list_ways(base);
         for (int run = -options_.warm_up_runs; run < options_.runs; ++run)
             for (Way& way : ways) {
@@ -233,7 +234,7 @@ class Paper3 {
 std::vector<std::string> paper3_scenes() { return {"body", "hall", "knot", "pumpkin", "bark"}; }
 
 Paper3Options make_quick_options(Paper3Options options) {
-    options.settings.width = 32, options.settings.height = 18;
+    options.settings.image.width = 32, options.settings.image.height = 18;
     options.runs = 1, options.warm_up_runs = 0;
     options.detail = MeshDetail::reduced;
     return options;

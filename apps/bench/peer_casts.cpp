@@ -38,9 +38,10 @@ class CastMeasure {
         : scene_(scene), probe_(probe), sets_(sets) {
         for (const EmbreeWay way : kEmbreeWays)
             if (way != EmbreeWay::triangles || scene.has_triangles)
-                built_.push_back({way, std::make_unique<EmbreeScene>(probe, way, scene.settings.threads)});
-        if (probe.isa() == "avx512") add_variant("avx2", Isa::avx2, scene.settings.threads);
-        if (scene.settings.threads > 1) add_variant(probe.isa(), scene.settings.isa, 1);
+                built_.push_back(
+                    {way, std::make_unique<EmbreeScene>(probe, way, scene.settings.device.threads)});
+        if (probe.isa() == "avx512") add_variant("avx2", Isa::avx2, scene.settings.device.threads);
+        if (scene.settings.device.threads > 1) add_variant(probe.isa(), scene.settings.device.isa, 1);
     }
 
     PeerCasts run() {
@@ -66,7 +67,7 @@ class CastMeasure {
 
     void add_variant(const std::string& isa, Isa kind, int threads) {
         RenderSettings settings = scene_.settings;
-        settings.isa = kind, settings.threads = threads;
+        settings.device.isa = kind, settings.device.threads = threads;
         variants_.push_back({settings, isa, std::make_unique<TracerProbe>(scene_.scene, settings)});
     }
 
@@ -81,7 +82,7 @@ class CastMeasure {
                 add(compare_with_embree(probe_, *built.scene, built.way, set));
         if (!scene_.has_triangles) return;
         RenderSettings settings = scene_.settings;
-        settings.surface = SurfaceMode::tessellated;
+        settings.surface.mode = SurfaceMode::tessellated;
         const TracerProbe tessellated(scene_.scene, settings);
         for (const char* name : {"primary", "diffuse_1"})
             add(compare_with_tessellated(probe_, tessellated, find_rays(sets_, name)));
@@ -124,7 +125,8 @@ class CastMeasure {
         frame_probes_.push_back(std::make_unique<TracerProbe>(scene_.scene, settings));
         TracerProbe& probe = *frame_probes_.back();
         const auto label = [&](const char* way) {
-            return Json{{"program", "relief"}, {"way", way}, {"threads", settings.threads}, {"isa", isa}};
+            return Json{
+                {"program", "relief"}, {"way", way}, {"threads", settings.device.threads}, {"isa", isa}};
         };
         ways.push_back({label("frame"), [&probe] { return probe.trace_camera().seconds; }});
         ways.push_back({label("frame_from_empty_cache"), [&probe] {
@@ -146,10 +148,10 @@ class CastMeasure {
     }
 
     std::vector<CastWay> list_ways(const PeerRays& set) {
-        const int threads = scene_.settings.threads;
+        const int threads = scene_.settings.device.threads;
         std::vector<CastWay> ways = {make_relief(probe_, probe_.isa(), threads, set)};
         for (const Variant& variant : variants_)
-            ways.push_back(make_relief(*variant.probe, variant.isa, variant.settings.threads, set));
+            ways.push_back(make_relief(*variant.probe, variant.isa, variant.settings.device.threads, set));
         for (const BuiltWay& built : built_)
             for (const int width : kWidths) {
                 ways.push_back(make_embree(built, width, threads, set));

@@ -100,7 +100,7 @@ class ColdMeasure {
     void run_embree(EmbreeWay kind) {
         const std::string way = way_name(kind);
         const ResidentMeter meter;
-        const EmbreeScene embree(surface_, kind, scene_.settings.threads);
+        const EmbreeScene embree(surface_, kind, scene_.settings.device.threads);
         const double ready = embree.tessellate_s() + embree.build_s();
         const double primary = trace(embree, primary_, {HitKind::closest, 16, true});
         const double occlusion = trace(embree, occlusion_, {HitKind::any, 1, false});

@@ -50,11 +50,11 @@ std::vector<NamedScene> list_scenes() {
 class Peers {
   public:
     Peers(const PeersOptions& options, const Report& report) : options_(options), report_(report) {
-        settings_.width = options.width, settings_.height = options.height;
-        settings_.isa = options.isa;
-        settings_.threads =
+        settings_.image.width = options.width, settings_.image.height = options.height;
+        settings_.device.isa = options.isa;
+        settings_.device.threads =
             options.threads > 0 ? options.threads : int(std::max(1u, std::thread::hardware_concurrency()));
-        settings_.spp = 1;
+        settings_.image.spp = 1;
     }
 
     Json run() {
@@ -93,9 +93,9 @@ class Peers {
                      {"height", options_.height},
                      {"runs", options_.runs},
                      {"warm_up_runs", 1},
-                     {"threads", settings_.threads},
+                     {"threads", settings_.device.threads},
                      {"levels", levels},
-                     {"bottom_cache_bytes", settings_.bottom_cache_bytes},
+                     {"bottom_cache_bytes", settings_.surface.cache_bytes},
                      {"tessellated_limit_bytes", options_.tessellated_limit_bytes},
                      {"scenes", options_.scenes}}},
                    {"embree_version", embree_version()},
@@ -105,7 +105,7 @@ class Peers {
     void measure_party() {
         report_("party: memory and first image");
         RenderSettings settings = settings_;
-        settings.bounces = 0;
+        settings.image.bounces = 0;
         const Statistics s = render(make_sample_scene(kParty, Instancing::none), settings).statistics;
         result_["party"] = {{"patches", s.patches},
                             {"peak_resident_bytes", s.peak_resident_bytes},
@@ -118,7 +118,7 @@ class Peers {
 
     void measure_level(const std::string& name, const Scene& scene, int level) {
         RenderSettings settings = settings_;
-        settings.level = level;
+        settings.surface.level = level;
         const std::string full_name = fmt::format("{}, level {}", name, format_level(level));
         const uint64_t bytes = kTessellatedBytesPerQuad * estimate_tessellation(scene, settings).micro_quads;
         const bool has_triangles = bytes <= options_.tessellated_limit_bytes;
@@ -142,7 +142,7 @@ class Peers {
     /// Relief's own paths, all surfaces white: seconds a ray by depth.
     Json measure_bounces(const PeerScene& peer) const {
         RenderSettings settings = peer.settings;
-        settings.bounces = kPeerBounces;
+        settings.image.bounces = kPeerBounces;
         std::vector<Variant> variants = {{peer.name + ": paths", settings, {}, {}}};
         measure_in_turn(make_white(peer.scene), peer.runs, variants, peer.report);
         Json bounces = Json::array();

@@ -73,10 +73,10 @@ Scene make_bare_scene(const Mesh& mesh) {
 
 RenderSettings make_settings(const TrianglesOptions& options) {
     RenderSettings settings;
-    settings.width = options.width, settings.height = options.height;
-    settings.isa = options.isa;
-    settings.threads = 1;
-    settings.bottom_cache_bytes = 0;
+    settings.image.width = options.width, settings.image.height = options.height;
+    settings.device.isa = options.isa;
+    settings.device.threads = 1;
+    settings.surface.cache_bytes = 0;
     return settings;
 }
 

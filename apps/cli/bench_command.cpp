@@ -68,7 +68,7 @@ struct SuiteResult {
 /// The settings for a suite whose pictures are of that size unless the command says otherwise.
 RenderSettings make_settings(const BenchOptions& o, int width, int height) {
     RenderSettings settings = o.settings;
-    std::tie(settings.width, settings.height) = o.size.value_or(std::pair(width, height));
+    std::tie(settings.image.width, settings.image.height) = o.size.value_or(std::pair(width, height));
     return settings;
 }
 
@@ -99,7 +99,7 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
 SuiteResult run_paper1_suite(const BenchOptions& o, const bench::Report& report) {
     bench::Paper1Options options;
     options.settings = make_settings(o, 1280, 720);
-    options.settings.level = o.level.value_or(options.settings.level);
+    options.settings.surface.level = o.level.value_or(options.settings.surface.level);
     options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
     options.scenes = check_scenes(o, bench::kPaper1Scenes);
     options.runs = o.runs.value_or(options.runs);
@@ -155,7 +155,7 @@ SuiteResult run_edits_suite(const BenchOptions& o, const bench::Report& report) 
 SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& report) {
     bench::TrianglesOptions options;
     options.runs = o.runs.value_or(options.runs);
-    options.isa = o.settings.isa;
+    options.isa = o.settings.device.isa;
     options.meshes = load_meshes(o);
     const auto result = bench::run_triangles(o.is_quick ? make_quick_options(options) : options, report);
     return {result, bench::make_triangles_files(result)};
@@ -165,8 +165,8 @@ SuiteResult run_triangles_suite(const BenchOptions& o, const bench::Report& repo
 SuiteResult run_peers_suite(const BenchOptions& o, const bench::Report& report) {
     bench::PeersOptions options;
     const RenderSettings settings = make_settings(o, options.width, options.height);
-    options.width = settings.width, options.height = settings.height;
-    options.isa = settings.isa, options.threads = settings.threads;
+    options.width = settings.image.width, options.height = settings.image.height;
+    options.isa = settings.device.isa, options.threads = settings.device.threads;
     options.runs = o.runs.value_or(options.runs);
     options.scenes = check_scenes(o, bench::peers_scene_names());
     for (const std::string& file : o.scene_files) {
@@ -235,10 +235,10 @@ std::vector<std::string_view> list_given(const BenchOptions& o) {
         {"--level", o.level.has_value()},
         {"--levels", !o.levels.empty()},
         {"--tessellated-limit", o.tessellated_limit_bytes.has_value()},
-        {"--engine", o.settings.engine != plain.engine},
-        {"--bottom", o.settings.bottom != plain.bottom},
-        {"--threads", o.settings.threads != plain.threads},
-        {"--isa", o.settings.isa != plain.isa}};
+        {"--engine", o.settings.device.engine != plain.device.engine},
+        {"--bottom", o.settings.experiment.bottom != plain.experiment.bottom},
+        {"--threads", o.settings.device.threads != plain.device.threads},
+        {"--isa", o.settings.device.isa != plain.device.isa}};
     std::vector<std::string_view> given;
     for (const auto& [name, is_given] : options)
         if (is_given) given.push_back(name);

@@ -26,11 +26,11 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
     add("--engine", "NAME", "cpu (default) or vulkan", [&s](const std::string& text) {
         constexpr std::array<Word<EngineKind>, 2> words{
             {{"cpu", EngineKind::cpu}, {"vulkan", EngineKind::vulkan}}};
-        s.engine = parse_word("--engine", text, words);
+        s.device.engine = parse_word("--engine", text, words);
     });
     add("--device", "N", "of the Vulkan engine, as `relief devices` lists them; default: the best",
         [&o, &s](const std::string& text) {
-            s.device = int(parse_integer("--device", text, 0, kMaxDevice));
+            s.device.index = int(parse_integer("--device", text, 0, kMaxDevice));
             o.vulkan_only.push_back("--device");
         });
     add("--bottom", "NAME", "of the Vulkan engine: auto (default), or the patch kernel fused or split",
@@ -38,11 +38,12 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
             constexpr std::array<Word<BottomForm>, 3> words{{{"auto", BottomForm::automatic},
                                                              {"fused", BottomForm::fused},
                                                              {"split", BottomForm::split}}};
-            s.bottom = parse_word("--bottom", text, words);
+            s.experiment.bottom = parse_word("--bottom", text, words);
             o.vulkan_only.push_back("--bottom");
         });
-    add("--threads", "N", "0: all cores (default)",
-        [&s](const std::string& text) { s.threads = int(parse_integer("--threads", text, 0, kMaxThreads)); });
+    add("--threads", "N", "0: all cores (default)", [&s](const std::string& text) {
+        s.device.threads = int(parse_integer("--threads", text, 0, kMaxThreads));
+    });
     add("--isa", "NAME", "of the CPU engine: best (default), avx512, avx2, sse4, neon, scalar",
         [&o, &s](const std::string& text) {
             constexpr std::array<Word<Isa>, 6> words{{{"best", Isa::best},
@@ -51,19 +52,19 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
                                                       {"sse4", Isa::sse4},
                                                       {"neon", Isa::neon},
                                                       {"scalar", Isa::scalar}}};
-            s.isa = parse_word("--isa", text, words);
+            s.device.isa = parse_word("--isa", text, words);
             o.cpu_only.push_back("--isa");
         });
 }
 
 void complete_engine_options(const EngineOptions& o, RenderSettings& s) {
-    const bool is_cpu = s.engine == EngineKind::cpu;
+    const bool is_cpu = s.device.engine == EngineKind::cpu;
     const std::vector<std::string>& others = is_cpu ? o.vulkan_only : o.cpu_only;
     if (!others.empty())
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with the {} engine", others.front(), is_cpu ? "Vulkan" : "CPU"),
                      others.front(), is_cpu ? "add --engine vulkan" : "leave out --engine vulkan"});
-    if (!is_cpu) s.pipeline_cache = choose_pipeline_cache(s.device).string();
+    if (!is_cpu) s.device.pipeline_cache = choose_pipeline_cache(s.device.index).string();
 }
 
 std::filesystem::path choose_pipeline_cache(int device) {

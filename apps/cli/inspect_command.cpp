@@ -65,8 +65,8 @@ void append(Inspection mesh, Inspection& map) {
 /// A quarter of the check picture.
 RenderSettings make_check_settings() {
     RenderSettings settings;
-    settings.width = 640, settings.height = 480;
-    settings.spp = 8, settings.bounces = 1;
+    settings.image.width = 640, settings.image.height = 480;
+    settings.image.spp = 8, settings.image.bounces = 1;
     return settings;
 }
 
@@ -116,14 +116,15 @@ Inspection inspect_plain_mesh(const InspectOptions& options) {
 
 Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
     RenderSettings settings;
-    settings.width = scene.picture.width.value_or(settings.width);
-    settings.height = scene.picture.height.value_or(settings.height);
-    settings.spp = scene.picture.spp.value_or(settings.spp);
-    settings.bounces = scene.picture.bounces.value_or(settings.bounces);
+    settings.image.width = scene.picture.width.value_or(settings.image.width);
+    settings.image.height = scene.picture.height.value_or(settings.image.height);
+    settings.image.spp = scene.picture.spp.value_or(settings.image.spp);
+    settings.image.bounces = scene.picture.bounces.value_or(settings.image.bounces);
     Inspection inspection = inspect_scene(scene, settings);
     if (!options.picture.empty()) {
         RenderSettings check = make_check_settings();
-        check.width = std::max(1, int(int64_t(check.height) * settings.width / settings.height));
+        check.image.width =
+            std::max(1, int(int64_t(check.image.height) * settings.image.width / settings.image.height));
         write_check_picture(scene, check, options.picture);
     }
     return inspection;

@@ -55,13 +55,13 @@ Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
 }
 
 void explain_pixel(const Scene& scene, const RenderSettings& settings, int x, int y) {
-    const Ray ray = make_pixel_ray(scene.camera, settings.width, settings.height, x, y);
+    const Ray ray = make_pixel_ray(scene.camera, settings.image.width, settings.image.height, x, y);
     RayHit hit;
     Intersector(scene, settings).closest_hits({&ray, 1}, {&hit, 1});
     RenderSettings one_pixel = settings;
-    one_pixel.crop = {x, y, x + 1, y + 1};
+    one_pixel.image.crop = {x, y, x + 1, y + 1};
     const RenderResult result = render(scene, one_pixel);
-    fmt::print("pixel    ({}, {}) of {}x{}\n", x, y, settings.width, settings.height);
+    fmt::print("pixel    ({}, {}) of {}x{}\n", x, y, settings.image.width, settings.image.height);
     fmt::print("ray      from {} along {}\n", format_vector(ray.origin), format_vector(ray.direction));
     print_hit(scene, ray, hit);
     std::array<float, 4> color{};
@@ -71,7 +71,7 @@ void explain_pixel(const Scene& scene, const RenderSettings& settings, int x, in
             color[c] = result.image.pixels[*channel];
     }
     fmt::print("colour   {} alpha {:.4g}, mean of {} samples, {} rays\n",
-               format_vector({color[0], color[1], color[2]}), color[3], settings.spp,
+               format_vector({color[0], color[1], color[2]}), color[3], settings.image.spp,
                result.statistics.camera_rays + result.statistics.shadow_rays + result.statistics.bounce_rays);
 }
 

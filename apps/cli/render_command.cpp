@@ -63,9 +63,9 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
     const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
                s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
-    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.width,
-               settings.height, result.is_complete ? "" : "up to ", settings.spp, rays, s.render_s,
-               s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
+               settings.image.width, settings.image.height, result.is_complete ? "" : "up to ",
+               settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
@@ -226,7 +226,7 @@ int run_render(RenderOptions& options) {
     const double start = get_seconds();
     complete_render_options(options);
     int exit_code = kExitDone;
-    with_io_threads(options.settings.threads, [&] { exit_code = render_input(options, start); });
+    with_io_threads(options.settings.device.threads, [&] { exit_code = render_input(options, start); });
     return exit_code;
 }
 

@@ -51,7 +51,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
                 if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
                     throw Error(ErrorKind::usage, {fmt::format("unknown layer '{}'", layer), "--layers",
                                                    suggest_word(layer, kLayers)});
-                o.settings.layers.push_back(layer);
+                o.settings.image.layers.push_back(layer);
             }
         });
 }
@@ -60,7 +60,7 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--crop", "x0,y0,x1,y1", "part of the picture, half open", [&o](const std::string& text) {
         const std::vector<int64_t> c = parse_integers("--crop", text, ',', 4, {0, kMaxPictureSize});
         if (c[0] >= c[2] || c[1] >= c[3]) refuse_value("--crop", text, "a window with x0 < x1 and y0 < y1");
-        o.settings.crop = {int(c[0]), int(c[1]), int(c[2]), int(c[3])};
+        o.settings.image.crop = {int(c[0]), int(c[1]), int(c[2]), int(c[3])};
     });
     add(verb, "--tile", "i/n", "band i of n bands of rows, i from 0 to n - 1", [&o](const std::string& text) {
         const std::vector<int64_t> tile = parse_integers("--tile", text, '/', 2, {0, kMaxPictureSize});
@@ -97,21 +97,21 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--surface", "NAME", "direct (default) or tessellated up front", [&o](const std::string& text) {
         constexpr std::array<Word<SurfaceMode>, 2> words{
             {{"direct", SurfaceMode::direct}, {"tessellated", SurfaceMode::tessellated}}};
-        o.settings.surface = parse_word("--surface", text, words);
+        o.settings.surface.mode = parse_word("--surface", text, words);
     });
     add(verb, "--level", "auto|N", "from the size on screen, or 2^N cells a side",
-        [&o](const std::string& text) { o.settings.level = parse_level(text); });
+        [&o](const std::string& text) { o.settings.surface.level = parse_level(text); });
     add(verb, "--pixel-error", "F", "cell size aimed at, pixels; default 1", [&o](const std::string& text) {
-        o.settings.pixel_error = float(parse_number("--pixel-error", text, 1e-3, 1e3));
+        o.settings.surface.pixel_error = float(parse_number("--pixel-error", text, 1e-3, 1e3));
     });
     add(verb, "--lod", "NAME", "field (default), or ray: a level for each ray",
         [&o](const std::string& text) {
             constexpr std::array<Word<LodRule>, 2> words{{{"field", LodRule::field}, {"ray", LodRule::ray}}};
-            o.settings.lod = parse_word("--lod", text, words);
+            o.settings.surface.lod = parse_word("--lod", text, words);
         });
     add(verb, "--leaf", "NAME", "exact (default) triangles, or their box", [&o](const std::string& text) {
         constexpr std::array<Word<LeafKind>, 2> words{{{"exact", LeafKind::exact}, {"box", LeafKind::box}}};
-        o.settings.leaf = parse_word("--leaf", text, words);
+        o.settings.surface.leaf = parse_word("--leaf", text, words);
     });
 }
 
@@ -123,7 +123,7 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
             constexpr std::array<Word<RenderMethod>, 3> words{{{"compute", RenderMethod::compute},
                                                                {"fragment", RenderMethod::fragment},
                                                                {"hybrid", RenderMethod::hybrid}}};
-            o.settings.method = parse_word("--method", text, words);
+            o.settings.experiment.method = parse_word("--method", text, words);
             o.engine.vulkan_only.push_back("--method");
         });
     add(verb, "--structure", "NAME", "over meshes and their patches: bvh (default), lbvh, kdtree",
@@ -131,7 +131,7 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
             constexpr std::array<Word<StructureKind>, 3> words{{{"bvh", StructureKind::bvh},
                                                                 {"lbvh", StructureKind::lbvh},
                                                                 {"kdtree", StructureKind::kdtree}}};
-            o.settings.structure = parse_word("--structure", text, words);
+            o.settings.experiment.structure = parse_word("--structure", text, words);
         });
     add(verb, "--traversal", "NAME",
         "how rays walk it: auto (default), wide, stack, restart-trail, parent-link, skip-link, trail, "
@@ -140,11 +140,11 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
             std::array<Word<TraversalKind>, 11> words;
             for (size_t k = 0; k < words.size(); ++k)
                 words[k] = {traversal_name(TraversalKind(k)), TraversalKind(k)};
-            o.settings.traversal = parse_word("--traversal", text, words);
+            o.settings.experiment.traversal = parse_word("--traversal", text, words);
         });
     add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 176",
         [&o](const std::string& text) {
-            o.settings.bottom_cache_bytes =
+            o.settings.surface.cache_bytes =
                 size_t(parse_integer("--bottom-cache", text, 0, kMaxCacheMegabytes)) << 20;
         });
 }
@@ -202,17 +202,18 @@ void complete_render_options(RenderOptions& o) {
                      "the scene file says this under 'meshes', 'displacements' and 'environment'"});
     check_mesh_options(o.mesh);
     check_map_options(o.mesh);
-    if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
-                    o.settings.crop != Window{} || !o.settings.layers.empty() || !o.edits.empty()))
+    if (o.pixel &&
+        (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
+         o.settings.image.crop != Window{} || !o.settings.image.layers.empty() || !o.edits.empty()))
         throw Error(ErrorKind::usage,
                     {"--pixel explains one pixel and makes no picture", "--pixel",
                      "leave out -o, --stats, --crop, --tile, --samples, --layers and --edits"});
     if (o.pixel) return;
     if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
     if (get_lower_extension(o.output) == ".exr") {
-        std::vector<std::string>& layers = o.settings.layers;
+        std::vector<std::string>& layers = o.settings.image.layers;
         if (std::find(layers.begin(), layers.end(), "samples") == layers.end()) layers.push_back("samples");
-    } else if (!o.settings.layers.empty()) {
+    } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
@@ -244,26 +245,29 @@ Window make_tile_window(const Window& window, const Tile& tile) {
 
 RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& picture) {
     RenderSettings s = o.settings;
-    s.width = o.given.width.value_or(picture.width.value_or(s.width));
-    s.height = o.given.height.value_or(picture.height.value_or(s.height));
-    s.spp = o.given.spp.value_or(picture.spp.value_or(s.spp));
-    s.bounces = o.given.bounces.value_or(picture.bounces.value_or(s.bounces));
-    s.seed = o.given.seed.value_or(picture.seed.value_or(s.seed));
+    s.image.width = o.given.width.value_or(picture.width.value_or(s.image.width));
+    s.image.height = o.given.height.value_or(picture.height.value_or(s.image.height));
+    s.image.spp = o.given.spp.value_or(picture.spp.value_or(s.image.spp));
+    s.image.bounces = o.given.bounces.value_or(picture.bounces.value_or(s.image.bounces));
+    s.image.seed = o.given.seed.value_or(picture.seed.value_or(s.image.seed));
     if (o.samples) {
         if (o.given.spp && o.samples->second > *o.given.spp)
             refuse_value("--samples", fmt::format("{}:{}", o.samples->first, o.samples->second),
                          fmt::format("inside the {} samples of --spp", *o.given.spp));
-        s.first_sample = o.samples->first;
-        s.spp = o.samples->second - o.samples->first;
+        s.image.first_sample = o.samples->first;
+        s.image.spp = o.samples->second - o.samples->first;
     }
-    if (s.crop.x1 > s.width || s.crop.y1 > s.height)
-        refuse_value("--crop", fmt::format("{},{},{},{}", s.crop.x0, s.crop.y0, s.crop.x1, s.crop.y1),
-                     fmt::format("inside the picture of {}x{} pixels", s.width, s.height));
+    if (s.image.crop.x1 > s.image.width || s.image.crop.y1 > s.image.height)
+        refuse_value(
+            "--crop",
+            fmt::format("{},{},{},{}", s.image.crop.x0, s.image.crop.y0, s.image.crop.x1, s.image.crop.y1),
+            fmt::format("inside the picture of {}x{} pixels", s.image.width, s.image.height));
     if (o.tile)
-        s.crop = make_tile_window(s.crop == Window{} ? Window{0, 0, s.width, s.height} : s.crop, *o.tile);
-    if (o.pixel && (o.pixel->first >= s.width || o.pixel->second >= s.height))
+        s.image.crop = make_tile_window(
+            s.image.crop == Window{} ? Window{0, 0, s.image.width, s.image.height} : s.image.crop, *o.tile);
+    if (o.pixel && (o.pixel->first >= s.image.width || o.pixel->second >= s.image.height))
         refuse_value("--pixel", fmt::format("{},{}", o.pixel->first, o.pixel->second),
-                     fmt::format("inside the picture of {}x{} pixels", s.width, s.height));
+                     fmt::format("inside the picture of {}x{} pixels", s.image.width, s.image.height));
     return s;
 }
 

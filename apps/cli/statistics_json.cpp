@@ -58,10 +58,10 @@ Json make_statistics_json(const RenderResult& result, const RenderSettings& sett
     Json root;
     root["relief"] = {{"version", RELIEF_VERSION}};
     root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
-    root["image"] = {{"width", settings.width},
-                     {"height", settings.height},
-                     {"spp", settings.spp},
-                     {"bounces", settings.bounces},
+    root["image"] = {{"width", settings.image.width},
+                     {"height", settings.image.height},
+                     {"spp", settings.image.spp},
+                     {"bounces", settings.image.bounces},
                      {"is_complete", result.is_complete}};
     root["scene"] = {{"meshes", s.meshes},
                      {"instances", s.instances},

@@ -44,9 +44,9 @@ void report(const std::string& line) { fmt::print(stderr, "relief-gpu: {}\n", li
 
 RenderSettings make_settings(const Options& options) {
     RenderSettings settings;
-    settings.engine = EngineKind::vulkan;
-    settings.device = options.device;
-    settings.pipeline_cache = options.pipeline_cache.string();
+    settings.device.engine = EngineKind::vulkan;
+    settings.device.index = options.device;
+    settings.device.pipeline_cache = options.pipeline_cache.string();
     return settings;
 }
 
@@ -56,9 +56,9 @@ int run_parity_verb(const Options& options) {
     if (!options.scenes.empty()) parity.scenes = options.scenes;
     parity.only = options.only;
     if (options.size.size() == 2)
-        parity.settings.width = options.size[0], parity.settings.height = options.size[1];
+        parity.settings.image.width = options.size[0], parity.settings.image.height = options.size[1];
     if (options.is_quick) {
-        parity.settings.width = 96, parity.settings.height = 64;
+        parity.settings.image.width = 96, parity.settings.image.height = 64;
         parity.noise_samples = 16;
         if (options.scenes.empty()) parity.scenes = {"ear"};
     }

@@ -62,12 +62,13 @@ struct Setting {
 std::vector<Setting> list_settings() {
     std::vector<Setting> settings = {{"auto", [](RenderSettings&) {}}};
     for (int level = 3; level <= 6; ++level)
-        settings.push_back({fmt::format("level {}", level), [level](RenderSettings& s) { s.level = level; }});
-    settings.push_back({"box leaves", [](RenderSettings& s) { s.leaf = LeafKind::box; }});
-    settings.push_back({"level a ray", [](RenderSettings& s) { s.lod = LodRule::ray; }});
-    settings.push_back({"no cache", [](RenderSettings& s) { s.bottom_cache_bytes = 0; }});
-    settings.push_back({"small cache", [](RenderSettings& s) { s.bottom_cache_bytes = size_t(1) << 20; }});
-    settings.push_back({"tessellated", [](RenderSettings& s) { s.surface = SurfaceMode::tessellated; }});
+        settings.push_back(
+            {fmt::format("level {}", level), [level](RenderSettings& s) { s.surface.level = level; }});
+    settings.push_back({"box leaves", [](RenderSettings& s) { s.surface.leaf = LeafKind::box; }});
+    settings.push_back({"level a ray", [](RenderSettings& s) { s.surface.lod = LodRule::ray; }});
+    settings.push_back({"no cache", [](RenderSettings& s) { s.surface.cache_bytes = 0; }});
+    settings.push_back({"small cache", [](RenderSettings& s) { s.surface.cache_bytes = size_t(1) << 20; }});
+    settings.push_back({"tessellated", [](RenderSettings& s) { s.surface.mode = SurfaceMode::tessellated; }});
     return settings;
 }
 
@@ -96,19 +97,19 @@ class Parity {
     /// Both forms of the bottom kernel, where it is used, against one picture of the CPU engine.
     void check_setting(const std::string& scene_name, const Scene& scene, const Setting& setting) {
         RenderSettings settings = options_.settings;
-        settings.spp = 1, settings.bounces = 0;
-        settings.layers = {"depth", "id"};
+        settings.image.spp = 1, settings.image.bounces = 0;
+        settings.image.layers = {"depth", "id"};
         setting.apply(settings);
         const std::string name = fmt::format("hits, {}, {}", scene_name, setting.name);
         std::optional<Image> expected;
         const auto add_form = [&](const std::string& case_name, BottomForm form) {
-            settings.bottom = form;
+            settings.experiment.bottom = form;
             add_case(case_name, [&](Json& entry) {
                 if (!expected) expected = render_cpu(scene, settings).image;
                 return check_hits(scene, settings, *expected, entry);
             });
         };
-        if (settings.surface == SurfaceMode::tessellated) return add_form(name, BottomForm::automatic);
+        if (settings.surface.mode == SurfaceMode::tessellated) return add_form(name, BottomForm::automatic);
         add_form(name + ", split", BottomForm::split);
         add_form(name + ", fused", BottomForm::fused);
     }
@@ -150,7 +151,7 @@ class Parity {
 
     bool check_repeat(const Scene& scene) const {
         RenderSettings settings = options_.settings;
-        settings.spp = 2, settings.bounces = 3;
+        settings.image.spp = 2, settings.image.bounces = 3;
         const auto same_bits = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
         const Image first = render_vulkan(scene, settings).image;
         const Image second = render_vulkan(scene, settings).image;
@@ -160,18 +161,19 @@ class Parity {
 
     bool check_means(const Scene& scene, Json& entry) const {
         RenderSettings settings = options_.settings;
-        settings.width = std::max(1, settings.width / 4), settings.height = std::max(1, settings.height / 4);
-        settings.spp = options_.noise_samples, settings.bounces = 4;
-        settings.layers = {"variance"};
+        settings.image.width = std::max(1, settings.image.width / 4),
+        settings.image.height = std::max(1, settings.image.height / 4);
+        settings.image.spp = options_.noise_samples, settings.image.bounces = 4;
+        settings.image.layers = {"variance"};
         const Image found = render_vulkan(scene, settings).image;
-        settings.seed += 1; // other samples, so that their noise is independent
+        settings.image.seed += 1; // other samples, so that their noise is independent
         const double z = compute_largest_z(found, render_cpu(scene, settings).image);
         entry["largest_z"] = z;
         return z <= kLargestZ;
     }
 
     static RenderResult render_vulkan(const Scene& scene, RenderSettings settings) {
-        settings.engine = EngineKind::vulkan;
+        settings.device.engine = EngineKind::vulkan;
         RenderResult result = render(scene, settings);
         if (result.statistics.engine != "vulkan")
             throw Error(ErrorKind::failed,
@@ -180,9 +182,9 @@ class Parity {
     }
 
     static RenderResult render_cpu(const Scene& scene, RenderSettings settings) {
-        settings.engine = EngineKind::cpu;
-        settings.device = -1, settings.bottom = BottomForm::automatic;
-        settings.bottom_cache_bytes = RenderSettings{}.bottom_cache_bytes; // changes no bit, only the time
+        settings.device.engine = EngineKind::cpu;
+        settings.device.index = -1, settings.experiment.bottom = BottomForm::automatic;
+        settings.surface.cache_bytes = RenderSettings{}.surface.cache_bytes; // changes no bit, only the time
         return render(scene, settings);
     }
 

@@ -8,7 +8,7 @@
 namespace relief {
 
 struct DeviceInfo {
-    int index = 0; ///< what RenderSettings::device takes
+    int index = 0; ///< what DeviceSettings::index takes
     std::string name, driver;
     std::string kind;                 ///< "gpu", or "cpu" for a program that stands in for one
     uint64_t memory_bytes = 0;        ///< of its largest memory

@@ -33,33 +33,53 @@ struct Window {
     friend bool operator==(const Window&, const Window&) = default;
 };
 
-struct RenderSettings {
+/// How displaced surfaces are represented, and how finely.
+struct SurfaceSettings {
+    SurfaceMode mode = SurfaceMode::direct;
+    int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
+    float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, (0, 1e6]
+    LodRule lod = LodRule::field;
+    LeafKind leaf = LeafKind::exact;
+    size_t cache_bytes = size_t(176) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
+};
+
+/// What computes, and with how much of the machine.
+struct DeviceSettings {
+    EngineKind engine = EngineKind::cpu;
+    int index = -1;             ///< Vulkan: index of vulkan_devices() (relief/devices.h); -1: the best one
+    std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
+    int threads = 0;            ///< [0, kMaxThreads]; 0: all cores
+    Isa isa = Isa::best;        ///< of the CPU engine
+};
+
+/// The picture, and how its pixels are sampled.
+struct ImageSettings {
     int width = 1280, height = 720; ///< pixels, [1, kMaxPictureSize] each
     int spp = 64;                   ///< samples a pixel, [1, kMaxSamples]
     int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
-    EngineKind engine = EngineKind::cpu;
-    int device = -1; ///< Vulkan: index of vulkan_devices() (relief/devices.h); -1: the best one
-    BottomForm bottom = BottomForm::automatic;
-    RenderMethod method = RenderMethod::compute; ///< of the Vulkan engine; all give the same bits
-    std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
-    int threads = 0;            ///< 0: all cores
-    Isa isa = Isa::best;
+    Window crop;                     ///< part of the picture to render
+    int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
+    std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost
+};
+
+/// Other structures, traversals and methods than the engines' own, to compare with. All give the same hits.
+struct ExperimentSettings {
     StructureKind structure = StructureKind::bvh;
     TraversalKind traversal = TraversalKind::automatic; ///< one of available_traversals()
     /// Of the trees of structure kdtree, or of bvh for a traversal other than the engine's default: a bvh is
     /// then built by a full sweep, and its leaves hold up to 8 polygons. None: what each structure has of
     /// itself.
     std::optional<SahCosts> sah_costs;
-    SurfaceMode surface = SurfaceMode::direct;
-    int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
-    float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, > 0
-    LodRule lod = LodRule::field;
-    LeafKind leaf = LeafKind::exact;
-    size_t bottom_cache_bytes = size_t(176) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
-    Window crop;                                   ///< part of the picture to render
-    int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel
-    std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost
+    RenderMethod method = RenderMethod::compute; ///< of the Vulkan engine; all give the same bits
+    BottomForm bottom = BottomForm::automatic;   ///< of the Vulkan engine
+};
+
+struct RenderSettings {
+    SurfaceSettings surface;
+    DeviceSettings device;
+    ImageSettings image;
+    ExperimentSettings experiment;
 };
 
 /// Rays of one kind at one depth of their paths, and what casting them took, in seconds of the whole machine

@@ -29,8 +29,8 @@ struct Intersector::Implementation {
 Intersector::Intersector(Scene scene, const RenderSettings& settings)
     : implementation_(std::make_unique<Implementation>()) {
     validate_settings(settings);
-    implementation_->threads = settings.threads;
-    with_threads(settings.threads, [&] {
+    implementation_->threads = settings.device.threads;
+    with_threads(settings.device.threads, [&] {
         implementation_->engine = make_engine(prepare_scene(std::move(scene), settings), settings);
     });
 }

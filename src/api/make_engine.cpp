@@ -13,7 +13,7 @@ namespace relief {
 
 std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
                                     const RenderSettings& settings) {
-    if (settings.engine == EngineKind::cpu) {
+    if (settings.device.engine == EngineKind::cpu) {
         std::unique_ptr<const cpu::SceneWalk> walk = make_scene_walk(*scene, settings);
         return make_cpu_engine(std::move(scene), settings, std::move(walk));
     }

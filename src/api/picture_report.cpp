@@ -34,9 +34,9 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {
     image.metadata["Software"] = "Relief " RELIEF_VERSION;
     image.metadata["relief:version"] = RELIEF_VERSION;
-    image.metadata["relief:seed"] = std::to_string(settings.seed);
+    image.metadata["relief:seed"] = std::to_string(settings.image.seed);
     image.metadata["relief:samples"] =
-        fmt::format("{}:{}", settings.first_sample, settings.first_sample + settings.spp);
+        fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + settings.image.spp);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
     if (!is_complete) image.metadata["relief:interrupted"] = "yes";
 }

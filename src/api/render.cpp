@@ -21,9 +21,9 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     RenderResult result;
     Statistics& statistics = result.statistics;
     const Timer total;
-    with_threads(settings.threads, [&] {
+    with_threads(settings.device.threads, [&] {
         // First, so that a picture that cannot be held is refused before the scene is prepared.
-        Film film(settings.width, settings.height, settings.crop, settings.layers);
+        Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
         std::shared_ptr<const PreparedScene> prepared = prepare_with_warnings(std::move(scene), settings);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();

@@ -76,11 +76,11 @@ struct Session::Implementation {
     Implementation(Scene scene, const RenderSettings& given) : settings(given), scene_hash(scene.hash) {
         validate_settings(settings);
         validate_method(settings, scene.camera);
-        if (settings.surface == SurfaceMode::tessellated)
+        if (settings.surface.mode == SurfaceMode::tessellated)
             throw Error(ErrorKind::usage, {"a tessellated surface does not follow edits of its map",
                                            "session", "render it directly"});
         const Timer timer;
-        with_threads(settings.threads, [&] {
+        with_threads(settings.device.threads, [&] {
             prepared = prepare_with_warnings(std::move(scene), settings);
             own_maps();
             start_engine();
@@ -97,7 +97,8 @@ struct Session::Implementation {
     /// What changed since the last picture is traced anew, the rest kept.
     bool trace_picture(RenderObserver* observer) {
         if (film) return engine->refresh(*film, observer);
-        auto fresh = std::make_unique<Film>(settings.width, settings.height, settings.crop, settings.layers);
+        auto fresh = std::make_unique<Film>(settings.image.width, settings.image.height, settings.image.crop,
+                                            settings.image.layers);
         const bool is_complete = engine->render(*fresh, observer);
         film = std::move(fresh);
         return is_complete;
@@ -226,7 +227,7 @@ struct Session::Implementation {
             if (instance.surface != surface) continue;
             for (size_t patch = 0; patch < reach.size(); ++patch) {
                 const PatchLevels levels = instance.levels->at(uint32_t(patch));
-                const int coarsest = settings.lod == LodRule::ray
+                const int coarsest = settings.surface.lod == LodRule::ray
                                          ? 0
                                          : std::min<int>(levels.patch, *std::min_element(levels.edge.begin(),
                                                                                          levels.edge.end()));
@@ -312,7 +313,7 @@ RenderResult Session::render(RenderObserver* observer) {
     RenderResult result;
     Statistics& statistics = result.statistics;
     const Timer total;
-    with_threads(self.settings.threads, [&] {
+    with_threads(self.settings.device.threads, [&] {
         const Timer timer;
         result.is_complete = self.trace_picture(observer);
         statistics.render_s = timer.seconds();
@@ -333,12 +334,12 @@ RenderResult Session::render(RenderObserver* observer) {
 
 EditReport Session::edit(const MapEdit& edit) {
     EditReport report;
-    with_threads(implementation_->settings.threads, [&] { report = implementation_->apply(edit); });
+    with_threads(implementation_->settings.device.threads, [&] { report = implementation_->apply(edit); });
     return report;
 }
 
 void Session::check(const MapEdit& edit) const {
-    with_threads(implementation_->settings.threads, [&] { implementation_->check(edit); });
+    with_threads(implementation_->settings.device.threads, [&] { implementation_->check(edit); });
 }
 
 } // namespace relief

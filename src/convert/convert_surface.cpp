@@ -180,7 +180,7 @@ Mesh make_displaced_mesh(const Scene& scene, int level) {
     if (level < 0 || level > kMaxLevel)
         throw Error(ErrorKind::usage, {fmt::format("level {} is not in [0, {}]", level, kMaxLevel), "", ""});
     RenderSettings settings;
-    settings.level = level;
+    settings.surface.level = level;
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     Mesh mesh;
     mesh.name = "displaced";

@@ -140,20 +140,21 @@ class CpuEngine final : public Engine {
         const Timer timer;
         uint64_t pixels = 0;
         for (const Window& tile : tiles) pixels += count_pixels(tile);
-        Reporter reporter(observer, pixels * uint64_t(settings_.spp), settings_.spp);
+        Reporter reporter(observer, pixels * uint64_t(settings_.image.spp), settings_.image.spp);
         const Tracer::StopScope scope(tracer_, [&] { return reporter.is_cancelled(); });
         first_image_s_ = 0;
         int done = 0, length = 1;
-        while (done < settings_.spp && !reporter.is_cancelled()) {
+        while (done < settings_.image.spp && !reporter.is_cancelled()) {
             tracer_.improve_trees();
-            const SampleRange samples{settings_.first_sample + done, std::min(length, settings_.spp - done)};
+            const SampleRange samples{settings_.image.first_sample + done,
+                                      std::min(length, settings_.image.spp - done)};
             if (!render_pass(film, tiles, samples, reporter)) break;
             done += samples.count;
             if (first_image_s_ == 0) first_image_s_ = timer.seconds();
             reporter.finish_pass(done);
             length = std::min(2 * length, kLongestPass);
         }
-        return done == settings_.spp;
+        return done == settings_.image.spp;
     }
 
     /// Whether all tiles have these samples, which they may have although the end was asked for meanwhile.

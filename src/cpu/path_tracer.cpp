@@ -130,7 +130,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
                     Path path;
                     path.x = x, path.y = y;
                     paths_.push_back(path);
-                    seeds_.push_back(scalar::make_pixel_seed(settings_.seed, uint32_t(x), uint32_t(y)));
+                    seeds_.push_back(scalar::make_pixel_seed(settings_.image.seed, uint32_t(x), uint32_t(y)));
                 }
 }
 
@@ -305,7 +305,7 @@ void TileTracer::reflect(size_t first, size_t count) {
     }
     for (size_t n = count; n % 16 != 0; ++n)
         lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
-    const bool goes_on = depth_ < settings_.bounces;
+    const bool goes_on = depth_ < settings_.image.bounces;
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
         tracer_.shading_kernels().reflect({.count = std::min(size_t(16), count - n),
@@ -353,7 +353,7 @@ void TileTracer::add_emission(size_t k, const Vec3f& emission) {
 /// there.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
-    const bool is_last = depth_ == settings_.bounces;
+    const bool is_last = depth_ == settings_.image.bounces;
     const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
     const Vec3f contribution =
         path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;

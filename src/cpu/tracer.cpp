@@ -97,14 +97,14 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
                std::unique_ptr<const SceneWalk> walk)
     : scene_(std::move(scene)), implementation_(std::make_unique<Implementation>()) {
     Implementation& self = *implementation_;
-    self.kernels = find_kernels(settings.isa);
+    self.kernels = find_kernels(settings.device.isa);
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
                                                 "", "`relief devices` lists those that work"});
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);
-    self.cache = std::make_unique<BottomCache>(settings.bottom_cache_bytes);
+    self.cache = std::make_unique<BottomCache>(settings.surface.cache_bytes);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view.instances = scene_->instances.data();
@@ -112,8 +112,8 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.view.instance_count = uint32_t(scene_->instances.size());
     self.view.polygon_trees = self.polygon_trees.data();
     self.view.cache = self.cache.get();
-    self.view.leaf = settings.leaf, self.view.lod = settings.lod;
-    self.view.pixel_angle = settings.pixel_error * pixel;
+    self.view.leaf = settings.surface.leaf, self.view.lod = settings.surface.lod;
+    self.view.pixel_angle = settings.surface.pixel_error * pixel;
 }
 
 Tracer::~Tracer() = default;

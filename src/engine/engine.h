@@ -27,8 +27,8 @@ class Engine {
     /// surface. Not while rays are traced. False: the engine cannot follow, a new one has to be made.
     virtual bool follow(std::span<const SurfaceChange> changes) = 0;
 
-    /// Adds samples [settings.first_sample, + spp) of every pixel of the film's window. Returns false when
-    /// the observer cancelled; the film then holds what was done.
+    /// Adds samples [settings.image.first_sample, + spp) of every pixel of the film's window. Returns false
+    /// when the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
     /// Changes will be followed, and refresh() be called: whatever makes them cheaper may cost a little.

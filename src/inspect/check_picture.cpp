@@ -23,8 +23,8 @@ constexpr Vec3f kPaper{0.18f, 0.18f, 0.2f};
 
 Image make_sheet(const RenderSettings& settings) {
     Image sheet;
-    sheet.width = sheet.full_width = 2 * settings.width;
-    sheet.height = sheet.full_height = 2 * settings.height;
+    sheet.width = sheet.full_width = 2 * settings.image.width;
+    sheet.height = sheet.full_height = 2 * settings.image.height;
     sheet.channels = {"R", "G", "B", "A"};
     sheet.pixels.assign(size_t(sheet.width) * size_t(sheet.height) * 4, 1.0f);
     return sheet;
@@ -48,8 +48,8 @@ Scene make_base(const Scene& scene) {
 
 std::vector<Ray> make_rays(const scalar::CameraFrame& camera, const RenderSettings& settings) {
     std::vector<Ray> rays;
-    for (int y = 0; y < settings.height; ++y)
-        for (int x = 0; x < settings.width; ++x) {
+    for (int y = 0; y < settings.image.height; ++y)
+        for (int x = 0; x < settings.image.width; ++x) {
             const scalar::CameraRay ray =
                 scalar::make_pinhole_ray(camera, Vec2f{float(x) + 0.5f, float(y) + 0.5f});
             rays.push_back({ray.origin, 0, ray.direction, std::numeric_limits<float>::infinity()});
@@ -131,13 +131,13 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
             const Vec3f normal = transform_normal(instance.object_from_world, base.frame.n);
             if (!(start.distance > 0) || dot(normal, camera.origin - from) < 0) continue;
             // A sixteenth of the height of the picture long, wherever the patch is.
-            const float size = start.distance * length(camera.step_y) * float(settings.height) / 16;
+            const float size = start.distance * length(camera.step_y) * float(settings.image.height) / 16;
             for (size_t k = 0; k < 3; ++k) {
                 const Vec3f along = normalize(transform_vector(instance.world_from_object, axes[k])) * size;
                 const scalar::CameraProjection end = scalar::project_point(camera, from + along);
                 if (end.distance > 0)
-                    draw_line(sheet, {settings.width, settings.height}, {start.x, start.y}, {end.x, end.y},
-                              kColours[k]);
+                    draw_line(sheet, {settings.image.width, settings.image.height}, {start.x, start.y},
+                              {end.x, end.y}, kColours[k]);
             }
         }
     }
@@ -148,11 +148,11 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
 Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
     validate_settings(settings);
     RenderSettings plain = settings;
-    plain.engine = EngineKind::cpu;
-    plain.crop = {}, plain.layers = {}, plain.surface = SurfaceMode::direct;
+    plain.device.engine = EngineKind::cpu;
+    plain.image.crop = {}, plain.image.layers = {}, plain.surface.mode = SurfaceMode::direct;
     Image sheet = make_sheet(plain);
     copy_picture(render(make_base(scene), plain).image, 0, 0, sheet);
-    copy_picture(render(scene, plain).image, plain.width, 0, sheet);
+    copy_picture(render(scene, plain).image, plain.image.width, 0, sheet);
 
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, plain);
     const scalar::CameraFrame camera = make_camera_frame(*prepared);
@@ -161,10 +161,10 @@ Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
     make_cpu_engine(prepared, plain)->closest_hits(rays, hits);
     const float longest = find_longest(*prepared, hits);
     for (size_t k = 0; k < rays.size(); ++k) {
-        const int x = int(k % size_t(plain.width)), y = int(k / size_t(plain.width));
+        const int x = int(k % size_t(plain.image.width)), y = int(k / size_t(plain.image.width));
         const PointColours colours = colour_point(*prepared, rays[k], hits[k], longest);
-        set_pixel(sheet, x, plain.height + y, colours.axes);
-        set_pixel(sheet, plain.width + x, plain.height + y, colours.folds);
+        set_pixel(sheet, x, plain.image.height + y, colours.axes);
+        set_pixel(sheet, plain.image.width + x, plain.image.height + y, colours.folds);
     }
     draw_frames(*prepared, camera, plain, sheet);
     return sheet;

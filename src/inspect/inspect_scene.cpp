@@ -84,10 +84,10 @@ class TrialRender {
   public:
     TrialRender(const std::shared_ptr<const PreparedScene>& prepared, const RenderSettings& settings)
         : settings_(settings) {
-        settings_.spp = 1;
-        settings_.engine = EngineKind::cpu;
+        settings_.image.spp = 1;
+        settings_.device.engine = EngineKind::cpu;
         engine_ = make_engine(prepared, settings_);
-        groups_ = std::max(1, (settings.height + kBands * kRows - 1) / (kBands * kRows));
+        groups_ = std::max(1, (settings.image.height + kBands * kRows - 1) / (kBands * kRows));
         while (std::gcd(stride_, groups_) != 1) ++stride_;
     }
 
@@ -99,9 +99,9 @@ class TrialRender {
         for (int band = 0; band < kBands; ++band) {
             // Far from the group before, so that its trees do not serve this one more than others.
             const int slot = band * groups_ + int((int64_t(group) * stride_) % groups_);
-            const int y0 = slot * kRows, y1 = std::min(settings_.height, y0 + kRows);
+            const int y0 = slot * kRows, y1 = std::min(settings_.image.height, y0 + kRows);
             if (y0 >= y1) continue;
-            Film film(settings_.width, settings_.height, {0, y0, settings_.width, y1}, {});
+            Film film(settings_.image.width, settings_.image.height, {0, y0, settings_.image.width, y1}, {});
             engine_->render(film, nullptr);
         }
         return timer.seconds();
@@ -133,8 +133,9 @@ std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, 
     const double next_s = trial.time_group(0) * trial.group_count();
     return fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
                        "{}x{} on the CPU; measured on {} of {} parts of the picture",
-                       ready_s, first_s, ready_s + first_s + next_s * (settings.spp - 1), settings.spp,
-                       settings.width, settings.height, done, trial.group_count());
+                       ready_s, first_s, ready_s + first_s + next_s * (settings.image.spp - 1),
+                       settings.image.spp, settings.image.width, settings.image.height, done,
+                       trial.group_count());
 }
 
 void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
@@ -154,7 +155,7 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     }
     Statistics statistics;
     RenderSettings on_cpu = settings;
-    on_cpu.engine = EngineKind::cpu;
+    on_cpu.device.engine = EngineKind::cpu;
     make_engine(prepared, on_cpu)->add_statistics(statistics);
     const auto add = [&](const char* name, std::string value) {
         result.facts.push_back({name, std::move(value)});
@@ -178,7 +179,7 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
 TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings& settings) {
     validate_settings(settings);
     RenderSettings direct = settings;
-    direct.surface = SurfaceMode::direct;
+    direct.surface.mode = SurfaceMode::direct;
     return estimate_tessellation(*prepare_scene(scene, direct));
 }
 

@@ -1,4 +1,4 @@
-// Traversals of the scene that are chosen by name (RenderSettings::structure and traversal), for both
+// Traversals of the scene that are chosen by name (ExperimentSettings::structure and traversal), for both
 // engines.
 #pragma once
 

@@ -122,7 +122,7 @@ struct TracerProbe::Implementation {
         return {instance, number - first_patches[instance]};
     }
 
-    template <class Body> void run(const Body& body) const { with_threads(settings.threads, body); }
+    template <class Body> void run(const Body& body) const { with_threads(settings.device.threads, body); }
 
     void make_tracer() { tracer = std::make_unique<cpu::Tracer>(scene, settings); }
 
@@ -179,11 +179,11 @@ struct TracerProbe::Implementation {
 TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
     : implementation_(std::make_unique<Implementation>()) {
     validate_settings(settings);
-    if (settings.engine != EngineKind::cpu)
+    if (settings.device.engine != EngineKind::cpu)
         throw Error(ErrorKind::usage, {"the probe is of the CPU engine", "", "engine = EngineKind::cpu"});
     Implementation& self = *implementation_;
     self.settings = settings;
-    self.kernels = cpu::find_kernels(settings.isa);
+    self.kernels = cpu::find_kernels(settings.device.isa);
     self.run([&] {
         Timer timer;
         self.scene = prepare_scene(std::move(scene), settings);
@@ -194,7 +194,7 @@ TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
         self.buffers.resize(size_t(thread_count()));
     });
     self.number_patches();
-    self.tiles = make_tiles(settings.width, settings.height);
+    self.tiles = make_tiles(settings.image.width, settings.image.height);
     self.centres = list_centres(self.tiles);
 }
 
@@ -222,7 +222,7 @@ std::vector<Ray> TracerProbe::make_camera_rays(const Camera& camera) const {
     const Implementation& self = *implementation_;
     PreparedScene view;
     view.camera = camera;
-    view.width = self.settings.width, view.height = self.settings.height;
+    view.width = self.settings.image.width, view.height = self.settings.image.height;
     const scalar::CameraFrame frame = make_camera_frame(view);
     std::vector<cpu::TraceRay> aimed;
     aim_rays(self.tracer->shading_kernels(), frame, self.centres, aimed);
@@ -236,7 +236,7 @@ ProbeRun TracerProbe::trace_camera(ProbeRun room) const {
     Implementation& self = *implementation_;
     ProbeRun result = std::move(room);
     result.occluded.clear();
-    result.hits.resize(size_t(self.settings.width) * size_t(self.settings.height));
+    result.hits.resize(size_t(self.settings.image.width) * size_t(self.settings.image.height));
     const scalar::CameraFrame frame = make_camera_frame(*self.scene);
     self.run([&] {
         self.tracer->improve_trees();

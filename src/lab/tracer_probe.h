@@ -62,7 +62,8 @@ struct ProbeCounts {
     uint64_t cache_bytes = 0; ///< the most that the cache has held, its table included
 };
 
-/// One thread at a time; the calls that trace use all of `settings.threads`. evaluate_patch is thread safe.
+/// One thread at a time; the calls that trace use all of `settings.device.threads`. evaluate_patch is thread
+/// safe.
 class TracerProbe {
   public:
     /// Prepares the scene, by the clock. Throws Error as render() does.

@@ -15,7 +15,7 @@ namespace relief {
 namespace {
 
 std::unique_ptr<TreeWorkshop> make_workshop(TriangleSoup soup, const RenderSettings& settings) {
-    if (settings.engine == EngineKind::cpu) return make_cpu_tree_workshop(std::move(soup));
+    if (settings.device.engine == EngineKind::cpu) return make_cpu_tree_workshop(std::move(soup));
 #ifdef RELIEF_VULKAN
     return make_vulkan_tree_workshop(std::move(soup), settings);
 #else
@@ -104,7 +104,7 @@ std::vector<TraversalKind> tree_traversals(TreeKind kind) {
     }
 }
 
-MeshTrees::MeshTrees(const Mesh& mesh, const RenderSettings& settings) : threads_(settings.threads) {
+MeshTrees::MeshTrees(const Mesh& mesh, const RenderSettings& settings) : threads_(settings.device.threads) {
     validate_mesh(mesh);
     workshop_ = make_workshop(make_soup(mesh), settings);
 }

@@ -92,7 +92,7 @@ struct TreeCast {
 
 class TreeWorkshop;
 
-/// One tree at a time over one mesh. One thread at a time; all of `settings.threads` work.
+/// One tree at a time over one mesh. One thread at a time; all of `settings.device.threads` work.
 class MeshTrees {
   public:
     /// Of `settings` engine, device, pipeline_cache and threads. Throws Error: device_missing, out_of_memory,

@@ -43,11 +43,11 @@ Instance make_instance(const Object& object, uint32_t surface, uint32_t default_
 
 LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& settings) {
     LevelFieldConfig config;
-    config.fixed_level = settings.level == kAutoLevel ? -1 : settings.level;
-    config.pixel_error = settings.pixel_error;
+    config.fixed_level = settings.surface.level == kAutoLevel ? -1 : settings.surface.level;
+    config.pixel_error = settings.surface.pixel_error;
     config.camera = scene.camera.from;
     config.pixel_angle =
-        float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.height);
+        float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
     return config;
 }
 
@@ -161,7 +161,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     prepared->environment = std::move(scene.environment);
     prepared->camera = scene.camera;
     prepared->mesh_count = uint32_t(scene.meshes.size());
-    prepared->width = settings.width, prepared->height = settings.height;
+    prepared->width = settings.image.width, prepared->height = settings.image.height;
 
     std::map<SurfaceKey, uint32_t> surface_of_key;
     std::vector<uint32_t> first_object;
@@ -186,8 +186,9 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     });
     for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
         prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
-    if (settings.surface == SurfaceMode::tessellated) drop_detail(*prepared);
-    if (settings.surface == SurfaceMode::tessellated) tessellate_scene(*prepared, available_memory_bytes());
+    if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(*prepared);
+    if (settings.surface.mode == SurfaceMode::tessellated)
+        tessellate_scene(*prepared, available_memory_bytes());
     return prepared;
 }
 

@@ -20,14 +20,14 @@ std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind
 }
 
 TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine) {
-    return settings.traversal == TraversalKind::automatic
-               ? available_traversals(engine, settings.structure).front()
-               : settings.traversal;
+    return settings.experiment.traversal == TraversalKind::automatic
+               ? available_traversals(engine, settings.experiment.structure).front()
+               : settings.experiment.traversal;
 }
 
 bool is_default_traversal(const RenderSettings& settings, EngineKind engine) {
     const TraversalKind own = engine == EngineKind::cpu ? TraversalKind::wide : TraversalKind::stack;
-    return settings.structure == StructureKind::bvh && choose_traversal(settings, engine) == own;
+    return settings.experiment.structure == StructureKind::bvh && choose_traversal(settings, engine) == own;
 }
 
 const char* traversal_name(TraversalKind traversal) {

@@ -1,4 +1,4 @@
-// What RenderSettings::structure and traversal stand for.
+// What ExperimentSettings::structure and traversal stand for.
 #pragma once
 
 #include "relief/render.h"

@@ -20,29 +20,30 @@ void require(bool condition, const char* message, const std::string& hint) {
 }
 
 void require_traversal(const RenderSettings& s) {
-    const std::vector<TraversalKind> valid = available_traversals(s.engine, s.structure);
-    if (s.traversal == TraversalKind::automatic ||
-        std::find(valid.begin(), valid.end(), s.traversal) != valid.end())
+    const std::vector<TraversalKind> valid = available_traversals(s.device.engine, s.experiment.structure);
+    if (s.experiment.traversal == TraversalKind::automatic ||
+        std::find(valid.begin(), valid.end(), s.experiment.traversal) != valid.end())
         return;
     std::vector<std::string> names;
     for (const TraversalKind traversal : valid) names.emplace_back(traversal_name(traversal));
     throw Error(ErrorKind::usage,
                 {fmt::format("the traversal {} does not go with the structure {} on the {} engine",
-                             traversal_name(s.traversal), structure_name(s.structure),
-                             s.engine == EngineKind::cpu ? "cpu" : "vulkan"),
+                             traversal_name(s.experiment.traversal), structure_name(s.experiment.structure),
+                             s.device.engine == EngineKind::cpu ? "cpu" : "vulkan"),
                  kWhere, fmt::format("valid there: {}", fmt::join(names, ", "))});
 }
 
 void require_costs(const RenderSettings& s) {
-    if (!s.sah_costs) return;
+    if (!s.experiment.sah_costs) return;
     const auto is_cost = [](float cost) { return std::isfinite(cost) && cost > 0; };
-    require(is_cost(s.sah_costs->traversal) && is_cost(s.sah_costs->intersection),
+    require(is_cost(s.experiment.sah_costs->traversal) && is_cost(s.experiment.sah_costs->intersection),
             "the costs of the surface-area heuristic are out of range", "above 0, finite");
-    const bool is_default_bvh = s.structure == StructureKind::bvh &&
-                                (s.traversal == TraversalKind::automatic ||
-                                 s.traversal == available_traversals(s.engine, StructureKind::bvh).front());
+    const bool is_default_bvh =
+        s.experiment.structure == StructureKind::bvh &&
+        (s.experiment.traversal == TraversalKind::automatic ||
+         s.experiment.traversal == available_traversals(s.device.engine, StructureKind::bvh).front());
     require(
-        s.structure != StructureKind::lbvh && !is_default_bvh,
+        s.experiment.structure != StructureKind::lbvh && !is_default_bvh,
         "costs of the surface-area heuristic do not go with the linear BVH and the engine's default trees",
         "structure kdtree, or bvh with another traversal than the default");
 }
@@ -50,48 +51,52 @@ void require_costs(const RenderSettings& s) {
 } // namespace
 
 void validate_settings(const RenderSettings& s) {
-    require(s.width >= 1 && s.width <= kMaxPictureSize && s.height >= 1 && s.height <= kMaxPictureSize,
+    require(s.image.width >= 1 && s.image.width <= kMaxPictureSize && s.image.height >= 1 &&
+                s.image.height <= kMaxPictureSize,
             "the picture size is out of range", fmt::format("1 to {} pixels a side", kMaxPictureSize));
-    require(s.spp >= 1 && s.spp <= kMaxSamples, "the number of samples is out of range",
+    require(s.image.spp >= 1 && s.image.spp <= kMaxSamples, "the number of samples is out of range",
             fmt::format("1 to {} a pixel", kMaxSamples));
-    require(s.first_sample >= 0 && s.first_sample <= (1 << 30), "the first sample is out of range",
-            "0 to 1073741824");
-    require(s.bounces >= 0 && s.bounces <= kMaxBounces, "the number of bounces is out of range",
+    require(s.image.first_sample >= 0 && s.image.first_sample <= (1 << 30),
+            "the first sample is out of range", "0 to 1073741824");
+    require(s.image.bounces >= 0 && s.image.bounces <= kMaxBounces, "the number of bounces is out of range",
             fmt::format("0 to {}", kMaxBounces));
-    require(s.threads >= 0 && s.threads <= kMaxThreads, "the number of threads is out of range",
+    require(s.device.threads >= 0 && s.device.threads <= kMaxThreads, "the number of threads is out of range",
             "0 (all cores) to 4096");
-    require(s.device >= -1, "the device is out of range", "-1 (the best) or an index of vulkan_devices()");
-    require(s.engine == EngineKind::vulkan || (s.device == -1 && s.bottom == BottomForm::automatic),
+    require(s.device.index >= -1, "the device is out of range",
+            "-1 (the best) or an index of vulkan_devices()");
+    require(s.device.engine == EngineKind::vulkan ||
+                (s.device.index == -1 && s.experiment.bottom == BottomForm::automatic),
             "a device and a form of the bottom kernel go with the Vulkan engine",
             "engine = EngineKind::vulkan");
-    require(s.engine == EngineKind::vulkan || s.method == RenderMethod::compute,
+    require(s.device.engine == EngineKind::vulkan || s.experiment.method == RenderMethod::compute,
             "a render method goes with the Vulkan engine",
             "--method compute, or --engine vulkan with compute, fragment or hybrid");
-    require(s.method != RenderMethod::fragment || s.bottom != BottomForm::fused,
+    require(s.experiment.method != RenderMethod::fragment || s.experiment.bottom != BottomForm::fused,
             "the fused form of the bottom kernel needs work groups, which fragments have not",
             "--bottom auto or split, or --method compute or hybrid");
-    require(s.method != RenderMethod::hybrid || s.lod == LodRule::field,
+    require(s.experiment.method != RenderMethod::hybrid || s.surface.lod == LodRule::field,
             "the hybrid method draws each patch at one level, so it has none for each ray",
             "--lod field, or --method compute or fragment");
-    require(s.method != RenderMethod::hybrid || s.leaf == LeafKind::exact,
+    require(s.experiment.method != RenderMethod::hybrid || s.surface.leaf == LeafKind::exact,
             "the hybrid method draws triangles, not their boxes",
             "--leaf exact, or --method compute or fragment");
-    require(s.engine == EngineKind::cpu || s.isa == Isa::best, "an instruction set goes with the CPU engine",
-            "engine = EngineKind::cpu");
+    require(s.device.engine == EngineKind::cpu || s.device.isa == Isa::best,
+            "an instruction set goes with the CPU engine", "engine = EngineKind::cpu");
     require_traversal(s);
     require_costs(s);
-    require(s.level == kAutoLevel || (s.level >= 0 && s.level <= kMaxLevel), "the level is out of range",
-            fmt::format("auto, or 0 to {}", kMaxLevel));
-    require(s.pixel_error > 0 && s.pixel_error <= 1e6f, "the pixel error is out of range",
+    require(s.surface.level == kAutoLevel || (s.surface.level >= 0 && s.surface.level <= kMaxLevel),
+            "the level is out of range", fmt::format("auto, or 0 to {}", kMaxLevel));
+    require(s.surface.pixel_error > 0 && s.surface.pixel_error <= 1e6f, "the pixel error is out of range",
             "above 0, at most 1e6 pixels");
-    require(s.crop == Window{} || (s.crop.x0 >= 0 && s.crop.y0 >= 0 && s.crop.x0 < s.crop.x1 &&
-                                   s.crop.y0 < s.crop.y1 && s.crop.x1 <= s.width && s.crop.y1 <= s.height),
-            "the crop is empty or leaves the picture",
-            "x0,y0,x1,y1 in pixels, half open, inside the picture");
+    require(
+        s.image.crop == Window{} || (s.image.crop.x0 >= 0 && s.image.crop.y0 >= 0 &&
+                                     s.image.crop.x0 < s.image.crop.x1 && s.image.crop.y0 < s.image.crop.y1 &&
+                                     s.image.crop.x1 <= s.image.width && s.image.crop.y1 <= s.image.height),
+        "the crop is empty or leaves the picture", "x0,y0,x1,y1 in pixels, half open, inside the picture");
 }
 
 void validate_method(const RenderSettings& s, const Camera& camera) {
-    require(s.method != RenderMethod::hybrid || camera.aperture_radius == 0,
+    require(s.experiment.method != RenderMethod::hybrid || camera.aperture_radius == 0,
             "the hybrid method draws what one point sees, and the camera has a lens",
             "aperture_radius 0, or --method compute or fragment");
 }

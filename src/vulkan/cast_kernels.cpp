@@ -54,11 +54,12 @@ Kernel make_walk(const Device& device, RenderMethod method, const TraversalKerne
 CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
                          const TracerConfig& config, uint32_t stack_size) {
     const bool is_cpu = device.is_cpu();
-    const uint32_t is_box = settings.leaf == LeafKind::box;
+    const uint32_t is_box = settings.surface.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
-    is_fused = settings.bottom == BottomForm::fused;
+    is_fused = settings.experiment.bottom == BottomForm::fused;
     if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
-    scene_traversal = make_walk(device, settings.method, scene.traversal_kernel(), {kGroup, stack_size});
+    scene_traversal =
+        make_walk(device, settings.experiment.method, scene.traversal_kernel(), {kGroup, stack_size});
     find_jobs = Kernel(device, {"find_jobs", {kGroup}});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
@@ -68,7 +69,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     const std::array<uint32_t, scalar::kBuildBinCount> lanes = choose_lanes(is_cpu);
     const uint32_t build_group = is_cpu ? 8 : 64;
     arguments_push.group_size = kGroup;
-    const bool is_coarser = config.may_see_coarser || settings.lod == LodRule::ray;
+    const bool is_coarser = config.may_see_coarser || settings.surface.lod == LodRule::ray;
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {
         if (!is_fused && has_trees(scene.tree_levels(), is_coarser, bin))
             bottom_build[bin].emplace(
@@ -76,8 +77,8 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
         arguments_push.builds_per_group[bin] = build_group / lanes[bin];
     }
     if (!is_fused) {
-        patch_traversal =
-            make_walk(device, settings.method, {"patch_traversal", {}, {}}, {kGroup, 0, 0, 0, is_box, 0});
+        patch_traversal = make_walk(device, settings.experiment.method, {"patch_traversal", {}, {}},
+                                    {kGroup, 0, 0, 0, is_box, 0});
         return;
     }
     const uint32_t most_pairs = is_cpu ? kGroup * kSafePairsPerLane : kAll;

@@ -69,7 +69,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
     make_buffers();
-    if (settings.method == RenderMethod::hybrid)
+    if (settings.experiment.method == RenderMethod::hybrid)
         rasteriser_ =
             std::make_unique<Rasteriser>(tracer, RasterBuffers{.vertices = &points_, .items = &shadow_list_});
 }
@@ -77,7 +77,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
 void PathTracer::make_buffers() {
     const Device& device = tracer_.device();
     // First hits by drawing borrow what only shading needs.
-    const bool is_lent = settings_.method == RenderMethod::hybrid;
+    const bool is_lent = settings_.experiment.method == RenderMethod::hybrid;
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
     points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
                                                     is_lent ? RasterBuffers::kLeastVertexBytes : 0);
@@ -123,7 +123,7 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     scalar::PathPush push{};
     lights_.describe(push);
     push.capacity = capacity_;
-    push.last_depth = uint32_t(settings_.bounces);
+    push.last_depth = uint32_t(settings_.image.bounces);
     push.sample_index = sample_index;
     return push;
 }
@@ -139,7 +139,7 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
                                     uint32_t(pixels.first),
                                     uint32_t(pixels.count),
                                     sample_index,
-                                    settings_.seed};
+                                    settings_.image.seed};
     commands.begin_stage(Stage::shade);
     commands.dispatch(camera_kernel_, pixels.count, camera);
     scalar::PathPush push = make_push(sample_index);

@@ -53,7 +53,7 @@ struct Tracer::Implementation {
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
-          cache(d, settings.bottom_cache_bytes, c.pool_restart_units),
+          cache(d, settings.surface.cache_bytes, c.pool_restart_units),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
           kernels(d, ds, settings, c, ds.stack_size() + directories.stack_size()) {
@@ -63,8 +63,8 @@ struct Tracer::Implementation {
         buffers.bind(bindings);
         reserve_trees();
         const float pixel = float(2 * std::tan(s.camera.fov_degrees * std::numbers::pi / 360) / s.height);
-        push.pixel_angle = settings.pixel_error * pixel;
-        push.is_ray_lod = settings.lod == LodRule::ray;
+        push.pixel_angle = settings.surface.pixel_error * pixel;
+        push.is_ray_lod = settings.surface.lod == LodRule::ray;
         push.root = device_scene.root();
         push.patch_count = device_scene.patch_count();
         push.request_limit = kRequestCapacity;

@@ -74,7 +74,7 @@ std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share)
 /// Before the hybrid method draws into a window.
 void VulkanEngine::require_drawable(const Window& window) const {
     const uint32_t most = device_->max_draw_size();
-    if (settings_.method != RenderMethod::hybrid ||
+    if (settings_.experiment.method != RenderMethod::hybrid ||
         (uint32_t(window.x1 - window.x0) <= most && uint32_t(window.y1 - window.y0) <= most))
         return;
     throw Error(ErrorKind::usage,
@@ -96,12 +96,13 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     set_up_s_ += set_up.seconds();
     timer_ = {};
     progress_ = {};
-    progress_.samples_total = settings_.spp;
+    progress_.samples_total = settings_.image.spp;
     done_ = 0;
     int done = 0;
-    for (int length = 1; done < settings_.spp; length = std::min(2 * length, PathTracer::kSamplesPerLaunch)) {
-        const int count = std::min(length, settings_.spp - done);
-        if (!render_pass(film, {settings_.first_sample + done, count}, observer)) return false;
+    for (int length = 1; done < settings_.image.spp;
+         length = std::min(2 * length, PathTracer::kSamplesPerLaunch)) {
+        const int count = std::min(length, settings_.image.spp - done);
+        if (!render_pass(film, {settings_.image.first_sample + done, count}, observer)) return false;
         done += count;
         progress_.samples_done = done;
         if (first_image_s_ == 0) first_image_s_ = timer_.seconds();
@@ -121,7 +122,7 @@ bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* 
             worker.trace_samples(film, {first, count}, samples);
         });
         done_ += count * uint64_t(samples.count);
-        progress_.fraction = double(done_) / (double(pixels) * settings_.spp);
+        progress_.fraction = double(done_) / (double(pixels) * settings_.image.spp);
         progress_.rays = count_rays();
         progress_.elapsed_s = timer_.seconds();
         if (observer) observer->on_progress(progress_);
@@ -183,8 +184,9 @@ std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings,
                                            const std::optional<vulkan::SceneWalk>& walk) {
-    const vulkan::Device::Config config{
-        .index = settings.device, .method = settings.method, .pipeline_cache = settings.pipeline_cache};
+    const vulkan::Device::Config config{.index = settings.device.index,
+                                        .method = settings.experiment.method,
+                                        .pipeline_cache = settings.device.pipeline_cache};
     return vulkan::make_engine_on(std::make_unique<vulkan::Device>(config), std::move(scene), settings, walk);
 }
 

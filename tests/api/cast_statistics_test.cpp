@@ -11,8 +11,8 @@ constexpr int kBounces = 2;
 
 RenderSettings make_settings() {
     RenderSettings settings;
-    settings.width = 96, settings.height = 64;
-    settings.spp = 2, settings.bounces = kBounces;
+    settings.image.width = 96, settings.image.height = 64;
+    settings.image.spp = 2, settings.image.bounces = kBounces;
     return settings;
 }
 
@@ -54,7 +54,7 @@ TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
 
 TEST(CastStatistics, show_that_trees_are_built_again_for_every_cast_without_a_cache) {
     RenderSettings settings = make_settings();
-    settings.bottom_cache_bytes = 0;
+    settings.surface.cache_bytes = 0;
     const Statistics s = render(get_ear(), settings).statistics;
     for (const CastStatistics& cast : s.casts)
         if (cast.pairs > 0) EXPECT_GT(cast.bottom_build_s, 0) << cast.depth << " " << cast.is_shadow;

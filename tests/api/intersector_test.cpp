@@ -70,7 +70,7 @@ TEST(Intersector, respects_the_interval_of_a_ray) {
 
 TEST(Intersector, refuses_settings_out_of_range_and_unequal_spans) {
     RenderSettings settings;
-    settings.level = 40;
+    settings.surface.level = 40;
     EXPECT_THROW(Intersector(make_scene(), settings), Error);
     const Intersector intersector(make_scene(), RenderSettings{});
     const std::vector<Ray> rays(3);

@@ -25,8 +25,8 @@ Scene make_torus_scene(DisplacementSpace space) {
 
 RenderSettings make_settings() {
     RenderSettings settings;
-    settings.width = 96, settings.height = 72, settings.spp = 2, settings.bounces = 2;
-    settings.layers = {"depth", "N", "id"};
+    settings.image.width = 96, settings.image.height = 72, settings.image.spp = 2, settings.image.bounces = 2;
+    settings.image.layers = {"depth", "N", "id"};
     return settings;
 }
 
@@ -71,7 +71,7 @@ TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
     for (const DisplacementSpace space : {DisplacementSpace::tangent, DisplacementSpace::object})
         for (const int level : {4, kAutoLevel}) {
             RenderSettings settings = make_settings();
-            settings.level = level;
+            settings.surface.level = level;
             Scene fresh = make_torus_scene(space);
             Session session(fresh, settings);
             Image before = session.render().image;
@@ -92,7 +92,7 @@ TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
         Scene fresh = make_torus_scene(DisplacementSpace::tangent);
         fresh.displacements[0].filter = MapFilter::mip, fresh.displacements[0].autobump = has_autobump;
         RenderSettings settings = make_settings();
-        settings.pixel_error = 4;
+        settings.surface.pixel_error = 4;
         Session session(fresh, settings);
         Image before = session.render().image;
         for (const MapEdit& edit : {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.3f)}) {
@@ -119,17 +119,17 @@ TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
         expect_same(session.render().image, render(fresh, settings).image);
     };
     RenderSettings settings = make_settings();
-    settings.bottom_cache_bytes = 0;
+    settings.surface.cache_bytes = 0;
     expect_follows(settings);
-    settings.bottom_cache_bytes = 300000;
+    settings.surface.cache_bytes = 300000;
     expect_follows(settings);
-    settings.traversal = TraversalKind::stack;
-    expect_follows(settings);
-    settings = make_settings();
-    settings.lod = LodRule::ray, settings.leaf = LeafKind::box;
+    settings.experiment.traversal = TraversalKind::stack;
     expect_follows(settings);
     settings = make_settings();
-    settings.level = 7; // tiles and their directories
+    settings.surface.lod = LodRule::ray, settings.surface.leaf = LeafKind::box;
+    expect_follows(settings);
+    settings = make_settings();
+    settings.surface.level = 7; // tiles and their directories
     expect_follows(settings);
 }
 
@@ -157,7 +157,7 @@ uint64_t count_rays(const RenderResult& result) {
 
 TEST(Session, traces_only_what_an_edit_may_have_reached) {
     RenderSettings settings = make_settings();
-    settings.width = 320, settings.height = 240, settings.bounces = 0;
+    settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
     Scene fresh = make_torus_scene(DisplacementSpace::tangent);
     Session session(fresh, settings);
     const uint64_t all = count_rays(session.render());
@@ -192,9 +192,10 @@ TEST(Session, sees_shading_normals_that_read_beyond_their_patch) {
     for (const int level : {0, 1, 3}) {
         Scene fresh = make_plane_scene(256);
         RenderSettings settings;
-        settings.width = settings.height = 640, settings.spp = 1, settings.bounces = 0;
-        settings.level = level;
-        settings.layers = {"depth", "N"};
+        settings.image.width = settings.image.height = 640, settings.image.spp = 1,
+        settings.image.bounces = 0;
+        settings.surface.level = level;
+        settings.image.layers = {"depth", "N"};
         Session session(fresh, settings);
         const uint64_t all = count_rays(session.render());
         // A few texels inside of a patch of 32 texels: its neighbours' differences reach there.
@@ -219,9 +220,9 @@ TEST(Session, traces_what_an_edit_has_taken_away_from_far_off) {
         edit.texels.floats[k] = 0.5f, edit.texels.floats[k + 2] = 0.2f;
     bake(fresh, edit);
     RenderSettings settings;
-    settings.width = settings.height = 320, settings.spp = 1, settings.bounces = 0;
-    settings.level = 3;
-    settings.layers = {"depth", "N"};
+    settings.image.width = settings.image.height = 320, settings.image.spp = 1, settings.image.bounces = 0;
+    settings.surface.level = 3;
+    settings.image.layers = {"depth", "N"};
     Session session(fresh, settings);
     const RenderResult before = session.render();
     session.edit(flat);
@@ -236,10 +237,10 @@ TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
     Scene fresh = make_torus_scene(DisplacementSpace::tangent);
     fresh.camera.aperture_radius = 0.05f, fresh.camera.focus_distance = 2.5f;
     RenderSettings settings = make_settings();
-    settings.width = 320, settings.height = 240, settings.bounces = 0;
-    settings.crop = {37, 11, 301, 203};
+    settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
+    settings.image.crop = {37, 11, 301, 203};
     for (const LodRule rule : {LodRule::field, LodRule::ray}) {
-        settings.lod = rule;
+        settings.surface.lod = rule;
         Session session(fresh, settings);
         const uint64_t all = count_rays(session.render());
         uint64_t before = all, least = all;
@@ -262,7 +263,7 @@ TEST(Session, follows_a_map_that_is_two_tiles) {
     map.is_udim = true, map.wrap = WrapMode::clamp;
     map.tiles.push_back({1002, map.tiles[0].texture});
     RenderSettings settings = make_settings();
-    settings.width = 320, settings.height = 240, settings.bounces = 0;
+    settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
     Session session(fresh, settings);
     session.render();
     for (const float height : {0.3f, 0.0f}) {
@@ -300,7 +301,7 @@ TEST(Session, goes_on_where_it_was_interrupted) {
     };
     Scene fresh = make_torus_scene(DisplacementSpace::tangent);
     RenderSettings settings = make_settings();
-    settings.threads = 1;
+    settings.device.threads = 1;
     Session session(fresh, settings);
     for (const int limit : {1, 5, 20, 1000000}) {
         Interrupter observer;
@@ -399,7 +400,7 @@ TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
     expect_same(session.render().image, render(scene, make_settings()).image);
 
     RenderSettings tessellated = make_settings();
-    tessellated.surface = SurfaceMode::tessellated;
+    tessellated.surface.mode = SurfaceMode::tessellated;
     EXPECT_THROW(Session(scene, tessellated), Error);
 }
 

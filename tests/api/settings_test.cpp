@@ -24,61 +24,61 @@ void expect_usage_error(const RenderSettings& settings) {
 
 TEST(Settings, of_one_engine_do_not_go_with_the_other) {
     RenderSettings settings;
-    settings.device = 0;
+    settings.device.index = 0;
     expect_usage_error(settings);
     settings = {};
-    settings.bottom = BottomForm::fused;
+    settings.experiment.bottom = BottomForm::fused;
     expect_usage_error(settings);
     settings = {};
-    settings.engine = EngineKind::vulkan;
-    settings.isa = Isa::scalar;
+    settings.device.engine = EngineKind::vulkan;
+    settings.device.isa = Isa::scalar;
     expect_usage_error(settings);
-    settings.isa = Isa::best;
-    settings.device = -2;
+    settings.device.isa = Isa::best;
+    settings.device.index = -2;
     expect_usage_error(settings);
 }
 
 TEST(Settings, of_costs_are_refused_where_no_tree_is_built_by_them) {
     RenderSettings settings;
-    settings.sah_costs = SahCosts{};
+    settings.experiment.sah_costs = SahCosts{};
     expect_usage_error(settings);
-    settings.traversal = TraversalKind::wide;
+    settings.experiment.traversal = TraversalKind::wide;
     expect_usage_error(settings);
-    settings.structure = StructureKind::lbvh, settings.traversal = TraversalKind::stack;
+    settings.experiment.structure = StructureKind::lbvh, settings.experiment.traversal = TraversalKind::stack;
     expect_usage_error(settings);
-    settings.structure = StructureKind::bvh;
+    settings.experiment.structure = StructureKind::bvh;
     for (const float cost : {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
-        settings.sah_costs = SahCosts{cost, 1};
+        settings.experiment.sah_costs = SahCosts{cost, 1};
         expect_usage_error(settings);
-        settings.sah_costs = SahCosts{1, cost};
+        settings.experiment.sah_costs = SahCosts{1, cost};
         expect_usage_error(settings);
     }
-    settings.engine = EngineKind::vulkan, settings.sah_costs = SahCosts{};
+    settings.device.engine = EngineKind::vulkan, settings.experiment.sah_costs = SahCosts{};
     expect_usage_error(settings);
 }
 
 TEST(Settings, of_a_method_name_what_goes_with_it) {
     RenderSettings settings;
-    settings.method = RenderMethod::fragment;
+    settings.experiment.method = RenderMethod::fragment;
     expect_usage_error(settings);
-    settings.method = RenderMethod::hybrid;
+    settings.experiment.method = RenderMethod::hybrid;
     expect_usage_error(settings);
-    settings.engine = EngineKind::vulkan;
-    settings.lod = LodRule::ray;
+    settings.device.engine = EngineKind::vulkan;
+    settings.surface.lod = LodRule::ray;
     expect_usage_error(settings);
-    settings.lod = LodRule::field;
-    settings.leaf = LeafKind::box;
+    settings.surface.lod = LodRule::field;
+    settings.surface.leaf = LeafKind::box;
     expect_usage_error(settings);
-    settings.leaf = LeafKind::exact;
-    settings.method = RenderMethod::fragment;
-    settings.bottom = BottomForm::fused;
+    settings.surface.leaf = LeafKind::exact;
+    settings.experiment.method = RenderMethod::fragment;
+    settings.experiment.bottom = BottomForm::fused;
     expect_usage_error(settings);
 }
 
 TEST(Settings, of_the_hybrid_method_want_a_camera_without_a_lens) {
     RenderSettings settings;
-    settings.engine = EngineKind::vulkan;
-    settings.method = RenderMethod::hybrid;
+    settings.device.engine = EngineKind::vulkan;
+    settings.experiment.method = RenderMethod::hybrid;
     Scene scene;
     scene.camera.aperture_radius = 0.1f;
     try {

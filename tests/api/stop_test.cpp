@@ -20,12 +20,12 @@ struct Stopper final : RenderObserver {
 
 RenderSettings make_settings(size_t cache_bytes) {
     RenderSettings settings;
-    settings.width = 16, settings.height = 16; // one tile
-    settings.spp = 2, settings.bounces = 0;
-    settings.level = 7;
-    settings.threads = 1;
-    settings.layers = {"samples"};
-    settings.bottom_cache_bytes = cache_bytes;
+    settings.image.width = 16, settings.image.height = 16; // one tile
+    settings.image.spp = 2, settings.image.bounces = 0;
+    settings.surface.level = 7;
+    settings.device.threads = 1;
+    settings.image.layers = {"samples"};
+    settings.surface.cache_bytes = cache_bytes;
     return settings;
 }
 

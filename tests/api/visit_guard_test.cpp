@@ -23,9 +23,9 @@ struct Visits {
 /// Camera, shadow and bounce rays.
 RenderSettings make_settings() {
     RenderSettings settings;
-    settings.width = 192, settings.height = 108;
-    settings.spp = 2, settings.bounces = 2;
-    settings.threads = 1;
+    settings.image.width = 192, settings.image.height = 108;
+    settings.image.spp = 2, settings.image.bounces = 2;
+    settings.device.threads = 1;
     return settings;
 }
 
@@ -48,7 +48,7 @@ void check(const Scene& scene, RenderSettings settings, const Visits& kept) {
     expect_no_rise(found.patch_nodes, kept.patch_nodes, "nodes within patches");
     expect_no_rise(found.blocks, kept.blocks, "blocks of triangles");
     expect_no_rise(found.trees, kept.trees, "trees built");
-    settings.threads = 2;
+    settings.device.threads = 2;
     Visits again = count(scene, settings);
     again.trees = found.trees;
     EXPECT_EQ(again, found) << "with two threads";
@@ -56,14 +56,14 @@ void check(const Scene& scene, RenderSettings settings, const Visits& kept) {
 
 TEST(VisitGuard, rock_at_a_fixed_level) {
     RenderSettings settings = make_settings();
-    settings.level = 4;
+    settings.surface.level = 4;
     check(make_peer_scene("rock", 1, PeerWorld::sky), settings, {150753, 117042, 298685, 394});
 }
 
 TEST(VisitGuard, close_up_of_bark) {
     RenderSettings settings = make_settings();
-    settings.width *= 8, settings.height *= 8;
-    settings.crop = {640, 360, 832, 468};
+    settings.image.width *= 8, settings.image.height *= 8;
+    settings.image.crop = {640, 360, 832, 468};
     check(make_sample_scene("bark", Instancing::none), settings, {474033, 398172, 527220, 417});
 }
 
@@ -74,11 +74,11 @@ TEST(VisitGuard, ear) {
 /// A part of the picture does, since the kernels without SIMD are slow.
 TEST(VisitGuard, counts_are_those_of_every_instruction_set) {
     RenderSettings settings = make_settings();
-    settings.crop = {64, 32, 128, 64};
+    settings.image.crop = {64, 32, 128, 64};
     const Scene scene = make_peer_scene("rock", 1, PeerWorld::sky);
     const Visits best = count(scene, settings);
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         EXPECT_EQ(count(scene, settings), best) << int(isa);
     }
 }

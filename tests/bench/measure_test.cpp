@@ -21,8 +21,8 @@ Scene make_scene() {
 
 Variant make_variant(const char* name) {
     Variant variant{name, {}, {}, {}};
-    variant.settings.width = variant.settings.height = 8;
-    variant.settings.spp = 1, variant.settings.bounces = 1;
+    variant.settings.image.width = variant.settings.image.height = 8;
+    variant.settings.image.spp = 1, variant.settings.image.bounces = 1;
     return variant;
 }
 

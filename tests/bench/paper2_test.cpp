@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json run_quick(Paper2Options options) {
-    options.settings.threads = 1;
+    options.settings.device.threads = 1;
     return run_paper2(make_quick_options(options), [](const std::string&) {});
 }
 

@@ -22,9 +22,9 @@ using Json = nlohmann::ordered_json;
 
 RenderSettings make_settings(int level) {
     RenderSettings settings;
-    settings.width = 160, settings.height = 90;
-    settings.level = level;
-    settings.threads = 2;
+    settings.image.width = 160, settings.image.height = 90;
+    settings.surface.level = level;
+    settings.device.threads = 2;
     return settings;
 }
 

@@ -34,7 +34,7 @@ std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
 }
 
 std::shared_ptr<const PreparedScene> prepare_torus(RenderSettings& settings) {
-    settings.level = 7;
+    settings.surface.level = 7;
     const Displacement displacement =
         test::make_displacement(test::make_random_map(64, 64, 0.1f, 5), DisplacementSpace::tangent);
     return prepare_scene(test::make_body_scene(test::make_torus(6, 9), displacement), settings);
@@ -64,11 +64,11 @@ TEST_P(BottomCache, gives_the_same_hits_to_many_threads_that_evict_each_others_t
     RenderSettings settings;
     const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_mixed_rays(20 * kBatch);
-    settings.bottom_cache_bytes = 0;
+    settings.surface.cache_bytes = 0;
     std::vector<cpu::TraceHit> expected(rays.size());
     cpu::Tracer(prepared, settings).closest_hits(rays, expected);
 
-    settings.bottom_cache_bytes = GetParam();
+    settings.surface.cache_bytes = GetParam();
     const cpu::Tracer tracer(prepared, settings);
     std::vector<size_t> differences(kThreads);
     std::vector<std::thread> threads;

@@ -202,11 +202,11 @@ TEST(Bundle, finds_the_same_triangles_on_a_tessellated_surface) {
 TEST(Bundle, works_without_room_for_trees) {
     for (const int level : {6, 7}) {
         RenderSettings settings;
-        settings.width = 320, settings.height = 180, settings.level = level;
+        settings.image.width = 320, settings.image.height = 180, settings.surface.level = level;
         const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.4f, 3);
         const auto scene = prepare_scene(rock(), settings);
         const Hits with = trace(cpu::Tracer(scene, settings), rays, kBundle);
-        settings.bottom_cache_bytes = 0;
+        settings.surface.cache_bytes = 0;
         EXPECT_EQ(count_different(with, trace(cpu::Tracer(scene, settings), rays, kBundle)), 0u);
     }
 }
@@ -284,11 +284,11 @@ TEST(CameraHits, need_no_bundle) {
     wide.camera.fov_degrees = 150; // rays of one bundle diverge too much
     expect_camera_hits(make_tracer(wide, 3, Isa::best), 320, "wide angle", 10);
     for (const auto& set : std::initializer_list<std::function<void(RenderSettings&)>>{
-             [](RenderSettings& settings) { settings.leaf = LeafKind::box; },
-             [](RenderSettings& settings) { settings.lod = LodRule::ray; },
-             [](RenderSettings& settings) { settings.traversal = TraversalKind::stack; }}) {
+             [](RenderSettings& settings) { settings.surface.leaf = LeafKind::box; },
+             [](RenderSettings& settings) { settings.surface.lod = LodRule::ray; },
+             [](RenderSettings& settings) { settings.experiment.traversal = TraversalKind::stack; }}) {
         RenderSettings settings;
-        settings.width = 320, settings.height = 180, settings.level = 3;
+        settings.image.width = 320, settings.image.height = 180, settings.surface.level = 3;
         set(settings);
         const cpu::Tracer tracer(prepare_scene(rock(), settings), settings);
         const scalar::CameraFrame camera = make_camera_frame(tracer.scene());
@@ -296,9 +296,9 @@ TEST(CameraHits, need_no_bundle) {
         Rays rays(positions.size());
         Hits seen(positions.size());
         tracer.camera_hits(camera, positions, rays, seen);
-        const std::string name = "leaf " + std::to_string(int(settings.leaf)) + ", lod " +
-                                 std::to_string(int(settings.lod)) + ", traversal " +
-                                 std::to_string(int(settings.traversal));
+        const std::string name = "leaf " + std::to_string(int(settings.surface.leaf)) + ", lod " +
+                                 std::to_string(int(settings.surface.lod)) + ", traversal " +
+                                 std::to_string(int(settings.experiment.traversal));
         EXPECT_EQ(count_different(seen, trace(tracer, rays, rays.size())), 0u) << name;
         EXPECT_GT(count_different(seen, Hits(seen.size())), 30u) << name;
     }

@@ -92,8 +92,8 @@ void expect_definition(const Displacement& displacement, SubdivisionScheme schem
     scene.meshes[0].subdivision.level = 0;
     if (displacement.frame == FrameKind::file) test::add_flat_normals(scene.meshes[0]);
     RenderSettings settings;
-    settings.level = has_mips ? kAutoLevel : 0;
-    settings.height = 60;
+    settings.surface.level = has_mips ? kAutoLevel : 0;
+    settings.image.height = 60;
     const auto prepared = prepare_scene(scene, settings);
     const Surface& surface = prepared->surfaces[0];
     if (has_mips) EXPECT_GT(std::set(surface.mips.begin(), surface.mips.end()).size(), 4u);
@@ -178,7 +178,7 @@ TEST(Evaluation, boxes_of_a_directory_hold_the_vertices_of_their_cells) {
             test::make_torus(4, 6),
             test::make_displacement(test::make_random_map(256, 192, 0.1f, 4), DisplacementSpace::tangent));
         RenderSettings settings;
-        settings.level = 0;
+        settings.surface.level = 0;
         const auto prepared = prepare_scene(scene, settings);
         const Surface& surface = prepared->surfaces[0];
         const PatchLevels levels{level, {level, 3, uint8_t(level - 1), 0}};

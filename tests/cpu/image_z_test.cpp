@@ -65,8 +65,8 @@ Scene make_still_life() {
 
 Image render_still_life(int spp, uint32_t seed, int first_sample = 0) {
     RenderSettings settings = make_small_settings(32, spp, 4);
-    settings.seed = seed;
-    settings.first_sample = first_sample;
+    settings.image.seed = seed;
+    settings.image.first_sample = first_sample;
     return render(make_still_life(), settings).image;
 }
 
@@ -92,16 +92,16 @@ TEST(ImageZTest, tells_a_picture_that_is_two_percent_too_bright) {
 
 TEST(ImageZTest, gives_the_same_bits_for_any_thread_count) {
     RenderSettings settings = make_small_settings(32, 4, 3);
-    settings.threads = 1;
+    settings.device.threads = 1;
     const Image one = render(make_still_life(), settings).image;
-    settings.threads = 3;
+    settings.device.threads = 3;
     EXPECT_EQ(render(make_still_life(), settings).image.pixels, one.pixels);
 }
 
 TEST(ImageZTest, gives_the_same_pixels_in_a_crop) {
     RenderSettings settings = make_small_settings(32, 4, 3);
     const Image whole = render(make_still_life(), settings).image;
-    settings.crop = {5, 9, 23, 30};
+    settings.image.crop = {5, 9, 23, 30};
     const Image part = render(make_still_life(), settings).image;
     ASSERT_EQ(part.width, 18);
     for (int y = 9; y < 30; ++y)

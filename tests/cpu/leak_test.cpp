@@ -156,9 +156,9 @@ class LeakTest : public testing::TestWithParam<Case> {};
 TEST_P(LeakTest, every_ray_from_inside_hits) {
     const Case& c = GetParam();
     RenderSettings settings;
-    settings.level = c.level;
-    settings.height = 96;
-    settings.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
+    settings.surface.level = c.level;
+    settings.image.height = 96;
+    settings.surface.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
     expect_mixed_levels(*prepared, c);
     const cpu::Tracer tracer(prepared, settings);

@@ -48,10 +48,10 @@ std::vector<TraceRay> make_packets(Kind kind, uint32_t count) {
 
 TEST(Packets, rays_have_the_hits_that_they_have_alone) {
     RenderSettings settings;
-    settings.level = 3;
+    settings.surface.level = 3;
     const auto scene = prepare_scene(test::make_scene(DisplacementSpace::object), settings);
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const Tracer tracer(scene, settings);
         for (const Kind kind : {Kind::around_axes, Kind::along_axes, Kind::with_a_ray_that_is_no_number,
                                 Kind::with_a_reach_that_is_no_number}) {
@@ -101,7 +101,7 @@ Mesh make_square(uint32_t n) {
 TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
     constexpr uint32_t kQuads = 8, kCells = 8, kPlaces = kQuads * kCells + 1;
     RenderSettings settings;
-    settings.level = 3;
+    settings.surface.level = 3;
     const auto scene = prepare_scene(
         test::make_body_scene(make_square(kQuads), test::make_displacement(test::make_random_map(8, 8, 0, 1),
                                                                            DisplacementSpace::object)),
@@ -114,7 +114,7 @@ TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
         ray.direction = {0, 0, -1};
     }
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const Tracer tracer(scene, settings);
         std::vector<TraceHit> hits(rays.size());
         std::vector<uint8_t> occluded(rays.size());
@@ -131,7 +131,7 @@ TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
 /// Of a bundle; and of what other trees are walked by.
 TEST(Packets, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
     RenderSettings settings;
-    settings.level = 3;
+    settings.surface.level = 3;
     const auto scene = prepare_scene(test::make_scene(DisplacementSpace::object), settings);
     std::vector<TraceRay> rays(256);
     for (size_t k = 0; k < rays.size(); ++k) {
@@ -142,8 +142,8 @@ TEST(Packets, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs)
     broken[100].direction.y = NAN, broken[150].direction.z = INFINITY, broken[200].t_max = NAN;
     for (const TraversalKind traversal :
          {TraversalKind::automatic, TraversalKind::stack, TraversalKind::backtrack}) {
-        settings.traversal = traversal;
-        settings.structure =
+        settings.experiment.traversal = traversal;
+        settings.experiment.structure =
             traversal == TraversalKind::backtrack ? StructureKind::kdtree : StructureKind::bvh;
         const Tracer tracer(scene, settings);
         std::vector<TraceHit> whole(rays.size()), found(rays.size());

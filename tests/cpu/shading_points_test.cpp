@@ -90,11 +90,11 @@ void expect_same(const cpu::SurfacePoint& a, const cpu::SurfacePoint& b) {
 
 void expect_same_points(const Displacement& displacement) {
     RenderSettings settings;
-    settings.level = 5;
+    settings.surface.level = 5;
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(displacement), settings);
     const std::vector<cpu::TraceHit> hits = make_hits(*prepared, 437);
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const cpu::Tracer tracer(prepared, settings);
         cpu::PointScratch scratch;
         std::vector<cpu::SurfacePoint> points(hits.size());
@@ -158,7 +158,7 @@ TEST(CameraRays, are_the_same_many_at_once_and_one_by_one) {
             {float(scalar::hash_uint(k) % 6400) * 0.1f, float(scalar::hash_uint(~k) % 3600) * 0.1f});
     for (const Isa isa : test::machine_isas()) {
         RenderSettings settings;
-        settings.isa = isa, settings.level = 0;
+        settings.device.isa = isa, settings.surface.level = 0;
         const auto map = test::make_random_map(4, 4, 0.1f, 1);
         const cpu::Tracer tracer(
             prepare_scene(make_scene(test::make_displacement(map, DisplacementSpace::object)), settings),
@@ -190,8 +190,8 @@ TEST(RandomPairs, are_the_same_many_at_once_and_one_by_one) {
     for (const Isa isa : test::machine_isas())
         for (const uint32_t sample_index : {0u, 1u, 77u, 0xffffffffu}) {
             RenderSettings settings;
-            settings.isa = isa;
-            settings.level = 0;
+            settings.device.isa = isa;
+            settings.surface.level = 0;
             const auto map = test::make_random_map(4, 4, 0.1f, 1);
             const cpu::Tracer tracer(
                 prepare_scene(make_scene(test::make_displacement(map, DisplacementSpace::object)), settings),

@@ -43,15 +43,15 @@ std::vector<cpu::TraceHit> trace(const std::shared_ptr<const PreparedScene>& sce
 
 void expect_same_hits(const Scene& scene, int level) {
     RenderSettings settings;
-    settings.width = kWidth, settings.height = kHeight;
-    settings.level = level;
+    settings.image.width = kWidth, settings.image.height = kHeight;
+    settings.surface.level = level;
     const std::vector<cpu::TraceRay> rays = make_camera_rays(scene.camera);
     const auto direct = prepare_scene(scene, settings);
-    settings.surface = SurfaceMode::tessellated;
+    settings.surface.mode = SurfaceMode::tessellated;
     const std::vector<cpu::TraceHit> reference = trace(prepare_scene(scene, settings), settings, rays);
-    settings.surface = SurfaceMode::direct;
+    settings.surface.mode = SurfaceMode::direct;
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const std::vector<cpu::TraceHit> hits = trace(direct, settings, rays);
         size_t hit_count = 0, different = 0;
         for (size_t k = 0; k < rays.size(); ++k) {

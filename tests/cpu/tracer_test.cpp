@@ -110,8 +110,8 @@ class TracerTest : public testing::TestWithParam<Case> {};
 TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     const Case& c = GetParam();
     RenderSettings settings;
-    settings.level = c.level;
-    settings.height = 60;
+    settings.surface.level = c.level;
+    settings.image.height = 60;
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), c.space));
     scene.meshes[0].subdivision.scheme = c.scheme;
@@ -124,7 +124,7 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
     std::vector<double> expected(rays.size()), margin(rays.size(), 0);
     for (size_t k = 0; k < rays.size(); ++k) expected[k] = intersect_all(triangles, rays[k], margin[k]);
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const cpu::Tracer tracer(prepared, settings);
         std::vector<cpu::TraceHit> hits(rays.size());
         std::vector<uint8_t> occluded(rays.size());
@@ -170,12 +170,12 @@ std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& setting
 
 TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
     RenderSettings settings;
-    settings.level = 7;
+    settings.surface.level = 7;
     const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<std::vector<cpu::TraceHit>> results;
     for (const size_t cap : {size_t(256) << 20, size_t(0), size_t(200000)}) {
-        settings.bottom_cache_bytes = cap;
+        settings.surface.cache_bytes = cap;
         const cpu::Tracer tracer(prepared, settings);
         results.emplace_back(rays.size());
         tracer.closest_hits(rays, results.back());
@@ -195,12 +195,12 @@ TEST(Tracer, gives_the_same_bits_without_a_cache_and_with_a_tiny_one) {
 
 TEST(Tracer, box_leaves_hold_every_exact_hit) {
     RenderSettings settings;
-    settings.level = 4;
+    settings.surface.level = 4;
     const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_rays(800, 0, 11);
     std::vector<cpu::TraceHit> exact(rays.size()), box(rays.size());
     cpu::Tracer(prepared, settings).closest_hits(rays, exact);
-    settings.leaf = LeafKind::box;
+    settings.surface.leaf = LeafKind::box;
     cpu::Tracer(prepared, settings).closest_hits(rays, box);
     int closer = 0;
     for (size_t k = 0; k < rays.size(); ++k)
@@ -214,7 +214,7 @@ TEST(Tracer, box_leaves_hold_every_exact_hit) {
 
 TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
     RenderSettings settings;
-    settings.height = 200;
+    settings.image.height = 200;
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(3),
         test::make_displacement(test::make_random_map(128, 96, 0.1f, 8), DisplacementSpace::object));
@@ -224,7 +224,7 @@ TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
     second.world_from_object = compose(make_translation({1, 0.2f, -0.5f}), make_scale({0.5f, 0.7f, 0.6f}));
     scene.objects.push_back(second);
     const auto direct = prepare_scene(scene, settings);
-    settings.surface = SurfaceMode::tessellated;
+    settings.surface.mode = SurfaceMode::tessellated;
     const auto tessellated = prepare_scene(scene, settings);
     const std::vector<cpu::TraceRay> rays = make_rays(3200, 0, 13);
     std::vector<cpu::TraceHit> a(rays.size()), b(rays.size());
@@ -239,7 +239,7 @@ TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
 
 TEST(Tracer, hits_do_not_depend_on_the_company_of_a_ray) {
     RenderSettings settings;
-    settings.height = 150;
+    settings.image.height = 150;
     Scene scene = test::make_body_scene(
         test::make_torus(6, 9),
         test::make_displacement(test::make_random_map(128, 128, 0.12f, 5), DisplacementSpace::tangent));
@@ -264,9 +264,9 @@ TEST(Tracer, hits_do_not_depend_on_the_company_of_a_ray) {
 
 TEST(Tracer, a_level_a_ray_gives_points_on_the_ray) {
     RenderSettings settings;
-    settings.height = 150;
-    settings.lod = LodRule::ray;
-    settings.pixel_error = 8;
+    settings.image.height = 150;
+    settings.surface.lod = LodRule::ray;
+    settings.surface.pixel_error = 8;
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(3),
         test::make_displacement(test::make_random_map(256, 256, 0.12f, 5), DisplacementSpace::object));
@@ -290,7 +290,7 @@ TEST(Tracer, a_level_a_ray_gives_points_on_the_ray) {
 TEST(Tracer, rays_that_leave_a_surface_do_not_meet_it_where_they_start) {
     // Modelled far from its own origin and moved back: rounding is that of the object's coordinates.
     RenderSettings settings;
-    settings.level = 3;
+    settings.surface.level = 3;
     Mesh mesh = test::make_cube_sphere(3);
     for (Vec3f& p : mesh.positions) p = p + Vec3f{300, -200, 100};
     Scene scene =

@@ -74,13 +74,13 @@ std::shared_ptr<const PreparedScene> prepare_near_and_far(DisplacementSpace spac
     scene.objects[is_first_near ? 1 : 0].world_from_object = make_translation({-12, 0, 0});
     scene.camera.from = {2.5f, 0.4f, 0.6f}, scene.camera.to = {0, 0, 0};
     RenderSettings settings;
-    settings.height = 40;
+    settings.image.height = 40;
     return prepare_scene(std::move(scene), settings);
 }
 
 std::shared_ptr<const PreparedScene> prepare_with_level(int level) {
     RenderSettings settings;
-    settings.level = level;
+    settings.surface.level = level;
     return prepare_scene(test::make_scene(DisplacementSpace::tangent), settings);
 }
 
@@ -161,13 +161,13 @@ uint64_t count_pairs(const Tracer& tracer) {
 
 TEST(UpperTreeHolder, hits_are_the_same_after_the_change) {
     RenderSettings settings;
-    settings.level = 3;
-    const auto scene = prepare_with_level(settings.level);
+    settings.surface.level = 3;
+    const auto scene = prepare_with_level(settings.surface.level);
     const size_t enough =
         4 * PatchBoxes(*scene, *find_kernels(Isa::best), BoxSource::vertices).count_vertices();
     const std::vector<TraceRay> rays = test::make_rays(1600, 29);
     for (const Isa isa : test::machine_isas()) {
-        settings.isa = isa;
+        settings.device.isa = isa;
         const Tracer tracer(scene, settings);
         std::vector<TraceHit> before(rays.size()), after(rays.size());
         std::vector<uint8_t> occluded_before(rays.size()), occluded_after(rays.size());

@@ -35,11 +35,11 @@ TEST(Parity, tells_hits_that_differ) {
 TEST(Parity, two_renders_of_other_samples_agree_and_a_brighter_one_does_not) {
     Scene scene = make_sample_scene("ear", Instancing::none);
     RenderSettings settings;
-    settings.width = 64, settings.height = 48;
-    settings.spp = 16, settings.bounces = 1;
-    settings.layers = {"variance"};
+    settings.image.width = 64, settings.image.height = 48;
+    settings.image.spp = 16, settings.image.bounces = 1;
+    settings.image.layers = {"variance"};
     const Image a = render(scene, settings).image;
-    settings.seed = 1;
+    settings.image.seed = 1;
     const Image b = render(scene, settings).image;
     EXPECT_GT(compute_largest_z(a, b), 0.5);
     EXPECT_LE(compute_largest_z(a, b), kLargestZ);

@@ -165,7 +165,7 @@ TEST(MapConvention, seams_of_the_mesh_tell_object_space) {
 std::vector<std::string> render_for_warnings(const Mesh& mesh, Displacement map, DisplacementSpace space) {
     map.space = space;
     RenderSettings settings;
-    settings.width = settings.height = 4, settings.spp = 1, settings.bounces = 0;
+    settings.image.width = settings.image.height = 4, settings.image.spp = 1, settings.image.bounces = 0;
     Scene scene = make_body_scene(mesh, std::move(map));
     scene.environment.emplace();
     return render(std::move(scene), settings).statistics.warnings;

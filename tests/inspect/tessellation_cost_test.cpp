@@ -11,11 +11,11 @@ TEST(TessellationCost, is_what_the_pumpkin_really_takes) {
     const Scene pumpkin = make_sample_scene("pumpkin", Instancing::none);
     for (const int level : {2, 4}) {
         RenderSettings settings;
-        settings.width = settings.height = 16;
-        settings.spp = 1, settings.bounces = 0;
-        settings.level = level;
+        settings.image.width = settings.image.height = 16;
+        settings.image.spp = 1, settings.image.bounces = 0;
+        settings.surface.level = level;
         const TessellationCost cost = estimate_tessellation(pumpkin, settings);
-        settings.surface = SurfaceMode::tessellated;
+        settings.surface.mode = SurfaceMode::tessellated;
         const Statistics s = render(pumpkin, settings).statistics;
         EXPECT_EQ(cost.micro_quads, 800u << 2 * level);
         EXPECT_EQ(cost.geometry_bytes, s.geometry_bytes);

@@ -57,11 +57,11 @@ class MapCodings : public FileTest {
              "camera": {"from": [1.5, -1, 4], "to": [0, 0, 0.2]}})";
         write("scene.json", text);
         RenderSettings settings;
-        settings.width = settings.height = 48;
-        settings.spp = 1;
-        settings.bounces = 0;
-        settings.level = 5;
-        settings.layers = {"depth"};
+        settings.image.width = settings.image.height = 48;
+        settings.image.spp = 1;
+        settings.image.bounces = 0;
+        settings.surface.level = 5;
+        settings.image.layers = {"depth"};
         return render(load_scene(folder_ / "scene.json"), settings).image;
     }
 

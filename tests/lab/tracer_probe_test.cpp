@@ -16,9 +16,9 @@ namespace {
 
 RenderSettings make_settings(int level) {
     RenderSettings settings;
-    settings.width = 70, settings.height = 41; // no multiples of a tile
-    settings.level = level;
-    settings.threads = 2;
+    settings.image.width = 70, settings.image.height = 41; // no multiples of a tile
+    settings.surface.level = level;
+    settings.device.threads = 2;
     return settings;
 }
 
@@ -54,7 +54,7 @@ TEST(TracerProbe, the_camera_and_its_rays_meet_the_same) {
 TEST(TracerProbe, patches_have_the_vertices_of_the_surface_with_every_isa) {
     for (const Isa isa : test::machine_isas()) {
         RenderSettings settings = make_settings(6); // more than one tile a patch
-        settings.isa = isa;
+        settings.device.isa = isa;
         Scene scene = make_rock();
         scene.objects[0].world_from_object = make_translation({1, 2, 3});
         const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
@@ -127,7 +127,7 @@ TEST(TracerProbe, surfaces_without_displacement_are_triangles) {
 
 TEST(TracerProbe, refuses_what_it_cannot_do) {
     RenderSettings vulkan = make_settings(3);
-    vulkan.engine = EngineKind::vulkan;
+    vulkan.device.engine = EngineKind::vulkan;
     EXPECT_THROW(TracerProbe(make_rock(), vulkan), Error);
     const TracerProbe probe(make_rock(), make_settings(3));
     EXPECT_THROW(

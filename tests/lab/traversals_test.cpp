@@ -16,7 +16,8 @@ class Traversals : public testing::TestWithParam<Choice> {
         const auto prepared = prepare_scene(scene, settings);
         const std::vector<cpu::TraceRay> rays = test::make_rays(1500, 5);
         const test::CpuAnswers expected = test::cast_on_cpu(prepared, settings, rays);
-        settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+        settings.experiment.structure = GetParam().structure,
+        settings.experiment.traversal = GetParam().traversal;
         const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, rays);
         EXPECT_EQ(found.occluded, expected.occluded);
         size_t hit_count = 0;
@@ -36,15 +37,15 @@ class Traversals : public testing::TestWithParam<Choice> {
 
 TEST_P(Traversals, find_the_hits_of_the_wide_trees) {
     RenderSettings settings;
-    settings.level = 4;
+    settings.surface.level = 4;
     expect_same_hits(test::make_crowd(), settings);
 }
 
 TEST_P(Traversals, find_them_in_tiles_and_at_mixed_levels) {
     RenderSettings settings;
-    settings.width = 2000, settings.height = 1000;
-    settings.pixel_error = 4;
-    settings.lod = LodRule::ray;
+    settings.image.width = 2000, settings.image.height = 1000;
+    settings.surface.pixel_error = 4;
+    settings.surface.lod = LodRule::ray;
     expect_same_hits(test::make_scene(DisplacementSpace::object), settings);
 }
 
@@ -57,8 +58,8 @@ TEST_P(Traversals, find_them_in_polygons) {
 /// Pairs of rays and patches: a box around each keeps most rays out, whatever leaf it is found in.
 uint64_t count_pairs(const Choice& choice) {
     RenderSettings settings;
-    settings.level = 4;
-    settings.structure = choice.structure, settings.traversal = choice.traversal;
+    settings.surface.level = 4;
+    settings.experiment.structure = choice.structure, settings.experiment.traversal = choice.traversal;
     const auto prepared = prepare_scene(test::make_crowd(), settings);
     const std::vector<cpu::TraceRay> rays = test::make_rays(1500, 5);
     std::vector<cpu::TraceHit> hits(rays.size());
@@ -81,8 +82,9 @@ TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
     const Scene scene = test::make_deep_polygons(2000);
     RenderSettings settings;
     const auto prepared = prepare_scene(scene, settings);
-    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
-    if (settings.structure == StructureKind::lbvh) {
+    settings.experiment.structure = GetParam().structure,
+    settings.experiment.traversal = GetParam().traversal;
+    if (settings.experiment.structure == StructureKind::lbvh) {
         EXPECT_GT(make_walk_trees(*prepared, settings, EngineKind::cpu).depth, 35);
     }
     const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
@@ -112,12 +114,13 @@ TEST_P(TraversalsWithCosts, find_them_in_trees_of_the_costs_asked_for) {
     Scene scene = test::make_crowd();
     for (Object& object : scene.objects) object.displacement = kNoIndex;
     RenderSettings settings;
-    settings.sah_costs = SahCosts{};
+    settings.experiment.sah_costs = SahCosts{};
     expect_same_hits(scene, settings);
-    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    settings.experiment.structure = GetParam().structure,
+    settings.experiment.traversal = GetParam().traversal;
     const auto prepared = prepare_scene(scene, settings);
     const size_t bytes = make_walk_trees(*prepared, settings, EngineKind::cpu).byte_count();
-    settings.sah_costs = SahCosts{0.01f, 1.0f};
+    settings.experiment.sah_costs = SahCosts{0.01f, 1.0f};
     EXPECT_LT(bytes, make_walk_trees(*prepared, settings, EngineKind::cpu).byte_count());
 }
 
@@ -129,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(All, Traversals, testing::ValuesIn(test::list_choices(E
 TEST(TraversalsOfAnEmptyScene, find_nothing) {
     for (const Choice& choice : test::list_choices(EngineKind::cpu)) {
         RenderSettings settings;
-        settings.structure = choice.structure, settings.traversal = choice.traversal;
+        settings.experiment.structure = choice.structure, settings.experiment.traversal = choice.traversal;
         const auto prepared = prepare_scene(Scene{}, settings);
         const test::CpuAnswers found = test::cast_on_cpu(prepared, settings, test::make_rays(20, 1));
         for (const cpu::TraceHit& hit : found.closest) EXPECT_FALSE(hit.is_hit());

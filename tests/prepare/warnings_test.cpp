@@ -94,12 +94,13 @@ TEST(Prepare, leaves_detail_out_of_tessellated_surfaces) {
         test::make_displacement(test::make_random_map(64, 64, 0.01f, 1), DisplacementSpace::object));
     scene.environment = Environment{};
     RenderSettings settings;
-    settings.width = settings.height = 24, settings.spp = 1, settings.level = 3, settings.layers = {"N"};
-    settings.surface = SurfaceMode::tessellated;
+    settings.image.width = settings.image.height = 24, settings.image.spp = 1, settings.surface.level = 3,
+    settings.image.layers = {"N"};
+    settings.surface.mode = SurfaceMode::tessellated;
     const Image plain = render(scene, settings).image;
     scene.displacements[0].autobump = true;
     EXPECT_EQ(render(scene, settings).image.pixels, plain.pixels);
-    settings.surface = SurfaceMode::direct;
+    settings.surface.mode = SurfaceMode::direct;
     EXPECT_NE(render(scene, settings).image.pixels, plain.pixels);
 }
 

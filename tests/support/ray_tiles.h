@@ -84,8 +84,8 @@ inline size_t expect_same(const cpu::Tracer& tracer, const Rays& rays, const std
 inline cpu::Tracer make_tracer(const Scene& scene, int level, Isa isa,
                                SurfaceMode surface = SurfaceMode::direct) {
     RenderSettings settings;
-    settings.width = 320, settings.height = 180;
-    settings.level = level, settings.isa = isa, settings.surface = surface;
+    settings.image.width = 320, settings.image.height = 180;
+    settings.surface.level = level, settings.device.isa = isa, settings.surface.mode = surface;
     return cpu::Tracer(prepare_scene(scene, settings), settings);
 }
 

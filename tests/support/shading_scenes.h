@@ -82,12 +82,12 @@ inline Material make_matte(float albedo) {
 
 inline RenderSettings make_small_settings(int size, int spp, int bounces) {
     RenderSettings settings;
-    settings.width = settings.height = size;
-    settings.spp = spp;
-    settings.bounces = bounces;
-    settings.threads = 2;
-    settings.seed = 12;
-    settings.layers = {"depth", "variance"};
+    settings.image.width = settings.image.height = size;
+    settings.image.spp = spp;
+    settings.image.bounces = bounces;
+    settings.device.threads = 2;
+    settings.image.seed = 12;
+    settings.image.layers = {"depth", "variance"};
     return settings;
 }
 

@@ -28,10 +28,10 @@ const Cut kCuts[] = {
 
 RenderSettings make_settings(int level, const Cut& cut) {
     RenderSettings settings;
-    settings.level = level;
-    settings.height = 60;
-    settings.bottom = cut.bottom;
-    settings.bottom_cache_bytes = cut.cache_bytes;
+    settings.surface.level = level;
+    settings.image.height = 60;
+    settings.experiment.bottom = cut.bottom;
+    settings.surface.cache_bytes = cut.cache_bytes;
     return settings;
 }
 

@@ -27,9 +27,9 @@ class Canceller final : public RenderObserver {
 class EngineTest : public testing::Test {
   protected:
     EngineTest() {
-        settings_.width = 48, settings_.height = 32;
-        settings_.spp = 3, settings_.bounces = 2;
-        settings_.layers = {"depth", "id", "samples"};
+        settings_.image.width = 48, settings_.image.height = 32;
+        settings_.image.spp = 3, settings_.image.bounces = 2;
+        settings_.image.layers = {"depth", "id", "samples"};
     }
 
     void prepare() {
@@ -45,7 +45,9 @@ class EngineTest : public testing::Test {
         for (const std::string& message : device_->validation_messages()) ADD_FAILURE() << message;
     }
 
-    Film make_film() const { return {settings_.width, settings_.height, settings_.crop, settings_.layers}; }
+    Film make_film() const {
+        return {settings_.image.width, settings_.image.height, settings_.image.crop, settings_.image.layers};
+    }
 
     RenderSettings settings_;
     std::shared_ptr<const PreparedScene> prepared_;
@@ -64,7 +66,7 @@ void expect_close(const Image& a, const Image& b, size_t most) {
 }
 
 TEST_F(EngineTest, renders_what_the_cpu_engine_renders) {
-    settings_.level = 6; // tiles
+    settings_.surface.level = 6; // tiles
     prepare();
     Film film = make_film(), expected = make_film();
     EXPECT_TRUE(engine_->render(film, nullptr));

@@ -14,10 +14,10 @@ const std::vector<std::string> kLayers{"depth", "N", "Ng", "P", "albedo", "uv", 
 
 RenderSettings make_settings() {
     RenderSettings settings;
-    settings.engine = EngineKind::vulkan;
-    settings.width = 48, settings.height = 32;
-    settings.spp = 2, settings.bounces = 1;
-    settings.layers = kLayers;
+    settings.device.engine = EngineKind::vulkan;
+    settings.image.width = 48, settings.image.height = 32;
+    settings.image.spp = 2, settings.image.bounces = 1;
+    settings.image.layers = kLayers;
     return settings;
 }
 
@@ -28,14 +28,14 @@ struct Picture {
 
 /// On a validated device of its own.
 Picture render_with(RenderMethod method, const Scene& scene, RenderSettings settings) {
-    settings.method = method;
+    settings.experiment.method = method;
     auto device = std::make_unique<Device>(
         Device::Config{.index = get_test_device_index(), .method = method, .is_validated = true});
     const Device& used = *device;
     const std::shared_ptr<PreparedScene> prepared = prepare_scene(scene, settings);
     const std::unique_ptr<Engine> engine =
         make_engine_on(std::move(device), prepared, settings, make_device_walk(*prepared, settings));
-    Film film(settings.width, settings.height, settings.crop, settings.layers);
+    Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
     EXPECT_TRUE(engine->render(film, nullptr));
     Picture picture{film.resolve(), {}};
     engine->add_statistics(picture.statistics);
@@ -69,11 +69,11 @@ struct Case {
 void use_many_levels(Scene& scene, RenderSettings& settings) {
     scene.camera.from = {1.35f, 0.3f, 0.2f};
     scene.camera.to = {0.4f, 1.1f, 0};
-    settings.pixel_error = 0.5f;
+    settings.surface.pixel_error = 0.5f;
 }
 
 /// Above level 5, and more than one wave has room for.
-void use_tiles(Scene&, RenderSettings& settings) { settings.level = 6; }
+void use_tiles(Scene&, RenderSettings& settings) { settings.surface.level = 6; }
 
 /// The camera is inside the displaced body and a mirrored plain one, whose polygons reach behind it.
 void use_surroundings(Scene& scene, RenderSettings& settings) {
@@ -83,13 +83,13 @@ void use_surroundings(Scene& scene, RenderSettings& settings) {
     scene.objects[2].world_from_object = make_scale({-7, 5, 6});
     scene.objects[0].world_from_object =
         compose(make_rotation_degrees({10, 30, 5}), make_scale({0.4f, 0.4f, -0.02f}));
-    settings.level = 3;
-    settings.crop = {3, 5, 46, 31};
+    settings.surface.level = 3;
+    settings.image.crop = {3, 5, 46, 31};
 }
 
 void use_polygons_alone(Scene&, RenderSettings& settings) {
-    settings.surface = SurfaceMode::tessellated;
-    settings.level = 2;
+    settings.surface.mode = SurfaceMode::tessellated;
+    settings.surface.level = 2;
 }
 
 class Methods : public testing::TestWithParam<Case> {};
@@ -120,7 +120,7 @@ TEST_P(Methods, find_the_same_bits) {
 TEST(PairsOfStructureAndTraversal, make_one_picture_by_every_method) {
     const Scene scene = make_scene(DisplacementSpace::tangent);
     RenderSettings settings = make_settings();
-    settings.spp = 1;
+    settings.image.spp = 1;
     const Picture expected = render_with(RenderMethod::compute, scene, settings);
     const std::pair<StructureKind, TraversalKind> pairs[] = {
         {StructureKind::kdtree, TraversalKind::push_down},
@@ -128,7 +128,7 @@ TEST(PairsOfStructureAndTraversal, make_one_picture_by_every_method) {
         {StructureKind::bvh, TraversalKind::restart_trail},
         {StructureKind::bvh, TraversalKind::parent_link}};
     for (const auto& [structure, traversal] : pairs) {
-        settings.structure = structure, settings.traversal = traversal;
+        settings.experiment.structure = structure, settings.experiment.traversal = traversal;
         for (const RenderMethod method :
              {RenderMethod::compute, RenderMethod::fragment, RenderMethod::hybrid})
             expect_same_bits(render_with(method, scene, settings).image, expected.image);
@@ -150,15 +150,15 @@ class HybridMethod : public testing::Test {
 
 TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
     RenderSettings settings = make_settings();
-    settings.method = RenderMethod::hybrid;
-    settings.crop = {2, 1, 45, 30};
+    settings.experiment.method = RenderMethod::hybrid;
+    settings.image.crop = {2, 1, 45, 30};
     const auto prepared = prepare_scene(make_scene(DisplacementSpace::object), settings);
     const DeviceScene device_scene(device(), *prepared);
     const auto trace = [&](uint32_t rays) {
         Tracer tracer(device(), *prepared, device_scene, settings,
                       {.ray_capacity = rays, .pair_capacity = 3000});
         PathTracer paths(tracer, settings);
-        Film film(settings.width, settings.height, settings.crop, settings.layers);
+        Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
         paths.trace_samples(film, {0, 43 * 29}, {0, 2});
         return film.resolve();
     };
@@ -169,16 +169,16 @@ TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
 
 TEST_F(HybridMethod, refuses_a_window_larger_than_the_device_draws) {
     RenderSettings settings = make_settings();
-    settings.method = RenderMethod::hybrid;
+    settings.experiment.method = RenderMethod::hybrid;
     const uint32_t most = device().max_draw_size();
     if (most >= uint32_t(kMaxPictureSize)) GTEST_SKIP() << "no picture is too large";
-    settings.width = int(most) + 1, settings.height = 1;
-    settings.layers.clear();
-    auto own =
-        std::make_unique<Device>(Device::Config{.index = get_test_device_index(), .method = settings.method});
+    settings.image.width = int(most) + 1, settings.image.height = 1;
+    settings.image.layers.clear();
+    auto own = std::make_unique<Device>(
+        Device::Config{.index = get_test_device_index(), .method = settings.experiment.method});
     const std::unique_ptr<Engine> engine = make_engine_on(
         std::move(own), prepare_scene(make_scene(DisplacementSpace::object), settings), settings);
-    Film film(settings.width, settings.height, settings.crop, settings.layers);
+    Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
     try {
         engine->render(film, nullptr);
         FAIL() << "no error";

@@ -13,11 +13,11 @@ const std::vector<std::string> kLayers{"depth", "N",  "Ng",      "P",        "al
 
 RenderSettings make_settings() {
     RenderSettings settings;
-    settings.width = 32, settings.height = 24;
-    settings.spp = 4, settings.bounces = 4, settings.pixel_error = 4;
-    settings.first_sample = 2, settings.seed = 8;
-    settings.crop = {3, 2, 30, 23};
-    settings.threads = 2;
+    settings.image.width = 32, settings.image.height = 24;
+    settings.image.spp = 4, settings.image.bounces = 4, settings.surface.pixel_error = 4;
+    settings.image.first_sample = 2, settings.image.seed = 8;
+    settings.image.crop = {3, 2, 30, 23};
+    settings.device.threads = 2;
     return settings;
 }
 
@@ -36,7 +36,7 @@ void use_constant_environment(Scene& scene, RenderSettings&) {
 void use_emitters_alone(Scene& scene, RenderSettings& settings) {
     scene.lights.clear();
     scene.environment.reset();
-    settings.level = 2;
+    settings.surface.level = 2;
 }
 
 void use_nothing_to_draw(Scene& scene, RenderSettings& settings) {
@@ -45,10 +45,10 @@ void use_nothing_to_draw(Scene& scene, RenderSettings& settings) {
     scene.environment.emplace().strength = 0;
 }
 
-void use_direct_light_alone(Scene&, RenderSettings& settings) { settings.bounces = 0; }
+void use_direct_light_alone(Scene&, RenderSettings& settings) { settings.image.bounces = 0; }
 
 void use_long_paths(Scene& scene, RenderSettings& settings) {
-    settings.bounces = 12;
+    settings.image.bounces = 12;
     for (Material& material : scene.materials) material.roughness = 0.1f, material.metallic = 1;
 }
 
@@ -65,7 +65,9 @@ class PathTracerTest : public GpuTest {
         Statistics statistics;
     };
 
-    Film make_film() const { return {settings_.width, settings_.height, settings_.crop, kLayers}; }
+    Film make_film() const {
+        return {settings_.image.width, settings_.image.height, settings_.image.crop, kLayers};
+    }
 
     Picture trace_on_device(uint32_t ray_capacity, int samples_a_call,
                             uint32_t pair_capacity = 1u << 16) const {
@@ -75,10 +77,10 @@ class PathTracerTest : public GpuTest {
         PathTracer path_tracer(tracer, settings_);
         Film film = make_film();
         const uint64_t pixels = 27 * 21;
-        for (int k = 0; k < settings_.spp; k += samples_a_call) {
-            path_tracer.trace_samples(film, {0, 100}, {settings_.first_sample + k, samples_a_call});
+        for (int k = 0; k < settings_.image.spp; k += samples_a_call) {
+            path_tracer.trace_samples(film, {0, 100}, {settings_.image.first_sample + k, samples_a_call});
             path_tracer.trace_samples(film, {100, pixels - 100},
-                                      {settings_.first_sample + k, samples_a_call});
+                                      {settings_.image.first_sample + k, samples_a_call});
         }
         Picture picture{film.resolve(), {}};
         path_tracer.add_statistics(picture.statistics);
@@ -150,11 +152,11 @@ TEST_F(PathTracerTest, gives_the_same_bits_again_and_in_any_form) {
     const Picture expected = trace_on_device(4096, 4);
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels);
     EXPECT_EQ(trace_on_device(4096, 4, 1200).image.pixels, expected.image.pixels) << "many chunks";
-    settings_.bottom_cache_bytes = 0;
+    settings_.surface.cache_bytes = 0;
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "no cache";
-    settings_.bottom = BottomForm::fused;
+    settings_.experiment.bottom = BottomForm::fused;
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "fused, no cache";
-    settings_.bottom_cache_bytes = 1;
+    settings_.surface.cache_bytes = 1;
     EXPECT_EQ(trace_on_device(4096, 4).image.pixels, expected.image.pixels) << "fused, small cache";
 }
 
@@ -163,10 +165,10 @@ TEST_F(PathTracerTest, counts_rays_by_kind_and_depth) {
     const Statistics& statistics = picture.statistics;
     uint64_t camera = 0, bounce = 0, shadow = 0;
     for (const CastStatistics& cast : statistics.casts) {
-        EXPECT_LE(cast.depth, settings_.bounces);
+        EXPECT_LE(cast.depth, settings_.image.bounces);
         (cast.is_shadow ? shadow : cast.depth == 0 ? camera : bounce) += cast.rays;
     }
-    EXPECT_EQ(camera, uint64_t(27 * 21 * settings_.spp));
+    EXPECT_EQ(camera, uint64_t(27 * 21 * settings_.image.spp));
     EXPECT_EQ(camera, statistics.camera_rays);
     EXPECT_EQ(bounce, statistics.bounce_rays);
     EXPECT_EQ(shadow, statistics.shadow_rays);

@@ -35,7 +35,8 @@ class ShadingKernels : public GpuTest {
   protected:
     static void SetUpTestSuite() {
         RenderSettings settings;
-        settings.width = 64, settings.height = 48, settings.pixel_error = 4, settings.bounces = 6;
+        settings.image.width = 64, settings.image.height = 48, settings.surface.pixel_error = 4,
+        settings.image.bounces = 6;
         bench_ =
             std::make_unique<ShadingBench>(device(), prepare_scene(make_shading_scene(), settings), settings);
         cases_ = make_cases(*bench_->prepared);

@@ -28,7 +28,7 @@ std::vector<cpu::TraceRay> make_rays_at_tiles() {
 
 TEST_F(TileDirectoriesTest, made_later_join_those_that_are_there) {
     RenderSettings settings;
-    settings.level = 6;
+    settings.surface.level = 6;
     const std::shared_ptr<const PreparedScene> scene =
         prepare_scene(test::make_body_scene(test::make_cube_sphere(1),
                                             test::make_displacement(test::make_random_map(32, 32, 0.02f, 3),

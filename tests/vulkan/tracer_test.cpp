@@ -33,12 +33,12 @@ class VulkanTracerTest : public GpuTest, public testing::WithParamInterface<Case
 TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     const Case& c = GetParam();
     RenderSettings settings;
-    settings.level = c.level;
-    settings.height = 60;
-    settings.leaf = c.leaf;
-    settings.bottom = c.bottom;
-    settings.lod = c.lod;
-    settings.bottom_cache_bytes = c.cache_bytes;
+    settings.surface.level = c.level;
+    settings.image.height = 60;
+    settings.surface.leaf = c.leaf;
+    settings.experiment.bottom = c.bottom;
+    settings.surface.lod = c.lod;
+    settings.surface.cache_bytes = c.cache_bytes;
     Scene source = make_scene(c.space);
     source.meshes[0].subdivision.scheme = c.scheme;
     source.meshes[0].subdivision.level = 1;

@@ -13,7 +13,8 @@ class DeviceTraversals : public GpuTest, public testing::WithParamInterface<Choi
         const auto prepared = prepare_scene(scene, settings);
         const std::vector<cpu::TraceRay> rays = make_rays(1500, 7);
         const CpuAnswers expected = cast_on_cpu(prepared, settings, rays);
-        settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+        settings.experiment.structure = GetParam().structure,
+        settings.experiment.traversal = GetParam().traversal;
         expect_same(cast_on_device(device(), *prepared, settings, rays, config), expected, rays);
     }
 };
@@ -21,16 +22,16 @@ class DeviceTraversals : public GpuTest, public testing::WithParamInterface<Choi
 /// Tiles, coarser patches and polygons, in many instances and many rounds.
 TEST_P(DeviceTraversals, find_the_hits_of_the_cpu_engine) {
     RenderSettings settings;
-    settings.width = 2000, settings.height = 1000;
-    settings.pixel_error = 4;
+    settings.image.width = 2000, settings.image.height = 1000;
+    settings.surface.pixel_error = 4;
     expect_same_hits(make_crowd(), settings, {.slots = 2, .pair_capacity = 2000});
 }
 
 /// Pairs of rays and patches: a box around each keeps most rays out, whatever leaf it is found in.
 uint64_t count_pairs(const Device& device, const Choice& choice) {
     RenderSettings settings;
-    settings.level = 4;
-    settings.structure = choice.structure, settings.traversal = choice.traversal;
+    settings.surface.level = 4;
+    settings.experiment.structure = choice.structure, settings.experiment.traversal = choice.traversal;
     const auto prepared = prepare_scene(make_crowd(), settings);
     return cast_on_device(device, *prepared, settings, make_rays(1500, 5), {}).statistics.pairs_emitted;
 }
@@ -47,7 +48,8 @@ TEST_P(DeviceTraversals, find_hits_in_trees_that_are_deeper_than_words_are_long)
     const auto prepared = prepare_scene(scene, settings);
     const std::vector<cpu::TraceRay> rays = test::make_rays_at_polygons(scene.meshes[0], 500);
     const CpuAnswers expected = cast_on_cpu(prepared, settings, rays);
-    settings.structure = GetParam().structure, settings.traversal = GetParam().traversal;
+    settings.experiment.structure = GetParam().structure,
+    settings.experiment.traversal = GetParam().traversal;
     expect_same(cast_on_device(device(), *prepared, settings, rays, {}), expected, rays);
 }
 

@@ -17,7 +17,7 @@ constexpr uint32_t kPolygonsOfALeaf = 4;
 constexpr uint32_t kMostPolygonsOfALeaf = 8; ///< where costs decide
 
 AxisBvh build_binary(std::span<const Box> boxes, const RenderSettings& settings, uint32_t max_leaf_size) {
-    if (settings.structure == StructureKind::lbvh) {
+    if (settings.experiment.structure == StructureKind::lbvh) {
         LbvhBuilder::Config config;
         config.max_leaf_size = max_leaf_size;
         static_assert(LbvhBuilder::Config{}.code_bits + 30 <= int(scalar::kTrailLevels64));
@@ -26,10 +26,10 @@ AxisBvh build_binary(std::span<const Box> boxes, const RenderSettings& settings,
     SahBvhBuilder::Config config;
     config.max_leaf_size = max_leaf_size;
     config.max_depth = int(scalar::kTrailLevels64);
-    if (settings.sah_costs) {
+    if (settings.experiment.sah_costs) {
         config.method = SahBvhBuilder::Method::sweep;
-        config.traversal_cost = settings.sah_costs->traversal;
-        config.intersection_cost = settings.sah_costs->intersection;
+        config.traversal_cost = settings.experiment.sah_costs->traversal;
+        config.intersection_cost = settings.experiment.sah_costs->intersection;
         if (max_leaf_size > 1) config.max_leaf_size = kMostPolygonsOfALeaf;
     }
     return add_axes(SahBvhBuilder::build(boxes, config));
@@ -39,11 +39,11 @@ WalkTree make_tree(std::vector<Box> boxes, const RenderSettings& settings, Trave
                    uint32_t max_leaf_size) {
     WalkTree tree;
     for (const Box& box : boxes) tree.bounds.extend(box);
-    if (settings.structure == StructureKind::kdtree) {
+    if (settings.experiment.structure == StructureKind::kdtree) {
         SahKdTreeBuilder::Config config;
-        if (settings.sah_costs) {
-            config.traversal_cost = settings.sah_costs->traversal;
-            config.intersection_cost = settings.sah_costs->intersection;
+        if (settings.experiment.sah_costs) {
+            config.traversal_cost = settings.experiment.sah_costs->traversal;
+            config.intersection_cost = settings.experiment.sah_costs->intersection;
         }
         if (traversal == TraversalKind::backtrack) config.cells = SahKdTreeBuilder::Cells::kept;
         tree.kd = SahKdTreeBuilder::build(boxes, config);

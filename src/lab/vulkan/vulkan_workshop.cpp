@@ -143,8 +143,8 @@ namespace relief {
 
 std::unique_ptr<TreeWorkshop> make_vulkan_tree_workshop(TriangleSoup soup, const RenderSettings& settings) {
     vulkan::Device::Config config;
-    config.index = settings.device;
-    config.pipeline_cache = settings.pipeline_cache;
+    config.index = settings.device.index;
+    config.pipeline_cache = settings.device.pipeline_cache;
     return std::make_unique<vulkan::VulkanTreeWorkshop>(std::move(soup), config);
 }
 

@@ -53,15 +53,15 @@ class Samples : public testing::TestWithParam<Subject> {
 
     static RenderSettings make_settings() {
         RenderSettings settings;
-        settings.width = 96, settings.height = 54;
-        settings.spp = 1, settings.bounces = 0;
-        settings.layers = {"depth", "id"};
+        settings.image.width = 96, settings.image.height = 54;
+        settings.image.spp = 1, settings.image.bounces = 0;
+        settings.image.layers = {"depth", "id"};
         return settings;
     }
 
     static Image render_by(EngineKind engine, RenderSettings settings) {
-        settings.engine = engine;
-        if (engine == EngineKind::cpu) settings.bottom = BottomForm::automatic;
+        settings.device.engine = engine;
+        if (engine == EngineKind::cpu) settings.experiment.bottom = BottomForm::automatic;
         return render(scene(), settings).image;
     }
 };
@@ -69,8 +69,8 @@ class Samples : public testing::TestWithParam<Subject> {
 TEST_P(Samples, are_hit_where_the_cpu_engine_hits_them) {
     for (const Variant& variant : kVariants) {
         RenderSettings settings = make_settings();
-        settings.level = variant.level, settings.leaf = variant.leaf;
-        settings.bottom = variant.bottom, settings.bottom_cache_bytes = variant.cache_bytes;
+        settings.surface.level = variant.level, settings.surface.leaf = variant.leaf;
+        settings.experiment.bottom = variant.bottom, settings.surface.cache_bytes = variant.cache_bytes;
         const HitDifference found =
             compare_hits(render_by(EngineKind::vulkan, settings), render_by(EngineKind::cpu, settings));
         // Of 5184 pixels none may differ.
@@ -81,17 +81,17 @@ TEST_P(Samples, are_hit_where_the_cpu_engine_hits_them) {
 
 TEST_P(Samples, have_the_means_of_other_samples_by_the_cpu_engine) {
     RenderSettings settings = make_settings();
-    settings.width = 48, settings.height = 27;
-    settings.spp = 48, settings.bounces = 3;
-    settings.layers = {"variance"};
+    settings.image.width = 48, settings.image.height = 27;
+    settings.image.spp = 48, settings.image.bounces = 3;
+    settings.image.layers = {"variance"};
     const Image found = render_by(EngineKind::vulkan, settings);
-    settings.seed = 1;
+    settings.image.seed = 1;
     EXPECT_LE(compute_largest_z(found, render_by(EngineKind::cpu, settings)), kLargestZ);
 }
 
 TEST_P(Samples, answer_the_rays_of_other_programs_alike) {
     RenderSettings settings = make_settings();
-    settings.level = 4;
+    settings.surface.level = 4;
     std::vector<Ray> rays;
     const Camera& camera = scene().camera;
     for (int k = 0; k < 2000; ++k) {
@@ -105,7 +105,7 @@ TEST_P(Samples, answer_the_rays_of_other_programs_alike) {
     std::map<EngineKind, std::vector<RayHit>> hits;
     std::map<EngineKind, std::vector<uint8_t>> any;
     for (const EngineKind engine : {EngineKind::cpu, EngineKind::vulkan}) {
-        settings.engine = engine;
+        settings.device.engine = engine;
         const Intersector intersector(scene(), settings);
         hits[engine].resize(rays.size()), any[engine].resize(rays.size());
         intersector.closest_hits(rays, hits[engine]);
