@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "cpu/traversal/kernels.h"
-#include "prepare/space_warnings.h"
+#include "prepare/prepared_scene.h"
 #include "prepare/validate_settings.h"
 
 namespace relief {
@@ -24,7 +24,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     with_threads(settings.device.threads, [&] {
         // First, so that a picture that cannot be held is refused before the scene is prepared.
         Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
-        std::shared_ptr<const PreparedScene> prepared = prepare_with_warnings(std::move(scene), settings);
+        std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 

@@ -72,11 +72,11 @@ class CpuEngine final : public Engine {
               std::unique_ptr<const SceneWalk> walk)
         : settings_(settings), tracer_(std::move(scene), settings, std::move(walk)), lights_(tracer_) {}
 
-    bool follow(std::span<const SurfaceChange> changes) override {
+    bool apply_changes(std::span<const SurfaceChange> changes) override {
         std::optional<PictureFootprints> kept = std::move(footprints_);
         footprints_.reset();
         std::vector<Box> places;
-        if (!tracer_.follow(changes, places)) return false;
+        if (!tracer_.apply_changes(changes, places)) return false;
         lights_.follow_surfaces();
         if (kept && kept->mark_stale(places)) footprints_ = std::move(kept);
         return true;
@@ -97,7 +97,7 @@ class CpuEngine final : public Engine {
     }
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override {
-        tracer_.improve_trees();
+        tracer_.rebuild_if_worthwhile();
         parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
             std::vector<TraceHit> found(batch.size());
@@ -107,7 +107,7 @@ class CpuEngine final : public Engine {
     }
 
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override {
-        tracer_.improve_trees();
+        tracer_.rebuild_if_worthwhile();
         parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
             tracer_.any_hits(batch, hits.subspan(begin, end - begin));
@@ -145,7 +145,7 @@ class CpuEngine final : public Engine {
         first_image_s_ = 0;
         int done = 0, length = 1;
         while (done < settings_.image.spp && !reporter.is_cancelled()) {
-            tracer_.improve_trees();
+            tracer_.rebuild_if_worthwhile();
             const SampleRange samples{settings_.image.first_sample + done,
                                       std::min(length, settings_.image.spp - done)};
             if (!render_pass(film, tiles, samples, reporter)) break;

@@ -118,8 +118,8 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
 
 Tracer::~Tracer() = default;
 
-void Tracer::improve_trees() const {
-    if (implementation_->trees) implementation_->trees->improve();
+void Tracer::rebuild_if_worthwhile() const {
+    if (implementation_->trees) implementation_->trees->rebuild_if_worthwhile();
 }
 
 Tracer::StopScope::StopScope(const Tracer& tracer, std::function<bool()> is_asked_for) : tracer_(tracer) {
@@ -139,10 +139,10 @@ Box Tracer::displaced_bounds() const {
     return bounds;
 }
 
-bool Tracer::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     Implementation& self = *implementation_;
     if (!self.trees) return false;
-    self.trees->follow(changes, places);
+    self.trees->apply_changes(changes, places);
     self.cache->remove([&](const TreeKey& key) {
         return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
             return key.surface == change.surface && change.is_changed[key.patch];

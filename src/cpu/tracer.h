@@ -62,7 +62,7 @@ struct PointScratch {
 };
 
 /// Immutable after construction apart from the bottom-tree cache and the upper trees, which take care of
-/// themselves, and from `follow`. Thread safe but for that.
+/// themselves, and from `apply_changes`. Thread safe but for that.
 class Tracer {
   public:
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
@@ -71,11 +71,12 @@ class Tracer {
            std::unique_ptr<const SceneWalk> walk);
     ~Tracer();
 
-    /// As Engine::follow. Boxes of what has changed, before and after, are added to `places`, world space.
-    bool follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+    /// As Engine::apply_changes. Boxes of what has changed, before and after, are added to `places`, world
+    /// space.
+    bool apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
-    void improve_trees() const;
+    void rebuild_if_worthwhile() const;
 
     /// While this lives, rays end with StopRequest (cpu/patch_trees/bottom_cache.h) before the next tree that
     /// they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes its
@@ -91,8 +92,8 @@ class Tracer {
         const Tracer& tracer_;
     };
 
-    /// The box of all that has a displacement, world space; empty where follow() would be false. It may
-    /// become smaller with improve_trees().
+    /// The box of all that has a displacement, world space; empty where apply_changes() would be false. It
+    /// may become smaller with rebuild_if_worthwhile().
     Box displaced_bounds() const;
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as

@@ -7,31 +7,25 @@
 
 #include "film/film.h"
 #include "prepare/prepared_scene.h"
+#include "prepare/scene_edit.h"
 #include "relief/intersect.h"
 #include "relief/render.h"
 
 namespace relief {
 
-/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
-/// which are more: shading normals read beyond the sides of a patch.
-struct SurfaceChange {
-    uint32_t surface = 0;
-    std::vector<uint8_t> is_changed, looks_different;
-};
-
 class Engine {
   public:
     virtual ~Engine() = default;
 
-    /// The prepared scene has changed in place: texels, bounds and levels of these patches, one change a
-    /// surface. Not while rays are traced. False: the engine cannot follow, a new one has to be made.
-    virtual bool follow(std::span<const SurfaceChange> changes) = 0;
+    /// The scene's editor has changed it in place: texels, bounds and levels of these patches, one change a
+    /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
+    virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
 
     /// Adds samples [settings.image.first_sample, + spp) of every pixel of the film's window. Returns false
     /// when the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
-    /// Changes will be followed, and refresh() be called: whatever makes them cheaper may cost a little.
+    /// apply_changes() and refresh() will be called: whatever makes them cheaper may cost a little.
     virtual void expect_changes() {}
 
     /// The film of the last render() or refresh() becomes what render() would make of an empty one now; what

@@ -239,7 +239,7 @@ ProbeRun TracerProbe::trace_camera(ProbeRun room) const {
     result.hits.resize(size_t(self.settings.image.width) * size_t(self.settings.image.height));
     const scalar::CameraFrame frame = make_camera_frame(*self.scene);
     self.run([&] {
-        self.tracer->improve_trees();
+        self.tracer->rebuild_if_worthwhile();
         const Timer timer;
         parallel_for("probe_camera", self.tiles.size(), 1, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end; ++k) self.trace_tile(frame, self.tiles[k], result);
@@ -260,7 +260,7 @@ ProbeRun TracerProbe::trace(std::span<const Ray> rays, HitKind kind, RayGrouping
     result.hits.resize(kind == HitKind::closest ? rays.size() : 0);
     result.occluded.resize(kind == HitKind::any ? rays.size() : 0);
     self.run([&] {
-        self.tracer->improve_trees();
+        self.tracer->rebuild_if_worthwhile();
         const Timer timer;
         parallel_for("probe_rays", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             self.trace_batch(rays.subspan(begin, end - begin), begin, grouping, kind, result);

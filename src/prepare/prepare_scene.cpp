@@ -9,8 +9,9 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "formulas/mips.h"
-#include "prepare/prepared_scene.h"
+#include "prepare/editable_scene.h"
 #include "prepare/scene_warnings.h"
+#include "prepare/space_warnings.h"
 #include "prepare/tessellate.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
@@ -60,9 +61,9 @@ std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) 
     return list;
 }
 
-/// Lists the maps, gutters filled: in copies, since the scene's textures may be shared with whoever made it.
-std::vector<PreparedMap> prepare_maps(Scene& scene) {
-    std::vector<PreparedMap> maps;
+/// Lists the maps and their smaller copies, gutters filled: in copies, since the scene's textures may be
+/// shared with whoever made it.
+void prepare_maps(Scene& scene, EditableScene& prepared) {
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         Displacement& displacement = scene.displacements[k];
         const std::vector<const Mesh*> meshes = list_meshes(scene, k);
@@ -83,11 +84,11 @@ std::vector<PreparedMap> prepare_maps(Scene& scene) {
                 if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
                 mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
             }
-            maps.push_back(
-                {displacement.name, tile.udim, tile.texture, std::move(gutter), std::move(mips), source});
+            prepared.scene->maps.push_back(
+                {displacement.name, tile.udim, tile.texture, std::move(gutter), mips, source});
+            prepared.mips.push_back(std::move(mips));
         }
     }
-    return maps;
 }
 
 /// Hands the copies of maps to the surfaces of their displacements.
@@ -149,9 +150,10 @@ std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t sur
     return choose_mips(scene.surfaces[surface], levels);
 }
 
-std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
+EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings) {
     validate_scene(scene);
     auto prepared = std::make_shared<PreparedScene>();
+    EditableScene editable{prepared, {}};
     prepared->warnings = std::move(scene.warnings);
     // Before anything else is moved out of the scene.
     for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
@@ -172,7 +174,7 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
         if (is_new) first_object.push_back(k);
         prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
     }
-    prepared->maps = prepare_maps(scene);
+    prepare_maps(scene, editable);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
     share_mips(scene, surface_of_key, *prepared);
 
@@ -189,7 +191,13 @@ std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& 
     if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(*prepared);
     if (settings.surface.mode == SurfaceMode::tessellated)
         tessellate_scene(*prepared, available_memory_bytes());
-    return prepared;
+    for (std::string& warning : find_space_warnings(*prepared))
+        prepared->warnings.push_back(std::move(warning));
+    return editable;
+}
+
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
+    return prepare_editable_scene(std::move(scene), settings).scene;
 }
 
 } // namespace relief

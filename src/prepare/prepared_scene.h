@@ -1,4 +1,5 @@
-// The scene as engines see it: surfaces, instances with their levels, materials, lights. Immutable once made.
+// The scene as engines see it: surfaces, instances with their levels, materials, lights. Engines and all
+// others hold it const; a SceneEditor (prepare/scene_edit.h) may change one that it made, between pictures.
 #pragma once
 
 #include <memory>
@@ -31,9 +32,9 @@ struct PreparedMap {
     std::string displacement;
     int udim = 1001;
     std::shared_ptr<const Texture> texture;
-    GutterFill gutter;              ///< worked into the texture already
-    std::shared_ptr<MipChain> mips; ///< of that texture; null: not filtered
-    const void* source = nullptr;   ///< names the scene's image; those of one image may hold different copies
+    GutterFill gutter;                    ///< worked into the texture already
+    std::shared_ptr<const MipChain> mips; ///< of that texture; null: not filtered
+    const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
 };
 
 struct PreparedScene {
@@ -54,8 +55,9 @@ struct PreparedScene {
 /// Chooses the copies of maps that the surfaces read, by the levels of their instances.
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 
-/// Validates, makes surfaces in parallel, computes level fields. Meshes of `scene` are freed as they are
-/// used.
-std::shared_ptr<PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
+/// The one way from a scene to a prepared one, for renders, sessions and intersectors. Validates, makes
+/// surfaces in parallel, computes level fields, and lists what the scene is warned of. Meshes of `scene` are
+/// freed as they are used. Throws Error: bad_input, out_of_memory for a tessellation.
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
 
 } // namespace relief

@@ -55,11 +55,4 @@ std::vector<std::string> find_space_warnings(const PreparedScene& scene) {
     return warnings;
 }
 
-std::shared_ptr<PreparedScene> prepare_with_warnings(Scene scene, const RenderSettings& settings) {
-    std::shared_ptr<PreparedScene> prepared = prepare_scene(std::move(scene), settings);
-    for (std::string& warning : find_space_warnings(*prepared))
-        prepared->warnings.push_back(std::move(warning));
-    return prepared;
-}
-
 } // namespace relief

@@ -3,7 +3,6 @@
 // cause.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,5 @@ namespace relief {
 /// Of surfaces in tangent space whose uv seams speak for object space. Takes well below a millisecond a
 /// surface: few seams are looked at.
 std::vector<std::string> find_space_warnings(const PreparedScene& scene);
-
-/// prepare_scene, with these warnings behind its own.
-std::shared_ptr<PreparedScene> prepare_with_warnings(Scene scene, const RenderSettings& settings);
 
 } // namespace relief

@@ -36,7 +36,7 @@ class VulkanEngine final : public Engine {
           device_scene_(*device_, *scene_, walk ? &*walk : nullptr) {}
 
     /// Texels and trees lie on the device, as they were uploaded.
-    bool follow(std::span<const SurfaceChange>) override { return false; }
+    bool apply_changes(std::span<const SurfaceChange>) override { return false; }
     bool render(Film& film, RenderObserver* observer) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override;

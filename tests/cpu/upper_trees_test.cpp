@@ -125,11 +125,11 @@ TEST(UpperTreeHolder, makes_smaller_trees_once_rays_enough_have_come) {
     const std::shared_ptr<const UpperTrees> first = holder.current();
     EXPECT_EQ(first->source, BoxSource::bounds);
     holder.count_rays(1);
-    holder.improve();
+    holder.rebuild_if_worthwhile();
     EXPECT_EQ(holder.current(), first);
     holder.count_rays(1000000);
     EXPECT_EQ(holder.current(), first) << "not while rays are traced";
-    holder.improve();
+    holder.rebuild_if_worthwhile();
     const std::shared_ptr<const UpperTrees> second = holder.current();
     EXPECT_EQ(second->source, BoxSource::vertices);
     EXPECT_FALSE(first->surfaces[0].nodes.empty()) << "still walked by others";
@@ -138,7 +138,7 @@ TEST(UpperTreeHolder, makes_smaller_trees_once_rays_enough_have_come) {
     EXPECT_FALSE(narrow.contains(wide));
     EXPECT_TRUE(first->instances.bounds.contains(second->instances.bounds));
     holder.count_rays(1000000);
-    holder.improve();
+    holder.rebuild_if_worthwhile();
     EXPECT_EQ(holder.current(), second);
 }
 
@@ -175,7 +175,7 @@ TEST(UpperTreeHolder, hits_are_the_same_after_the_change) {
         const uint64_t pairs_before = count_pairs(tracer);
         tracer.any_hits(rays, occluded_before);
         for (size_t traced = 0; traced < enough; traced += rays.size()) tracer.closest_hits(rays, after);
-        tracer.improve_trees();
+        tracer.rebuild_if_worthwhile();
         const uint64_t pairs_between = count_pairs(tracer);
         tracer.closest_hits(rays, after);
         EXPECT_LT(count_pairs(tracer) - pairs_between, pairs_before) << "the trees are those of the start";

@@ -32,7 +32,7 @@ Picture render_with(RenderMethod method, const Scene& scene, RenderSettings sett
     auto device = std::make_unique<Device>(
         Device::Config{.index = get_test_device_index(), .method = method, .is_validated = true});
     const Device& used = *device;
-    const std::shared_ptr<PreparedScene> prepared = prepare_scene(scene, settings);
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     const std::unique_ptr<Engine> engine =
         make_engine_on(std::move(device), prepared, settings, make_device_walk(*prepared, settings));
     Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);

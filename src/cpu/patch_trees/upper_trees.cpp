@@ -36,7 +36,7 @@ std::shared_ptr<const UpperTrees> UpperTreeHolder::current() const {
     return trees_;
 }
 
-void UpperTreeHolder::improve() {
+void UpperTreeHolder::rebuild_if_worthwhile() {
     if (rays_to_come_.load(std::memory_order_relaxed) > 0 || is_improved_.exchange(true)) return;
     std::shared_ptr<UpperTrees> trees;
     try {
@@ -48,7 +48,7 @@ void UpperTreeHolder::improve() {
     trees_.swap(trees);
 }
 
-void UpperTreeHolder::follow(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+void UpperTreeHolder::apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     const PatchBoxes boxes(scene_, kernels_, trees_->source);
     for (const SurfaceChange& change : changes) {
         WideBvh& tree = trees_->surfaces[change.surface];

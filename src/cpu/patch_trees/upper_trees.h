@@ -36,11 +36,11 @@ class UpperTreeHolder {
 
     /// Makes the trees anew if that pays by now; once. Between batches, so that what is counted in them does
     /// not depend on the order of threads. Thread safe.
-    void improve();
+    void rebuild_if_worthwhile();
 
-    /// As Engine::follow: not while rays are traced. Boxes of what has changed, before and after, are added
-    /// to `places`, world space.
-    void follow(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+    /// As Engine::apply_changes: not while rays are traced. Boxes of what has changed, before and after, are
+    /// added to `places`, world space.
+    void apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
   private:
     std::shared_ptr<UpperTrees> make_trees(BoxSource source) const;

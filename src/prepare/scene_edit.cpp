@@ -1,0 +1,248 @@
+#include "prepare/scene_edit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "prepare/editable_scene.h"
+#include "relief/error.h"
+#include "surface/map/displacement_map.h"
+#include "surface/patch/map_edit.h"
+
+namespace relief {
+
+namespace {
+
+[[noreturn]] void refuse(const MapEdit& edit, std::string message, std::string hint) {
+    throw Error(ErrorKind::bad_input,
+                {std::move(message),
+                 fmt::format("edit of displacement '{}', tile {}", edit.displacement, edit.udim),
+                 std::move(hint)});
+}
+
+void check_rectangle(const MapEdit& edit, const Texture& map) {
+    const Texture& texels = edit.texels;
+    const size_t count = size_t(4) * texels.width * texels.height;
+    if (count == 0 || texels.floats.size() + texels.halves.size() != count)
+        refuse(edit, "the rectangle holds no texels, or not as many as its size says",
+               "give 4 x width x height values");
+    if (uint64_t(edit.x) + texels.width > map.width || uint64_t(edit.y) + texels.height > map.height)
+        refuse(edit,
+               fmt::format("{} x {} texels at ({}, {}) leave the map of {} x {}", texels.width, texels.height,
+                           edit.x, edit.y, map.width, map.height),
+               "columns and rows count from 0 at the top left");
+}
+
+uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
+    const auto add = [&](uint64_t word) { // FNV-1a (Fowler, Noll, Vo 1991), a word a step
+        hash = (hash ^ word) * 0x100000001b3ull;
+        hash ^= hash >> 29;
+    };
+    for (const char letter : edit.displacement) add(uint8_t(letter));
+    add(uint64_t(uint32_t(edit.udim))), add(edit.x), add(edit.y), add(edit.texels.width);
+    for (const float value : edit.texels.floats) add(std::bit_cast<uint32_t>(value));
+    for (const uint16_t value : edit.texels.halves) add(value);
+    return hash;
+}
+
+void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {
+    for (size_t k = 0; k < all.size(); ++k) all[k] |= added[k];
+}
+
+void refuse_tessellated(const SurfaceSettings& settings) {
+    if (settings.mode == SurfaceMode::tessellated)
+        throw Error(ErrorKind::usage, {"a tessellated surface does not follow edits of its map", "session",
+                                       "surface.mode = direct"});
+}
+
+} // namespace
+
+SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings)
+    : lod_(settings.surface.lod), hash_(scene.hash) {
+    refuse_tessellated(settings.surface);
+    EditableScene editable = prepare_editable_scene(std::move(scene), settings);
+    scene_ = std::move(editable.scene), mips_ = std::move(editable.mips);
+    own_maps();
+}
+
+/// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one
+/// after another, since the last user of the old one is often here.
+void SceneEditor::own_maps() {
+    std::map<const Texture*, const Texture*> copy_of;
+    for (Surface& surface : scene_->surfaces)
+        for (DisplacementMap::Tile& tile : surface.map.tiles) {
+            const auto [place, is_new] = copy_of.try_emplace(tile.texture.get());
+            if (is_new) {
+                EditableMap map{std::make_shared<Texture>(*tile.texture),
+                                std::make_shared<BoundsPyramid>(*tile.pyramid)};
+                place->second = map.texture.get();
+                textures_[map.texture.get()] = std::move(map);
+            }
+            tile.texture = textures_[place->second].texture, tile.pyramid = textures_[place->second].pyramid;
+        }
+    for (PreparedMap& map : scene_->maps) {
+        const auto found = copy_of.find(map.texture.get());
+        map.texture = found == copy_of.end() ? nullptr : textures_[found->second].texture;
+    }
+}
+
+size_t SceneEditor::find_map(const MapEdit& edit) const {
+    const auto has_name = [&](const PreparedMap& map) { return map.displacement == edit.displacement; };
+    const auto is_meant = [&](const PreparedMap& map) { return has_name(map) && map.udim == edit.udim; };
+    const auto found = std::find_if(scene_->maps.begin(), scene_->maps.end(), is_meant);
+    if (found == scene_->maps.end()) {
+        if (std::none_of(scene_->maps.begin(), scene_->maps.end(), has_name))
+            refuse(edit, "there is no such displacement", "name one of the scene's displacements");
+        refuse(edit, "there is no such tile", "only tiles that have a file can change");
+    }
+    if (!found->texture) refuse(edit, "no object uses it", "name the displacement of an object");
+    return size_t(found - scene_->maps.begin());
+}
+
+template <class Visit> void SceneEditor::visit_users(const Texture& texture, const Visit& visit) const {
+    for (uint32_t index = 0; index < scene_->surfaces.size(); ++index) {
+        const Surface& surface = scene_->surfaces[index];
+        for (size_t tile = 0; tile < surface.map.tiles.size(); ++tile)
+            if (surface.map.tiles[tile].texture.get() == &texture) visit(index, surface, uint8_t(tile));
+    }
+}
+
+void SceneEditor::check_values(const MapEdit& edit, const Texture& map) const {
+    const TexelRectangle all{0, 0, edit.texels.width - 1, edit.texels.height - 1};
+    const auto range = find_texel_range(edit.texels, all);
+    if (!range) refuse_bad_texel(edit.texels, all);
+    visit_users(map, [&](uint32_t, const Surface& surface, uint8_t) {
+        check_reach(edit.displacement, surface.map, edit.texels.file, *range);
+    });
+}
+
+/// Those that show the named image, each texture once.
+std::vector<size_t> SceneEditor::find_copies(const MapEdit& edit) const {
+    const void* source = scene_->maps[find_map(edit)].source;
+    std::map<const Texture*, size_t> copies;
+    for (size_t k = 0; k < scene_->maps.size(); ++k) {
+        const PreparedMap& map = scene_->maps[k];
+        if (map.source == source && map.texture) copies.try_emplace(map.texture.get(), k);
+    }
+    std::vector<size_t> list;
+    for (const auto& [texture, map] : copies) list.push_back(map);
+    return list;
+}
+
+CheckedEdit SceneEditor::check(const MapEdit& edit) const {
+    CheckedEdit checked(edit);
+    checked.maps_ = find_copies(edit);
+    for (const size_t map : checked.maps_) {
+        check_rectangle(edit, *scene_->maps[map].texture);
+        check_values(edit, *scene_->maps[map].texture);
+    }
+    return checked;
+}
+
+void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>& readings) {
+    PreparedMap& prepared = scene_->maps[named];
+    EditableMap& map = textures_.at(prepared.texture.get());
+    copy_texels(edit.texels, *map.texture, edit.x, edit.y);
+    const TexelRectangle changed = prepared.gutter.follow(
+        *map.texture, {edit.x, edit.y, edit.x + edit.texels.width - 1, edit.y + edit.texels.height - 1});
+    map.pyramid->update(*map.texture, changed);
+    std::map<const MipChain*, std::vector<TexelRectangle>> rectangles{{nullptr, {changed}}};
+    for (size_t user = 0; user < scene_->maps.size(); ++user) {
+        MipChain* mips = mips_[user].get();
+        if (scene_->maps[user].texture != prepared.texture || !mips || rectangles.contains(mips)) continue;
+        std::vector<TexelRectangle>& all = rectangles[mips];
+        all = mips->update(*map.texture, changed);
+        all.insert(all.begin(), changed);
+    }
+    visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
+        readings.push_back({index, tile, rectangles.at(surface.map.tiles[tile].mips.get())});
+    });
+}
+
+/// One a surface.
+std::vector<SurfaceChange> SceneEditor::find_changes(const std::vector<Reading>& readings) const {
+    std::vector<SurfaceChange> changes;
+    for (const Reading& reading : readings) {
+        const auto is_same = [&](const SurfaceChange& c) { return c.surface == reading.surface; };
+        const auto found = std::find_if(changes.begin(), changes.end(), is_same);
+        const std::vector<uint8_t> touched =
+            find_touched_patches(scene_->surfaces[reading.surface], reading.tile, reading.rectangles);
+        if (found == changes.end())
+            changes.push_back({reading.surface, touched, {}});
+        else
+            join(found->is_changed, touched);
+    }
+    return changes;
+}
+
+/// To the length of the largest cell of each patch in any instance, in parts of the patch.
+void SceneEditor::extend_reach(uint32_t surface, std::vector<float>& reach) const {
+    for (const Instance& instance : scene_->instances) {
+        if (instance.surface != surface) continue;
+        for (size_t patch = 0; patch < reach.size(); ++patch) {
+            const PatchLevels levels = instance.levels->at(uint32_t(patch));
+            const int coarsest =
+                lod_ == LodRule::ray
+                    ? 0
+                    : std::min<int>(levels.patch, *std::min_element(levels.edge.begin(), levels.edge.end()));
+            reach[patch] = std::max(reach[patch], std::ldexp(1.0f, -coarsest));
+        }
+    }
+}
+
+/// Shading normals may read the map a cell beyond the patch, of its old levels or of its new ones.
+void SceneEditor::find_different_patches(const std::vector<Reading>& readings,
+                                         const std::vector<float>& reach, SurfaceChange& change) const {
+    change.looks_different = change.is_changed;
+    for (const Reading& reading : readings)
+        if (reading.surface == change.surface)
+            join(change.looks_different, find_touched_patches(scene_->surfaces[change.surface], reading.tile,
+                                                              reading.rectangles, reach));
+}
+
+/// Other levels may ask for other copies of the map, also in patches beside those that changed.
+void SceneEditor::update_mips(std::vector<SurfaceChange>& changes) {
+    for (SurfaceChange& change : changes) {
+        Surface& surface = scene_->surfaces[change.surface];
+        const std::vector<uint32_t> mips = choose_scene_mips(*scene_, change.surface);
+        for (size_t patch = 0; patch < mips.size(); ++patch)
+            if (mips[patch] != surface.mips[patch]) change.is_changed[patch] = 1;
+        surface.mips = mips;
+    }
+}
+
+void SceneEditor::update_levels(const std::vector<SurfaceChange>& changes) {
+    for (Instance& instance : scene_->instances)
+        for (const SurfaceChange& change : changes) {
+            if (instance.surface != change.surface || instance.levels->is_uniform()) continue;
+            LevelField field = *instance.levels;
+            field.update(scene_->surfaces[change.surface], instance.world_from_object, scene_->levels,
+                         change.is_changed);
+            instance.levels = std::make_shared<const LevelField>(std::move(field));
+        }
+}
+
+std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
+    std::vector<Reading> readings;
+    for (const size_t map : edit.maps_) paint(edit.edit_, map, readings);
+    std::vector<SurfaceChange> changes = find_changes(readings);
+    std::vector<std::vector<float>> reaches;
+    for (const SurfaceChange& change : changes) {
+        reaches.emplace_back(change.is_changed.size(), 0.0f);
+        extend_reach(change.surface, reaches.back());
+    }
+    update_levels(changes);
+    update_mips(changes);
+    for (size_t k = 0; k < changes.size(); ++k) {
+        extend_reach(changes[k].surface, reaches[k]);
+        find_different_patches(readings, reaches[k], changes[k]);
+    }
+    hash_ = hash_edit(hash_, edit.edit_);
+    return changes;
+}
+
+} // namespace relief

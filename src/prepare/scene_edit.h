@@ -1,0 +1,81 @@
+// Edits of a prepared scene between pictures. Everybody else holds a const view of the scene; the editor
+// alone owns one that can be written to, and nobody may read it meanwhile.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "prepare/prepared_scene.h"
+#include "relief/session.h"
+
+namespace relief {
+
+/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
+/// which are more: shading normals read beyond the sides of a patch.
+struct SurfaceChange {
+    uint32_t surface = 0;
+    std::vector<uint8_t> is_changed, looks_different;
+};
+
+/// An edit that fits the scene it was checked against.
+class CheckedEdit {
+    friend class SceneEditor;
+    explicit CheckedEdit(const MapEdit& edit) : edit_(edit) {}
+    const MapEdit& edit_;
+    std::vector<size_t> maps_; ///< of PreparedScene::maps, each texture once
+};
+
+/// Changes a scene in place: texels, bounds of maps and their smaller copies, levels of instances, mips of
+/// patches. Surfaces' meshes, instances' places, materials and lights never change. Not thread safe.
+class SceneEditor {
+  public:
+    /// Prepares `scene` as prepare_scene() does, and copies its maps, which may be shared with others. Throws
+    /// as prepare_scene(), and Error{usage} for tessellated surfaces.
+    SceneEditor(Scene scene, const RenderSettings& settings);
+
+    /// Changed by apply(), in place: no rays may be traced in it then.
+    std::shared_ptr<const PreparedScene> scene() const { return scene_; }
+    /// Of the scene and all edits since: names what a picture shows.
+    uint64_t scene_hash() const { return hash_; }
+
+    /// Throws Error{bad_input} for an edit that does not fit. The result refers to `edit`.
+    CheckedEdit check(const MapEdit& edit) const;
+
+    /// What has changed then, one a surface.
+    std::vector<SurfaceChange> apply(const CheckedEdit& edit);
+
+  private:
+    /// What a surface reads of an image, and where that has changed, in the image and its copies.
+    struct Reading {
+        uint32_t surface;
+        uint8_t tile;
+        std::vector<TexelRectangle> rectangles;
+    };
+    struct EditableMap {
+        std::shared_ptr<Texture> texture;
+        std::shared_ptr<BoundsPyramid> pyramid;
+    };
+
+    void own_maps();
+    size_t find_map(const MapEdit& edit) const;
+    std::vector<size_t> find_copies(const MapEdit& edit) const;
+    template <class Visit> void visit_users(const Texture& texture, const Visit& visit) const;
+    void check_values(const MapEdit& edit, const Texture& map) const;
+    void paint(const MapEdit& edit, size_t named, std::vector<Reading>& readings);
+    std::vector<SurfaceChange> find_changes(const std::vector<Reading>& readings) const;
+    void extend_reach(uint32_t surface, std::vector<float>& reach) const;
+    void find_different_patches(const std::vector<Reading>& readings, const std::vector<float>& reach,
+                                SurfaceChange& change) const;
+    void update_mips(std::vector<SurfaceChange>& changes);
+    void update_levels(const std::vector<SurfaceChange>& changes);
+
+    LodRule lod_;
+    uint64_t hash_;
+    std::shared_ptr<PreparedScene> scene_;
+    std::vector<std::shared_ptr<MipChain>> mips_;    ///< of PreparedScene::maps
+    std::map<const Texture*, EditableMap> textures_; ///< by the texture itself
+};
+
+} // namespace relief
