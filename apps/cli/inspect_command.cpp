@@ -16,6 +16,7 @@
 #include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
+#include "option_names.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
@@ -178,7 +179,7 @@ void print_inspection(const Inspection& inspection) {
     for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
     for (const Fact& fact : inspection.facts) fmt::print("{:<{}}  {}\n", fact.name, width, fact.value);
     for (const Finding& finding : inspection.findings)
-        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code, finding.text);
+        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code, name_options(finding.text));
 }
 
 void print_inspection_json(const Inspection& inspection, const std::string& file) {
@@ -189,7 +190,7 @@ void print_inspection_json(const Inspection& inspection, const std::string& file
     for (const Finding& finding : inspection.findings)
         json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
                                     {"code", finding.code},
-                                    {"text", finding.text}});
+                                    {"text", name_options(finding.text)}});
     fmt::print("{}\n", json.dump(2));
 }
 

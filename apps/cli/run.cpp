@@ -12,6 +12,7 @@
 
 #include "base/suggest.h"
 #include "commands.h"
+#include "option_names.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -127,7 +128,7 @@ int run(int argument_count, const char* const* arguments) {
     try {
         return parse_and_run(argument_count, arguments);
     } catch (const Error& error) {
-        report(error.where(), error.message(), error.hint());
+        report(error.where(), error.message(), name_options(error.hint()));
         return int(error.kind());
     } catch (const std::bad_alloc&) {
         report("", "out of memory",

@@ -212,7 +212,7 @@ void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh&
 
 MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh) {
     MapConvention result;
-    result.space.reason = "not to be seen without a mesh that has seams or bends: give --mesh";
+    result.space.reason = "not to be seen without a mesh that has seams or bends: give the mesh as well";
     if (survey.channel_count < 3 || survey.is_gray || survey.texel_count == survey.bad_count) return result;
     if (mesh && survey.bad_count == 0) {
         result.space.reason = "seams and normals of the mesh do not tell";

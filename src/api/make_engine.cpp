@@ -22,7 +22,7 @@ std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
     return make_vulkan_engine(std::move(scene), settings, std::move(walk));
 #else
     throw Error(ErrorKind::device_missing, {"this build has no Vulkan", "render settings",
-                                            "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
+                                            "device.engine = cpu, or configure it with -DRELIEF_VULKAN=ON"});
 #endif
 }
 

@@ -171,7 +171,7 @@ void check_room(uint64_t patches, int level) {
     if (quads < (uint64_t(1) << 30) && bytes < available_memory_bytes()) return;
     throw Error(ErrorKind::out_of_memory, {fmt::format("{} patches at level {} are {} quads and {} bytes",
                                                        patches, level, quads, bytes),
-                                           "", "a lower --level needs a quarter of it, each"});
+                                           "", "a lower surface.level needs a quarter of it, each"});
 }
 
 } // namespace

@@ -100,7 +100,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.kernels = find_kernels(settings.device.isa);
     if (!self.kernels)
         throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
-                                                "", "`relief devices` lists those that work"});
+                                                "", "available_isas() lists those that work"});
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);

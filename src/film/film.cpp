@@ -151,7 +151,7 @@ void require_memory(double pixels, size_t bytes_per_pixel) {
     throw Error(ErrorKind::out_of_memory,
                 {fmt::format("the picture needs {:.0f} bytes ({:.1f} GiB), {:.1f} GiB are available", needed,
                              needed / (1 << 30), available / (1 << 30)),
-                 "", "render it in parts with --crop or --tile and merge them, or ask for fewer layers"});
+                 "", "render it in parts with image.crop and merge them, or ask for fewer layers"});
 }
 
 } // namespace

@@ -35,7 +35,8 @@ std::vector<ChannelPair> find_pairs(const Image& a, const Image& b, const std::s
     }
     const std::string shown = layer.empty() ? "colour" : layer;
     if (pairs.empty())
-        throw_mismatch(fmt::format("the first image has no layer {}", shown), "see relief inspect");
+        throw_mismatch(fmt::format("the first image has no layer {}", shown),
+                       "inspect the picture, which lists its layers");
     if (pairs.size() != count_in_b)
         throw_mismatch(fmt::format("the images have different channels in layer {}", shown), "");
     return pairs;
@@ -53,7 +54,7 @@ ImageDifference compare_images(const Image& a, const Image& b, const std::string
     if (a.width != b.width || a.height != b.height || a.x0 != b.x0 || a.y0 != b.y0)
         throw_mismatch(fmt::format("the data windows differ: {}x{} at ({}, {}) and {}x{} at ({}, {})",
                                    a.width, a.height, a.x0, a.y0, b.width, b.height, b.x0, b.y0),
-                       "render both with the same --size and --crop");
+                       "render both with the same image.width and image.height, and the same image.crop");
     const std::vector<ChannelPair> pairs = find_pairs(a, b, layer);
     const bool is_relative = layer == "depth" || layer == "depth.Z";
     ImageDifference result;

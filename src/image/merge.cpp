@@ -62,7 +62,7 @@ Part make_part(const Image& image, size_t index) {
             index,
             fmt::format("its render was interrupted: how many of the samples {} a pixel has, it does not say",
                         range),
-            "render it again, or all parts with --layers samples");
+            "render it again, or all parts with image.layers = samples");
     return part;
 }
 
@@ -71,10 +71,10 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
         throw_bad(index,
                   fmt::format("its picture is {}x{} pixels, that of part 1 {}x{}", image.full_width,
                               image.full_height, first.full_width, first.full_height),
-                  "parts of one picture have the same --size");
+                  "parts of one picture have the same image.width and image.height");
     if (image.channels != first.channels)
         throw_bad(index, "its channels differ from those of part 1",
-                  "render all parts with the same --layers");
+                  "render all parts with the same image.layers");
     for (const char* key : {"relief:seed", "relief:scene_hash"})
         if (metadata_or_empty(image, key) != metadata_or_empty(first, key))
             throw_bad(index,

@@ -224,7 +224,7 @@ void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& 
             {Severity::warning, "W-SCALE",
              fmt::format("the longest displacement is {:.3g} scene units, {:.3g} x the diagonal of "
                          "the mesh ({:.3g}): probably another unit (cm, m) or a factor of the "
-                         "sculpting program; say --vdm-scale",
+                         "sculpting program; set displacement.scale",
                          longest, longest / diagonal, diagonal)});
     const double texels = measure_texels_a_face(map, mesh);
     if (texels > 0 && texels < 1)

@@ -20,7 +20,7 @@ std::unique_ptr<TreeWorkshop> make_workshop(TriangleSoup soup, const RenderSetti
     return make_vulkan_tree_workshop(std::move(soup), settings);
 #else
     throw Error(ErrorKind::device_missing, {"this build has no Vulkan", "trees over a mesh",
-                                            "--engine cpu, or configure it with -DRELIEF_VULKAN=ON"});
+                                            "device.engine = cpu, or configure it with -DRELIEF_VULKAN=ON"});
 #endif
 }
 

@@ -75,7 +75,7 @@ PatchOffsets compute_offsets(const Surface& surface, const LevelField& levels) {
         throw Error(ErrorKind::out_of_memory,
                     {fmt::format("the tessellated mesh has {} micro-quads; its tree can index 268435456",
                                  offsets.cell.back()),
-                     surface.name, "render it directly (--surface direct) or lower --level"});
+                     surface.name, "render it directly (surface.mode = direct) or lower surface.level"});
     return offsets;
 }
 
@@ -152,7 +152,7 @@ void tessellate_scene(PreparedScene& scene, uint64_t available_bytes) {
             ErrorKind::out_of_memory,
             {fmt::format("the tessellated scene needs {} bytes ({:.1f} GiB), {:.1f} GiB are available",
                          needed, double(needed) / (1 << 30), double(available_bytes) / (1 << 30)),
-             "", "render it directly (--surface direct) or lower --level"});
+             "", "render it directly (surface.mode = direct) or lower surface.level"});
     const std::vector<uint32_t> equals = find_equals(scene);
     const std::vector<Instance> instances = scene.instances;
     const size_t source_count = scene.surfaces.size();

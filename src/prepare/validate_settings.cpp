@@ -45,7 +45,7 @@ void require_costs(const RenderSettings& s) {
     require(
         s.experiment.structure != StructureKind::lbvh && !is_default_bvh,
         "costs of the surface-area heuristic do not go with the linear BVH and the engine's default trees",
-        "structure kdtree, or bvh with another traversal than the default");
+        "experiment.structure = kdtree, or bvh with another traversal than the default");
 }
 
 } // namespace
@@ -66,22 +66,21 @@ void validate_settings(const RenderSettings& s) {
             "-1 (the best) or an index of vulkan_devices()");
     require(s.device.engine == EngineKind::vulkan ||
                 (s.device.index == -1 && s.experiment.bottom == BottomForm::automatic),
-            "a device and a form of the bottom kernel go with the Vulkan engine",
-            "engine = EngineKind::vulkan");
+            "a device and a form of the bottom kernel go with the Vulkan engine", "device.engine = vulkan");
     require(s.device.engine == EngineKind::vulkan || s.experiment.method == RenderMethod::compute,
             "a render method goes with the Vulkan engine",
-            "--method compute, or --engine vulkan with compute, fragment or hybrid");
+            "experiment.method = compute, or device.engine = vulkan with compute, fragment or hybrid");
     require(s.experiment.method != RenderMethod::fragment || s.experiment.bottom != BottomForm::fused,
             "the fused form of the bottom kernel needs work groups, which fragments have not",
-            "--bottom auto or split, or --method compute or hybrid");
+            "experiment.bottom = auto or split, or experiment.method = compute or hybrid");
     require(s.experiment.method != RenderMethod::hybrid || s.surface.lod == LodRule::field,
             "the hybrid method draws each patch at one level, so it has none for each ray",
-            "--lod field, or --method compute or fragment");
+            "surface.lod = field, or experiment.method = compute or fragment");
     require(s.experiment.method != RenderMethod::hybrid || s.surface.leaf == LeafKind::exact,
             "the hybrid method draws triangles, not their boxes",
-            "--leaf exact, or --method compute or fragment");
+            "surface.leaf = exact, or experiment.method = compute or fragment");
     require(s.device.engine == EngineKind::cpu || s.device.isa == Isa::best,
-            "an instruction set goes with the CPU engine", "engine = EngineKind::cpu");
+            "an instruction set goes with the CPU engine", "device.engine = cpu");
     require_traversal(s);
     require_costs(s);
     require(s.surface.level == kAutoLevel || (s.surface.level >= 0 && s.surface.level <= kMaxLevel),
@@ -98,7 +97,7 @@ void validate_settings(const RenderSettings& s) {
 void validate_method(const RenderSettings& s, const Camera& camera) {
     require(s.experiment.method != RenderMethod::hybrid || camera.aperture_radius == 0,
             "the hybrid method draws what one point sees, and the camera has a lens",
-            "aperture_radius 0, or --method compute or fragment");
+            "aperture_radius 0, or experiment.method = compute or fragment");
 }
 
 } // namespace relief

@@ -88,7 +88,7 @@ const MapPreset& find_preset(std::string_view name) {
         throw Error(ErrorKind::bad_input,
                     {fmt::format("preset '{}' does not say where the channels point", name), "",
                      "ZBrush writes any of 48 orders by its codes FlipAndSwitch and TangentFlipAndSwitch, "
-                     "which are nowhere listed: give the axes, as relief inspect MAP names them"});
+                     "which are nowhere listed: give the axes, as an inspection of the map names them"});
     throw Error(ErrorKind::bad_input,
                 {fmt::format("unknown preset '{}'", name), "", suggest_word(name, get_preset_names())});
 }

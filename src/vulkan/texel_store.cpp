@@ -17,7 +17,7 @@ Buffer make_texel_buffer(const Device& device, const char* name, TexelFormat for
             ErrorKind::out_of_memory,
             {fmt::format("the scene's textures have {} texels ({} bytes), a buffer of this device holds {}",
                          texels, texels * texel_bytes(format), device.max_texel_count()),
-             device.description().name, "use smaller maps, or --engine cpu"});
+             device.description().name, "use smaller maps, or device.engine = cpu"});
     return {device, {name, texels * texel_bytes(format), Purpose::displacement, format}};
 }
 

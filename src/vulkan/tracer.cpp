@@ -219,9 +219,10 @@ void Tracer::Implementation::trace_waves() {
         read_counters();
         for (uint32_t bin = 0; bin < scalar::kBuildBinCount && !kernels.is_fused; ++bin)
             if (!kernels.bottom_build[bin] && counters.build_count[bin] > 0)
-                throw Error(ErrorKind::failed,
-                            {"trees of a level were asked for that the scene has not", "",
-                             "use --bottom fused, or --engine cpu, and tell the developers"});
+                throw Error(
+                    ErrorKind::failed,
+                    {"trees of a level were asked for that the scene has not", "",
+                     "use experiment.bottom = fused, or device.engine = cpu, and tell the developers"});
         cache.end_wave(counters);
         pairs_done += counters.pairs_done, jobs_done += counters.jobs_done;
         totals.pairs_with_hit += counters.pairs_with_hit;
@@ -281,7 +282,7 @@ void Tracer::Implementation::check_nothing_lost(uint32_t pairs_done, uint32_t jo
         ErrorKind::failed,
         {fmt::format("the device finished {} of {} pairs and {} of {} jobs, and left {} rays on their way",
                      pairs_done, counters.pair_count, jobs_done, counters.job_count, counters.rays_lost),
-         device.description().name, "update its driver, or use --engine cpu"});
+         device.description().name, "update its driver, or use device.engine = cpu"});
 }
 
 Tracer::Tracer(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene,

@@ -79,7 +79,7 @@ void VulkanEngine::require_drawable(const Window& window) const {
         return;
     throw Error(ErrorKind::usage,
                 {fmt::format("the hybrid method draws at most {} pixels a side on this device", most),
-                 device_->description().name, "--crop or --tile, or --method compute or fragment"});
+                 device_->description().name, "image.crop, or experiment.method = compute or fragment"});
 }
 
 bool VulkanEngine::render(Film& film, RenderObserver* observer) {

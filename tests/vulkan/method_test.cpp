@@ -184,7 +184,7 @@ TEST_F(HybridMethod, refuses_a_window_larger_than_the_device_draws) {
         FAIL() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(error.hint().find("--crop"), std::string::npos) << error.what();
+        EXPECT_NE(error.hint().find("image.crop"), std::string::npos) << error.what();
     }
 }
 

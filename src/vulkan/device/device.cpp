@@ -23,7 +23,7 @@ void require_usable(const DeviceDescription& device) {
     if (device.missing.empty()) return;
     refuse_device(
         fmt::format("device {} ({}) lacks {}", device.index, device.name, fmt::join(device.missing, ", ")),
-        "update its driver, choose another with --device, or use --engine cpu");
+        "update its driver, choose another with device.index, or use device.engine = cpu");
 }
 
 /// Discrete cards first, then what is built in, programs last.
@@ -44,7 +44,7 @@ void require_drawing(const DeviceDescription& device, RenderMethod method) {
     if (method == RenderMethod::compute || device.missing_to_draw.empty()) return;
     refuse_device(fmt::format("device {} ({}) lacks {} for this method", device.index, device.name,
                               fmt::join(device.missing_to_draw, ", ")),
-                  "use --method compute, or choose another device with --device");
+                  "use experiment.method = compute, or choose another device with device.index");
 }
 
 vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, const Device::Config& config,
@@ -52,10 +52,10 @@ vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, const
     const int index = config.index;
     vk::raii::PhysicalDevices devices(instance);
     if (devices.empty())
-        refuse_device("there is no Vulkan device", "install a driver for it, or use --engine cpu");
+        refuse_device("there is no Vulkan device", "install a driver for it, or use device.engine = cpu");
     if (index >= int(devices.size()))
         refuse_device(fmt::format("there is no device {}", index),
-                      fmt::format("`relief devices` lists them, 0 to {}", devices.size() - 1));
+                      fmt::format("vulkan_devices() lists them, 0 to {}", devices.size() - 1));
     size_t chosen = size_t(std::max(index, 0));
     if (index < 0) {
         const auto rank = [&](size_t i) {

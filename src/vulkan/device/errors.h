@@ -10,7 +10,7 @@
 
 namespace relief::vulkan {
 
-inline constexpr const char* kUseCpu = "use --engine cpu";
+inline constexpr const char* kUseCpu = "use device.engine = cpu";
 
 /// Error{device_missing} for a lost or absent device, Error{out_of_memory} for memory, else Error{failed}.
 [[noreturn]] void throw_vulkan_error(std::string_view operation, const vk::SystemError& error);

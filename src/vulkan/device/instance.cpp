@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 constexpr const char* kNoDriverHint =
-    "install a driver for the graphics card, or mesa-vulkan-drivers, or use --engine cpu";
+    "install a driver for the graphics card, or mesa-vulkan-drivers, or use device.engine = cpu";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                             VkDebugUtilsMessageTypeFlagsEXT,
@@ -31,8 +31,9 @@ vk::raii::Context load_vulkan() {
     try {
         return vk::raii::Context();
     } catch (const std::runtime_error&) {
-        throw Error(ErrorKind::device_missing, {"the Vulkan loader libvulkan.so.1 is not installed", "Vulkan",
-                                                "install libvulkan1 and a driver, or use --engine cpu"});
+        throw Error(ErrorKind::device_missing,
+                    {"the Vulkan loader libvulkan.so.1 is not installed", "Vulkan",
+                     "install libvulkan1 and a driver, or use device.engine = cpu"});
     }
 }
 

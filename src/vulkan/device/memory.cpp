@@ -91,7 +91,7 @@ void MemoryAllocator::refuse(uint32_t type, const Request& request) const {
                 {fmt::format("{} needs {} bytes of {}, {} of {} bytes are available", request.name,
                              request.requirements.size, heap_name(heap), compute_available(heap),
                              properties_.memoryHeaps[heap].size),
-                 "Vulkan", "lower --bottom-cache or the resolution, or use --engine cpu"});
+                 "Vulkan", "lower surface.cache_bytes or the resolution, or use device.engine = cpu"});
 }
 
 std::list<MemoryBlock>::iterator MemoryAllocator::try_block(uint32_t type, uint64_t bytes) {

@@ -1,0 +1,74 @@
+#include "option_names.h"
+
+#include <array>
+#include <string_view>
+
+namespace relief::cli {
+
+namespace {
+
+struct OptionName {
+    std::string_view setting, option;
+};
+
+/// What contains another entry comes before it.
+constexpr std::array<OptionName, 26> kOptions{{
+    {"image.width and image.height", "--size"},
+    {"image.spp", "--spp"},
+    {"image.bounces", "--bounces"},
+    {"image.seed", "--seed"},
+    {"image.crop", "--crop"},
+    {"image.first_sample", "--samples"},
+    {"image.layers", "--layers"},
+    {"surface.mode", "--surface"},
+    {"surface.level", "--level"},
+    {"surface.pixel_error", "--pixel-error"},
+    {"surface.lod", "--lod"},
+    {"surface.leaf", "--leaf"},
+    {"surface.cache_bytes", "--bottom-cache"},
+    {"device.engine", "--engine"},
+    {"device.index", "--device"},
+    {"device.threads", "--threads"},
+    {"device.isa", "--isa"},
+    {"experiment.structure", "--structure"},
+    {"experiment.traversal", "--traversal"},
+    {"experiment.method", "--method"},
+    {"experiment.bottom", "--bottom"},
+    {"displacement.scale", "--vdm-scale"},
+    {"image.width", "--size"},
+    {"image.height", "--size"},
+    {"vulkan_devices()", "`relief devices`"},
+    {"available_isas()", "`relief devices`"},
+}};
+
+bool is_part_of_name(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '/' || c == '.' || c == '-';
+}
+
+void replace_name(std::string& text, const OptionName& name) {
+    constexpr std::string_view kEquals = " = ";
+    for (size_t at = 0; (at = text.find(name.setting, at)) != std::string::npos;) {
+        const size_t end = at + name.setting.size();
+        const bool is_whole = (at == 0 || !is_part_of_name(text[at - 1])) &&
+                              (end == text.size() || !is_part_of_name(text[end]));
+        if (!is_whole) {
+            at = end;
+            continue;
+        }
+        const bool has_value = std::string_view(text).substr(end).starts_with(kEquals);
+        std::string option(name.option);
+        if (has_value) option += ' ';
+        text.replace(at, name.setting.size() + (has_value ? kEquals.size() : 0), option);
+        at += option.size();
+    }
+}
+
+} // namespace
+
+std::string name_options(std::string text) {
+    for (const OptionName& name : kOptions) replace_name(text, name);
+    return text;
+}
+
+} // namespace relief::cli
