@@ -12,7 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
@@ -20,7 +21,6 @@
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/render.h"
-#include "values.h"
 
 namespace relief::cli {
 

@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/values.h"
 #include "inputs.h"
 #include "relief/error.h"
 #include "relief/image.h"
 #include "relief/io.h"
-#include "values.h"
 
 namespace relief::cli {
 

@@ -16,8 +16,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "common/exit_codes.h"
+#include "common/values.h"
 #include "edit_stream.h"
-#include "exit_codes.h"
 #include "inputs.h"
 #include "interrupt.h"
 #include "output.h"
@@ -29,7 +30,6 @@
 #include "relief/session.h"
 #include "render_options.h"
 #include "statistics_json.h"
-#include "values.h"
 
 namespace relief::cli {
 

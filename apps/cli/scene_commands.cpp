@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/devices.h"
 #include "relief/error.h"

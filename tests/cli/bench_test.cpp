@@ -1,8 +1,11 @@
 // What the suites of measurements write.
 #include <algorithm>
+#include <csignal>
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "command.h"
 #include "support/xml.h"
@@ -166,6 +169,30 @@ TEST_F(Bench, peers_measures_a_scene_of_the_user) {
     EXPECT_EQ(test::find_xml_fault(read("peers/peers_scene0_2_rays.svg")), "");
 }
 #endif
+
+TEST_F(Bench, is_refused_with_its_target_where_its_program_is_missing) {
+    std::filesystem::copy_file(program_, folder_ / "relief");
+    program_ = folder_ / "relief";
+    const CommandResult result = run({"bench", "paper2", "--quick"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.errors.find((folder_ / "relief-bench").string()), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("target relief-bench"), std::string::npos) << result.errors;
+    EXPECT_NE(run({"--help"}).output.find("bench"), std::string::npos);
+}
+
+TEST_F(Bench, answers_for_its_options_itself) {
+    EXPECT_NE(run({"bench", "--help"}).output.find("relief bench [OPTIONS] [suite]"), std::string::npos);
+    const CommandResult result = run({"bench", "paper1", "--scnes", "bark"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.errors.find("--scenes"), std::string::npos) << result.errors;
+}
+
+TEST_F(Bench, ends_by_the_signal_that_was_sent_to_the_command) {
+    const pid_t process = start({"bench", "paper1", "--scenes", "bark", "-o", "a"});
+    while (!exists("a")) usleep(1000);
+    kill(process, SIGTERM);
+    EXPECT_EQ(finish(process).exit_code, 128 + SIGTERM);
+}
 
 TEST_F(Bench, wrong_suites_and_scenes_are_usage_errors) {
     const CommandResult suite = run({"bench", "paper7"});

@@ -29,7 +29,7 @@ ALLOWED = {
 }
 
 # What an application may include of src/ besides include/relief.
-APPS = {"bench": ["lab"], "gpu": ["lab"], "cli": ["base", "lab"]}
+APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"]}
 
 # Libraries that only these folders may see; a folder stands for all below it. Tests may see all of them.
 LIBRARIES = {
