@@ -5,9 +5,9 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/bench_options.h"
+#include "bench/charts.h"
 #include "bench/suites.h"
 #include "common/command_line.h"
 #include "common/exit_codes.h"
@@ -17,7 +17,7 @@ namespace relief::bench {
 
 namespace {
 
-void print_goals(const nlohmann::ordered_json& goals) {
+void print_goals(const Value& goals) {
     for (const auto& goal : goals)
         fmt::print("{}  {}: {:.4g} {}, goal {:.4g}\n", goal["met"].get<bool>() ? "met    " : "not met",
                    goal["name"].get<std::string>(), goal["reached"].get<double>(),
@@ -39,6 +39,9 @@ int run_bench(const BenchOptions& options) {
         write_text_file(folder / file.name, file.text);
         fmt::print("wrote {}\n", (folder / file.name).string());
     }
+    const DrawnCharts charts = draw_charts(folder / outcome.files.front().name);
+    for (const std::string& line : charts.lines) fmt::print("{}\n", line);
+    if (!charts.failure.empty()) fmt::print(stderr, "relief bench: {}\n", charts.failure);
     print_goals(outcome.result["goals"]);
     return cli::kExitDone;
 }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/suggest.h"
 #include "bench/cycles.h"
@@ -15,8 +14,10 @@
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
+#include "bench/tables.h"
 #ifdef RELIEF_EMBREE
 #include "bench/peers.h"
+#include "bench/peers_goals.h"
 #include "bench/triangles.h"
 #endif
 #include "relief/error.h"
@@ -58,12 +59,13 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
 }
 
 /// What all suites have in common once their options are known.
-template <class Options, class Run, class MakeFiles>
-SuiteResult run_suite(const BenchOptions& o, Options options, const Report& report, Run run,
-                      MakeFiles make_files) {
+template <class Options>
+SuiteResult run_suite(const BenchOptions& o, Options options, const Report& report,
+                      Value (*run)(const Options&, const Report&), Table (*make_table)(const Value&)) {
     options.runs = o.runs.value_or(options.runs);
-    const auto result = run(o.is_quick ? make_quick_options(options) : options, report);
-    return {result, make_files(result)};
+    const Value result = run(o.is_quick ? make_quick_options(options) : options, report);
+    return {result,
+            {{o.suite + ".json", write_json(result, 1)}, {o.suite + ".csv", write_csv(make_table(result))}}};
 }
 
 SuiteResult run_paper1_suite(const BenchOptions& o, const Report& report) {
@@ -72,7 +74,7 @@ SuiteResult run_paper1_suite(const BenchOptions& o, const Report& report) {
     options.settings.level = o.level.value_or(options.settings.level);
     options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
     options.scenes = check_scenes(o, kPaper1Scenes);
-    return run_suite(o, std::move(options), report, run_paper1, make_paper1_files);
+    return run_suite(o, std::move(options), report, run_paper1, make_paper1_table);
 }
 
 SuiteResult run_paper2_suite(const BenchOptions& o, const Report& report) {
@@ -80,7 +82,7 @@ SuiteResult run_paper2_suite(const BenchOptions& o, const Report& report) {
     options.settings = make_settings(o, 320, 180);
     options.scenes = check_scenes(o, structure_scene_names());
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_paper2, make_paper2_files);
+    return run_suite(o, std::move(options), report, run_paper2, make_paper2_table);
 }
 
 SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
@@ -88,7 +90,7 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
     options.settings = make_settings(o, 640, 360);
     options.scenes = check_scenes(o, paper3_scenes());
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_paper3, make_paper3_files);
+    return run_suite(o, std::move(options), report, run_paper3, make_paper3_table);
 }
 
 /// Scenes of its own, rendered by the command `relief` that lies beside this program.
@@ -99,7 +101,7 @@ SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
     options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
     check_scenes(o, cycles_scene_names());
     if (!o.scenes.empty()) options.scenes = o.scenes;
-    return run_suite(o, std::move(options), report, run_cycles, make_cycles_files);
+    return run_suite(o, std::move(options), report, run_cycles, make_cycles_table);
 }
 
 /// The CPU engine, a scene of its own.
@@ -107,7 +109,7 @@ SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     EditsOptions options;
     options.settings = make_settings(o, 1280, 720);
     options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
-    return run_suite(o, std::move(options), report, run_edits, make_edits_files);
+    return run_suite(o, std::move(options), report, run_edits, make_edits_table);
 }
 
 #ifdef RELIEF_EMBREE
@@ -116,7 +118,7 @@ SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
     TrianglesOptions options;
     options.isa = o.settings.isa;
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_triangles, make_triangles_files);
+    return run_suite(o, std::move(options), report, run_triangles, make_triangles_table);
 }
 
 /// Scenes of files take the place of the suite's own, unless those are asked for as well.
@@ -133,7 +135,9 @@ SuiteResult run_peers_suite(const BenchOptions& o, const Report& report) {
     if (!o.scene_files.empty()) options.scenes = o.scenes;
     if (!o.levels.empty()) options.levels = o.levels;
     options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
-    return run_suite(o, std::move(options), report, run_peers, make_peers_files);
+    SuiteResult outcome = run_suite(o, std::move(options), report, run_peers, make_peers_table);
+    outcome.files.push_back({"peers_goals.md", make_goal_table(outcome.result["goals"])});
+    return outcome;
 }
 #endif
 

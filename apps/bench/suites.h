@@ -5,17 +5,15 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "bench/bench_options.h"
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 
 namespace relief::bench {
 
 struct SuiteResult {
-    nlohmann::ordered_json result;
-    std::vector<ReportFile> files;
+    Value result;
+    std::vector<ReportFile> files; ///< the first is the result as JSON
 };
 
 struct Suite {

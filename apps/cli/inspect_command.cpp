@@ -9,10 +9,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/report.h"
 #include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
@@ -181,15 +181,13 @@ void print_inspection(const Inspection& inspection) {
 }
 
 void print_inspection_json(const Inspection& inspection, const std::string& file) {
-    nlohmann::ordered_json json = {{"file", file},
-                                   {"facts", nlohmann::ordered_json::object()},
-                                   {"findings", nlohmann::ordered_json::array()}};
+    Value json = {{"file", file}, {"facts", Value::record()}, {"findings", Value::list()}};
     for (const Fact& fact : inspection.facts) json["facts"][fact.name] = fact.value;
     for (const Finding& finding : inspection.findings)
         json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
                                     {"code", finding.code},
                                     {"text", finding.text}});
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}", write_json(json, 2));
 }
 
 void check_options(const InspectOptions& options) {

@@ -40,7 +40,7 @@ LIBRARIES = {
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
     r"tiny_obj_loader\.h": ["src/io"],
     r"assimp/": ["src/io"],
-    r"nlohmann/": ["src/io", "apps"],
+    r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],
     r"embree3/": ["apps/bench"],
     r"fmt/": ["src", "apps"],
