@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/child_process.h"
 #include "bench/cycles_log.h"
@@ -19,8 +19,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Texels across: Blender's own choice, 4096, is finer than the sky's image and takes seconds to make.
 constexpr int kImportanceMap = 512;
@@ -69,8 +67,8 @@ std::vector<CaseRuns> list_cases(int samples) {
             {{1, 0, kDefaultImportanceMap}, {}, {}}};
 }
 
-Json describe_runs(const std::vector<Measures>& runs) {
-    Json result;
+Value describe_runs(const std::vector<Measures>& runs) {
+    Value result;
     for (const auto& [name, first] : runs.front()) {
         std::vector<double> values;
         for (const Measures& run : runs) values.push_back(run.at(name));
@@ -79,15 +77,15 @@ Json describe_runs(const std::vector<Measures>& runs) {
     return result;
 }
 
-double get_median(const Json& side, const char* measure) { return side[measure]["median"]; }
+double get_median(const Value& side, const char* measure) { return side[measure]["median"].get<double>(); }
 
-Json describe_case(const CaseRuns& runs) {
-    Json result = {{"samples", runs.what.samples},
-                   {"bounces", runs.what.bounces},
-                   {"importance_map", runs.what.importance_map == kDefaultImportanceMap
-                                          ? Json("Blender's default")
-                                          : Json(runs.what.importance_map)}};
-    const Json cycles = describe_runs(runs.cycles), relief = describe_runs(runs.relief);
+Value describe_case(const CaseRuns& runs) {
+    Value result = {{"samples", runs.what.samples},
+                    {"bounces", runs.what.bounces},
+                    {"importance_map", runs.what.importance_map == kDefaultImportanceMap
+                                           ? Value("Blender's default")
+                                           : Value(runs.what.importance_map)}};
+    const Value cycles = describe_runs(runs.cycles), relief = describe_runs(runs.relief);
     for (const char* measure : {"first_sample_s", "render_s", "with_reading_s"})
         result["times_sooner"][measure] = get_median(cycles, measure) / get_median(relief, measure);
     result["share_of_resident_peak"] =
@@ -117,7 +115,7 @@ class CyclesSuite {
                                                        : int(std::thread::hardware_concurrency());
     }
 
-    Json run() {
+    Value run() {
         std::filesystem::create_directories(options_.folder);
         write_text_file(options_.folder / "cycles_scene.py", cycles_script());
         make_head();
@@ -133,8 +131,8 @@ class CyclesSuite {
                                {"threads", threads_},      {"runs", options_.runs},
                                {"dicing_rate_pixels", 1},  {"importance_map", kImportanceMap},
                                {"scenes", options_.scenes}};
-        result_["comparable"] = {kAboutTimes, kAboutWork, kAboutMemory};
-        result_["scenes"] = Json::array(), result_["goals"] = Json::array();
+        result_["comparable"] = Value::list({kAboutTimes, kAboutWork, kAboutMemory});
+        result_["scenes"] = Value::list(), result_["goals"] = Value::list();
     }
 
     std::filesystem::path scene_file(const std::string& name) const {
@@ -147,7 +145,7 @@ class CyclesSuite {
     void measure(const std::string& name) {
         report_("making the scene " + name);
         save_scene(make_cycles_scene(name), scene_file(name).parent_path());
-        Json entry = {{"scene", name}, {"agreement", compare(name)}};
+        Value entry = {{"scene", name}, {"agreement", compare(name)}};
         std::vector<CaseRuns> cases = list_cases(options_.samples);
         for (int run = 1; run <= options_.runs; ++run)
             for (CaseRuns& runs : cases) {
@@ -162,20 +160,21 @@ class CyclesSuite {
     }
 
     /// Also warms both up.
-    Json compare(const std::string& name) {
+    Value compare(const std::string& name) {
         report_(name + ": comparing the pictures");
         const std::filesystem::path relief = options_.folder / (name + "_relief.exr");
         const std::filesystem::path cycles = options_.folder / (name + "_cycles.exr");
         const Case picture{options_.samples, kBounces, kImportanceMap};
         render_with_cycles(name, picture, cycles);
         render_with_relief(name, picture, relief);
-        const Json agreement = compare_with_cycles(read_image(relief), read_image(cycles));
-        const double hits = agreement["hit_pixels"], brightness = agreement["brightness_ratio"];
+        const Value agreement = compare_with_cycles(read_image(relief), read_image(cycles));
+        const double hits = agreement["hit_pixels"].get<double>();
+        const double brightness = agreement["brightness_ratio"].get<double>();
         if (agreement["masks_differ"] > kMaskTolerance * hits || !(hits > 0) ||
             !(std::abs(brightness - 1) <= kBrightnessTolerance))
-            throw Error(ErrorKind::failed,
-                        {"the pictures of Relief and Cycles are not of the same thing: " + agreement.dump(),
-                         cycles.string(), ""});
+            throw Error(ErrorKind::failed, {"the pictures of Relief and Cycles are not of the same thing: " +
+                                                write_json(agreement),
+                                            cycles.string(), ""});
         return agreement;
     }
 
@@ -229,17 +228,18 @@ class CyclesSuite {
         const ChildResult child = run_child(words);
         if (child.exit_code != 0) throw_child_error(options_.relief.string(), child);
         std::ifstream stream(statistics);
-        const Json s = Json::parse(stream);
-        const Json& time = s["time_s"];
-        const double load = time["load"], prepare = time["prepare"], render = time["render"];
+        const Value s = read_json({std::istreambuf_iterator<char>(stream), {}});
+        const Value& time = s["time_s"];
+        const double load = time["load"].get<double>(), prepare = time["prepare"].get<double>();
+        const double render = time["render"].get<double>();
         result_["device"] = s["device"];
         return {{"load_s", load},
                 {"prepare_s", prepare},
                 {"first_sample_s", time["first_image"].get<double>() - load},
                 {"render_s", prepare + render},
                 {"with_reading_s", load + prepare + render},
-                {"with_reading_and_writing_s", time["total"]},
-                {"resident_peak_bytes", s["memory_bytes"]["peak_resident"]}};
+                {"with_reading_and_writing_s", time["total"].get<double>()},
+                {"resident_peak_bytes", s["memory_bytes"]["peak_resident"].get<double>()}};
     }
 
     void add_goal(const std::string& name, double goal, double reached, const char* unit, bool is_met) {
@@ -247,16 +247,16 @@ class CyclesSuite {
             {{"name", name}, {"goal", goal}, {"reached", reached}, {"unit", unit}, {"met", is_met}});
     }
 
-    void add_goals(const Json& entry) {
-        const std::string name = entry["scene"];
-        const Json &first = entry["cases"][0], &longest = entry["cases"][3];
-        const double sooner = first["times_sooner"]["first_sample_s"];
+    void add_goals(const Value& entry) {
+        const std::string name = entry["scene"].get<std::string>();
+        const Value &first = entry["cases"][0], &longest = entry["cases"][3];
+        const double sooner = first["times_sooner"]["first_sample_s"].get<double>();
         add_goal(name + ": first sample, no bounce", kFirstSampleGoal, sooner, "times sooner than Cycles",
                  sooner >= kFirstSampleGoal);
-        const double faster = longest["times_sooner"]["render_s"];
+        const double faster = longest["times_sooner"]["render_s"].get<double>();
         add_goal(fmt::format("{}: {} samples, {} bounces", name, options_.samples, kBounces), kRenderGoal,
                  faster, "times sooner than Cycles", faster >= kRenderGoal);
-        const double share = longest["share_of_resident_peak"];
+        const double share = longest["share_of_resident_peak"].get<double>();
         add_goal(name + ": peak resident memory", kMemoryGoal, share, "of Cycles'", share <= kMemoryGoal);
     }
 
@@ -264,7 +264,7 @@ class CyclesSuite {
     const Report& report_;
     std::string blender_;
     int threads_ = 1;
-    Json result_;
+    Value result_;
 };
 
 } // namespace
@@ -278,7 +278,7 @@ CyclesOptions make_quick_options(CyclesOptions options) {
     return options;
 }
 
-Json run_cycles(const CyclesOptions& options, const Report& report) {
+Value run_cycles(const CyclesOptions& options, const Report& report) {
     return CyclesSuite(options, report).run();
 }
 

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 
 namespace relief::bench {
 
@@ -36,13 +34,10 @@ Scene make_cycles_scene(const std::string& name);
 const char* cycles_script();
 
 /// How far two pictures are of the same thing: {hit_pixels, masks_differ, brightness_ratio}.
-nlohmann::ordered_json compare_with_cycles(const Image& relief, const Image& cycles);
+Value compare_with_cycles(const Image& relief, const Image& cycles);
 
 /// Throws Error{usage} where no `blender` is found, Error{failed} where a program fails or the pictures are
 /// not of the same thing: then nothing is reported.
-nlohmann::ordered_json run_cycles(const CyclesOptions& options, const Report& report);
-
-/// cycles.json, cycles.csv, charts of the times of each scene and of memory.
-std::vector<ReportFile> make_cycles_files(const nlohmann::ordered_json& result);
+Value run_cycles(const CyclesOptions& options, const Report& report);
 
 } // namespace relief::bench

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "bench/cycles.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/error.h"
@@ -12,8 +10,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// White, rough, without a coat: Lambert's surface.
 Material make_white() {
@@ -47,7 +43,7 @@ Scene make_cycles_scene(const std::string& name) {
     return scene;
 }
 
-Json compare_with_cycles(const Image& relief, const Image& cycles) {
+Value compare_with_cycles(const Image& relief, const Image& cycles) {
     if (relief.width != cycles.width || relief.height != cycles.height)
         throw Error(ErrorKind::failed, {"the pictures differ in size", "bench cycles", ""});
     const size_t alpha = find_channel(relief, "A"), alpha_of_cycles = find_channel(cycles, "A");

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/machine.h"
 #include "relief/error.h"
@@ -18,8 +17,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kGoal = 10; ///< fresh load over edit
 constexpr uint32_t kPlacesPerSide = 4;
@@ -87,7 +84,7 @@ void require_same(const Image& a, const Image& b) {
                     {"the picture after the edits is not that of the edited map", "bench edits", ""});
 }
 
-Json measure_fresh(const std::filesystem::path& file, const RenderSettings& settings, int runs) {
+Value measure_fresh(const std::filesystem::path& file, const RenderSettings& settings, int runs) {
     std::vector<double> load, prepare, render, total;
     for (int run = 0; run <= runs; ++run) {
         const double start = get_seconds();
@@ -106,7 +103,7 @@ Json measure_fresh(const std::filesystem::path& file, const RenderSettings& sett
 
 uint64_t count_rays(const Statistics& s) { return s.camera_rays + s.shadow_rays + s.bounce_rays; }
 
-Json measure_edits(const Scene& scene, const RenderSettings& settings, const std::vector<MapEdit>& edits) {
+Value measure_edits(const Scene& scene, const RenderSettings& settings, const std::vector<MapEdit>& edits) {
     Session session(scene, settings), reference(scene, settings);
     RenderResult result = session.render();
     uint64_t rays = count_rays(result.statistics);
@@ -130,21 +127,21 @@ Json measure_edits(const Scene& scene, const RenderSettings& settings, const std
             {"rays_share_of_each", shares}};
 }
 
-Json measure_kind(const Kind& kind, const EditsOptions& options, const Scene& scene,
-                  const std::vector<MapEdit>& edits) {
+Value measure_kind(const Kind& kind, const EditsOptions& options, const Scene& scene,
+                   const std::vector<MapEdit>& edits) {
     RenderSettings settings = options.settings;
     settings.image.spp = kind.samples, settings.image.bounces = kind.bounces;
-    Json entry = {{"name", kind.name}, {"samples", kind.samples}, {"bounces", kind.bounces}};
+    Value entry = {{"name", kind.name}, {"samples", kind.samples}, {"bounces", kind.bounces}};
     entry["fresh"] = measure_fresh(options.folder / "pumpkin" / "scene.json", settings, options.runs);
     entry["edits"] = measure_edits(scene, settings, edits);
-    const Json& fresh = entry["fresh"]["picture_s"];
-    const Json& edit = entry["edits"]["picture_s"];
+    const Value& fresh = entry["fresh"]["picture_s"];
+    const Value& edit = entry["edits"]["picture_s"];
     entry["ratio"] = fresh["median"].get<double>() / edit["median"].get<double>();
     entry["ratio_of_slowest"] = fresh["median"].get<double>() / edit["highest"].get<double>();
     return entry;
 }
 
-void add_goal(Json& goals, const std::string& name, double reached) {
+void add_goal(Value& goals, const std::string& name, double reached) {
     goals.push_back({{"name", name},
                      {"goal", kGoal},
                      {"reached", reached},
@@ -161,51 +158,34 @@ EditsOptions make_quick_options(EditsOptions options) {
     return options;
 }
 
-Json run_edits(const EditsOptions& options, const Report& report) {
+Value run_edits(const EditsOptions& options, const Report& report) {
     Scene scene = make_sample_scene("pumpkin", Instancing::none);
     MapTile& tile = scene.displacements.at(0).tiles.at(0);
     tile.texture = enlarge(*tile.texture, uint32_t(options.enlargement));
     save_scene(scene, options.folder / "pumpkin");
     const std::vector<MapEdit> edits = make_edits(scene.displacements[0], options.edge);
-    Json result = {{"suite", "edits"},
-                   {"build", describe_build()},
-                   {"machine", describe_machine()},
-                   {"settings",
-                    {{"runs", options.runs},
-                     {"width", options.settings.image.width},
-                     {"height", options.settings.image.height},
-                     {"threads", options.settings.device.threads},
-                     {"map", {tile.texture->width, tile.texture->height}},
-                     {"edge", options.edge},
-                     {"edits", edits.size()}}},
-                   {"pictures", Json::array()},
-                   {"goals", Json::array()}};
+    Value result = {{"suite", "edits"},
+                    {"build", describe_build()},
+                    {"machine", describe_machine()},
+                    {"settings",
+                     {{"runs", options.runs},
+                      {"width", options.settings.image.width},
+                      {"height", options.settings.image.height},
+                      {"threads", options.settings.device.threads},
+                      {"map", Value::list({tile.texture->width, tile.texture->height})},
+                      {"edge", options.edge},
+                      {"edits", edits.size()}}},
+                    {"pictures", Value::list()},
+                    {"goals", Value::list()}};
     for (const Kind& kind : kKinds) {
         report(kind.name);
-        const Json entry = measure_kind(kind, options, scene, edits);
-        add_goal(result["goals"], fmt::format("{}: median edit", kind.name), entry["ratio"]);
-        add_goal(result["goals"], fmt::format("{}: slowest edit", kind.name), entry["ratio_of_slowest"]);
+        const Value entry = measure_kind(kind, options, scene, edits);
+        add_goal(result["goals"], fmt::format("{}: median edit", kind.name), entry["ratio"].get<double>());
+        add_goal(result["goals"], fmt::format("{}: slowest edit", kind.name),
+                 entry["ratio_of_slowest"].get<double>());
         result["pictures"].push_back(entry);
     }
     return result;
-}
-
-std::vector<ReportFile> make_edits_files(const Json& result) {
-    std::string csv = "picture,fresh_load_s,fresh_prepare_s,fresh_render_s,fresh_picture_s,edit_s,"
-                      "edit_picture_s,slowest_edit_picture_s,rays_share,ratio,ratio_of_slowest\n";
-    for (const Json& entry : result["pictures"]) {
-        const auto get = [&](const char* part, const char* number, const char* which) {
-            return entry[part][number][which].get<double>();
-        };
-        csv += fmt::format("\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.4g},{:.4g},{:.4g}\n",
-                           entry["name"].get<std::string>(), get("fresh", "load_s", "median"),
-                           get("fresh", "prepare_s", "median"), get("fresh", "render_s", "median"),
-                           get("fresh", "picture_s", "median"), get("edits", "edit_s", "median"),
-                           get("edits", "picture_s", "median"), get("edits", "picture_s", "highest"),
-                           get("edits", "rays_share", "median"), entry["ratio"].get<double>(),
-                           entry["ratio_of_slowest"].get<double>());
-    }
-    return {{"edits.json", result.dump(1) + "\n"}, {"edits.csv", csv}};
 }
 
 } // namespace relief::bench

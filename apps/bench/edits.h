@@ -4,10 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 
 namespace relief::bench {
 
@@ -24,9 +22,6 @@ EditsOptions make_quick_options(EditsOptions options);
 
 /// Sixteen rectangles spread over the map, each painted over in turn. Throws Error{failed} where the picture
 /// after all of them is not, bit for bit, that of a session which began with them.
-nlohmann::ordered_json run_edits(const EditsOptions& options, const Report& report);
-
-/// edits.json and edits.csv.
-std::vector<ReportFile> make_edits_files(const nlohmann::ordered_json& result);
+Value run_edits(const EditsOptions& options, const Report& report);
 
 } // namespace relief::bench

@@ -6,15 +6,11 @@
 
 #include <sys/utsname.h>
 
-#include <nlohmann/json.hpp>
-
 #include "relief/devices.h"
 
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string read_system() {
     utsname names{};
@@ -32,18 +28,18 @@ std::string read_processor() {
 
 } // namespace
 
-Json describe_build() {
+Value describe_build() {
     return {{"version", RELIEF_VERSION}, {"commit", RELIEF_COMMIT}, {"compiler", __VERSION__}};
 }
 
-Json describe_machine() {
+Value describe_machine() {
     return {{"system", read_system()},
             {"processor", read_processor()},
             {"threads", std::thread::hardware_concurrency()}};
 }
 
-Json describe_vulkan_devices() {
-    Json devices = Json::array();
+Value describe_vulkan_devices() {
+    Value devices = Value::list();
     for (const DeviceInfo& device : vulkan_devices())
         devices.push_back({{"device", device.index},
                            {"name", device.name},
@@ -54,8 +50,8 @@ Json describe_vulkan_devices() {
     return devices;
 }
 
-Json describe_device(const Statistics& s) {
-    Json result = {{"engine", s.engine}, {"name", s.device}, {"isa", s.isa}, {"threads", s.threads}};
+Value describe_device(const Statistics& s) {
+    Value result = {{"engine", s.engine}, {"name", s.device}, {"isa", s.isa}, {"threads", s.threads}};
     if (s.engine != "vulkan") return result;
     for (const DeviceInfo& device : vulkan_devices())
         if (device.name == s.device) result["driver"] = device.driver;

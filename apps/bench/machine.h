@@ -1,22 +1,21 @@
 // What every figure must name: the build it came from and the machine it was measured on.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "common/report.h"
 #include "relief/render.h"
 
 namespace relief::bench {
 
 /// {version, commit, compiler} of this build; commit as of its configuration, "unknown" outside git.
-nlohmann::ordered_json describe_build();
+Value describe_build();
 
 /// {system, processor, threads} of this machine.
-nlohmann::ordered_json describe_machine();
+Value describe_machine();
 
 /// A list of {device, name, driver, kind, memory_bytes, missing}: what the Vulkan engine could run on.
-nlohmann::ordered_json describe_vulkan_devices();
+Value describe_vulkan_devices();
 
 /// {engine, name, isa, threads} as a render reported them, and the driver of a Vulkan device.
-nlohmann::ordered_json describe_device(const Statistics& statistics);
+Value describe_device(const Statistics& statistics);
 
 } // namespace relief::bench

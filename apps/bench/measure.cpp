@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "relief/error.h"
 
@@ -12,10 +11,8 @@ namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// summarize of one number of each run.
-template <class Get> Json summarize_runs(const std::vector<Statistics>& runs, Get get) {
+template <class Get> Value summarize_runs(const std::vector<Statistics>& runs, Get get) {
     std::vector<double> values;
     for (const Statistics& run : runs) values.push_back(get(run));
     return summarize(std::move(values));
@@ -72,7 +69,7 @@ const char* get_kind(const CastStatistics& cast) {
 
 } // namespace
 
-Json summarize(std::vector<double> values) {
+Value summarize(std::vector<double> values) {
     const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
     return {
         {"median", get_median(values)}, {"lowest", *lowest}, {"highest", *highest}, {"runs", values.size()}};
@@ -101,8 +98,8 @@ void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variant
         for (Variant& variant : variants) render_variant(scene, variant, report, run);
 }
 
-Json describe_frames(const std::vector<Statistics>& runs) {
-    Json stages;
+Value describe_frames(const std::vector<Statistics>& runs) {
+    Value stages;
     for (const auto& [name, stage] : kStages)
         stages[name] = summarize_runs(runs, [s = stage](const Statistics& run) { return run.*s; });
     const Statistics& last = runs.back();
@@ -118,12 +115,12 @@ Json describe_frames(const std::vector<Statistics>& runs) {
             {"ray_buffers_bytes", last.ray_buffers_bytes}};
 }
 
-Json describe_casts(const std::vector<Statistics>& runs) {
-    Json casts = Json::array();
+Value describe_casts(const std::vector<Statistics>& runs) {
+    Value casts = Value::list();
     // Every run traces the same rays, so that they have the same casts.
     for (size_t k = 0; k < runs.front().casts.size(); ++k) {
         const CastStatistics& first = runs.front().casts[k];
-        Json cast = {
+        Value cast = {
             {"depth", first.depth}, {"kind", get_kind(first)}, {"rays", first.rays}, {"pairs", first.pairs}};
         for (const auto& [name, stage] : kCastStages)
             cast["stage_s"][name] =

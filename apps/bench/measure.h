@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "common/report.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 
@@ -24,7 +23,7 @@ struct Variant {
 };
 
 /// {median, lowest, highest, runs}; of an even count the mean of the middle two. `values` is not empty.
-nlohmann::ordered_json summarize(std::vector<double> values);
+Value summarize(std::vector<double> values);
 
 /// What one run of something took, seconds.
 using Measure = std::function<double()>;
@@ -40,9 +39,9 @@ void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variant
 Scene make_white(Scene scene);
 
 /// Median seconds by stage, frame and preparation with their spread, bytes.
-nlohmann::ordered_json describe_frames(const std::vector<Statistics>& runs);
+Value describe_frames(const std::vector<Statistics>& runs);
 
 /// Median seconds of each cast: {depth, kind, rays, pairs, seconds by stage, total_s with spread}.
-nlohmann::ordered_json describe_casts(const std::vector<Statistics>& runs);
+Value describe_casts(const std::vector<Statistics>& runs);
 
 } // namespace relief::bench

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/machine.h"
 #include "bench/paper1_figures.h"
@@ -17,8 +16,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The paper's limit of subdivision, and the one above, at which its byte counts a patch come out.
 constexpr int kTableLevels[] = {5, 6};
@@ -40,7 +37,7 @@ RenderSettings make_uncached(RenderSettings settings) {
     return settings;
 }
 
-Json describe_tessellation(const Scene& scene, RenderSettings settings, int level) {
+Value describe_tessellation(const Scene& scene, RenderSettings settings, int level) {
     settings.surface.level = level;
     const TessellationCost cost = estimate_tessellation(scene, settings);
     return {{"level", format_level(level)},
@@ -52,10 +49,10 @@ Json describe_tessellation(const Scene& scene, RenderSettings settings, int leve
 }
 
 /// A row of Table 1.1.
-Json make_table_row(const std::string& name, const Scene& scene, const RenderSettings& settings,
-                    const Statistics& direct) {
+Value make_table_row(const std::string& name, const Scene& scene, const RenderSettings& settings,
+                     const Statistics& direct) {
     const uint64_t total = direct.geometry_bytes + direct.structures_bytes;
-    Json tessellated = Json::array();
+    Value tessellated = Value::list();
     std::vector<int> levels = {settings.surface.level};
     for (const int level : kTableLevels)
         if (level != settings.surface.level) levels.push_back(level);
@@ -87,10 +84,10 @@ Variant make_tessellated(const Paper1Options& options, const RenderSettings& dir
     return variant;
 }
 
-Json make_figure1_7(const std::string& name, const std::vector<Variant>& variants, uint64_t peak_bytes) {
-    Json scene = {{"scene", name}, {"tessellated_peak_bytes", peak_bytes}, {"variants", Json::array()}};
+Value make_figure1_7(const std::string& name, const std::vector<Variant>& variants, uint64_t peak_bytes) {
+    Value scene = {{"scene", name}, {"tessellated_peak_bytes", peak_bytes}, {"variants", Value::list()}};
     for (const Variant& variant : variants) {
-        Json entry = {{"name", variant.name}, {"outcome", variant.refusal.empty() ? "measured" : "refused"}};
+        Value entry = {{"name", variant.name}, {"outcome", variant.refusal.empty() ? "measured" : "refused"}};
         if (variant.refusal.empty())
             entry.update(describe_frames(variant.runs));
         else
@@ -113,19 +110,19 @@ void add_bottom_forms(RenderSettings cached, std::vector<Variant>& variants) {
 }
 
 /// What the engine refused is left out.
-Json make_bottom_forms(const std::string& name, std::span<const Variant> variants) {
-    Json entry = {{"scene", name}, {"variants", Json::array()}};
+Value make_bottom_forms(const std::string& name, std::span<const Variant> variants) {
+    Value entry = {{"scene", name}, {"variants", Value::list()}};
     for (const Variant& variant : variants) {
         if (variant.runs.empty()) continue;
-        Json measured = {{"name", variant.name}};
+        Value measured = {{"name", variant.name}};
         measured.update(describe_frames(variant.runs));
         entry["variants"].push_back(std::move(measured));
     }
     return entry;
 }
 
-Json make_casts(const std::string& name, const std::vector<Variant>& variants) {
-    Json entry = {{"scene", name}, {"variants", Json::array()}};
+Value make_casts(const std::string& name, const std::vector<Variant>& variants) {
+    Value entry = {{"scene", name}, {"variants", Value::list()}};
     for (const Variant& variant : variants)
         if (variant.settings.surface.mode == SurfaceMode::direct && !variant.runs.empty())
             entry["variants"].push_back({{"name", variant.name}, {"casts", describe_casts(variant.runs)}});
@@ -145,7 +142,7 @@ class Paper1 {
   public:
     Paper1(const Paper1Options& options, const Report& report) : options_(options), report_(report) {}
 
-    Json run() {
+    Value run() {
         check_scenes(options_.scenes);
         // The largest first, while the process has held nothing else.
         for (const std::string& name : kPaper1Scenes)
@@ -228,12 +225,12 @@ class Paper1 {
         for (const PaperStatement& statement : kPaperStatements)
             result_["paper_says"].push_back({{"about", statement.about}, {"text", statement.text}});
         for (const char* part : {"table1_1", "figure1_7", "figure1_9", "figure1_10"})
-            result_[part] = Json::array();
+            result_[part] = Value::list();
     }
 
     const Paper1Options& options_;
     const Report& report_;
-    Json result_;
+    Value result_;
 };
 
 } // namespace
@@ -244,6 +241,6 @@ Paper1Options make_quick_options(Paper1Options options) {
     return options;
 }
 
-Json run_paper1(const Paper1Options& options, const Report& report) { return Paper1(options, report).run(); }
+Value run_paper1(const Paper1Options& options, const Report& report) { return Paper1(options, report).run(); }
 
 } // namespace relief::bench

@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 #include "relief/render.h"
 
 namespace relief::bench {
@@ -32,10 +30,6 @@ Paper1Options make_quick_options(Paper1Options options);
 /// Measures all, in the order that keeps the peak of memory honest: the largest scene first. Throws
 /// Error{usage} for a scene that is none of the paper's, and what rendering throws, apart from what is
 /// refused for want of memory: that is a result.
-nlohmann::ordered_json run_paper1(const Paper1Options& options, const Report& report);
-
-/// paper1.json, paper1.csv and a chart for the table, each figure and, of the Vulkan engine, the forms of its
-/// bottom level.
-std::vector<ReportFile> make_paper1_files(const nlohmann::ordered_json& result);
+Value run_paper1(const Paper1Options& options, const Report& report);
 
 } // namespace relief::bench

@@ -4,38 +4,34 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kBytesAPatch = 64, kPartyPeakMebibytes = 512, kDepthRatio = 1.3, kPartyFrameMilliseconds = 5;
 
-void add_goal(Json& goals, const std::string& name, double goal, double reached, const char* unit) {
+void add_goal(Value& goals, const std::string& name, double goal, double reached, const char* unit) {
     goals.push_back(
         {{"name", name}, {"goal", goal}, {"reached", reached}, {"unit", unit}, {"met", reached <= goal}});
 }
 
-const Json* find_variant(const Json& scene, const std::string& name) {
-    for (const Json& variant : scene["variants"])
+const Value* find_variant(const Value& scene, const std::string& name) {
+    for (const Value& variant : scene["variants"])
         if (variant["name"] == name) return &variant;
     return nullptr;
 }
 
 /// Seconds a ray of the bounces at `depth`, its shadow rays left out.
-std::optional<double> compute_seconds_a_ray(const Json& casts, int depth) {
-    for (const Json& cast : casts)
+std::optional<double> compute_seconds_a_ray(const Value& casts, int depth) {
+    for (const Value& cast : casts)
         if (cast["depth"] == depth && cast["kind"] == "bounce")
             return cast["total_s"]["median"].get<double>() / cast["rays"].get<double>();
     return std::nullopt;
 }
 
-void add_depth_goal(const Json& figure, Json& goals) {
-    for (const Json& scene : figure) {
-        const Json* direct = find_variant(scene, "direct");
+void add_depth_goal(const Value& figure, Value& goals) {
+    for (const Value& scene : figure) {
+        const Value* direct = find_variant(scene, "direct");
         if (!direct) continue;
         const auto first = compute_seconds_a_ray((*direct)["casts"], 1);
         const auto last = compute_seconds_a_ray((*direct)["casts"], 5);
@@ -46,9 +42,9 @@ void add_depth_goal(const Json& figure, Json& goals) {
 }
 
 /// Direct against the same kernels over micro-quads made up front, where those were made.
-void add_tessellated_goals(const Json& figure, Json& goals) {
-    for (const Json& scene : figure) {
-        const Json *direct = find_variant(scene, "direct"), *flat = find_variant(scene, "tessellated");
+void add_tessellated_goals(const Value& figure, Value& goals) {
+    for (const Value& scene : figure) {
+        const Value *direct = find_variant(scene, "direct"), *flat = find_variant(scene, "tessellated");
         if (!direct || !flat || (*direct)["outcome"] != "measured" || (*flat)["outcome"] != "measured")
             continue;
         add_goal(goals, scene["scene"].get<std::string>() + ", direct against pre-tessellated, frame", 1,
@@ -59,10 +55,10 @@ void add_tessellated_goals(const Json& figure, Json& goals) {
 
 } // namespace
 
-Json make_paper1_goals(const Json& result) {
-    Json goals = Json::array();
+Value make_paper1_goals(const Value& result) {
+    Value goals = Value::list();
     double bytes_a_patch = 0;
-    for (const Json& row : result["table1_1"])
+    for (const Value& row : result["table1_1"])
         bytes_a_patch = std::max(bytes_a_patch, row["direct"]["bytes_a_patch"].get<double>());
     add_goal(goals, "geometry and structures a displaced patch, worst scene", kBytesAPatch, bytes_a_patch,
              "bytes");

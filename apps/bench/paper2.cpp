@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/doubtful_hits.h"
 #include "bench/machine.h"
@@ -18,14 +17,12 @@ namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 bool is_heap(TreeKind kind) {
     return kind == TreeKind::heap || kind == TreeKind::succinct_lbvh || kind == TreeKind::succinct_sah;
 }
 
-Json describe_parts(const std::vector<TreeBuild>& builds, uint32_t triangles) {
-    Json parts = Json::array();
+Value describe_parts(const std::vector<TreeBuild>& builds, uint32_t triangles) {
+    Value parts = Value::list();
     for (size_t part = 0; part < builds.front().parts.size(); ++part) {
         std::vector<double> seconds;
         for (const TreeBuild& build : builds) seconds.push_back(build.parts[part].seconds);
@@ -37,24 +34,24 @@ Json describe_parts(const std::vector<TreeBuild>& builds, uint32_t triangles) {
     return parts;
 }
 
-Json describe_builds(TreeKind kind, const std::vector<TreeBuild>& builds, uint32_t triangles) {
+Value describe_builds(TreeKind kind, const std::vector<TreeBuild>& builds, uint32_t triangles) {
     std::vector<double> seconds, shares;
     for (const TreeBuild& build : builds)
         seconds.push_back(build.seconds), shares.push_back(build.bound_share);
     const TreeBuild& last = builds.back();
-    const Json summary = summarize(seconds);
-    Json entry = {{"tree", tree_name(kind)},
-                  {"built_on", last.is_on_device ? "device" : "host"},
-                  {"seconds", summary},
-                  {"triangles_per_s", triangles / summary["median"].get<double>()},
-                  {"bytes", last.bytes},
-                  {"bytes_a_triangle", double(last.bytes) / triangles},
-                  {"link_bytes", last.link_bytes},
-                  {"slots", last.slots},
-                  {"used_slots", last.used},
-                  {"used_share", double(last.used) / double(last.slots)},
-                  {"entries_a_triangle", double(last.entries) / triangles},
-                  {"depth", last.depth}};
+    const Value summary = summarize(seconds);
+    Value entry = {{"tree", tree_name(kind)},
+                   {"built_on", last.is_on_device ? "device" : "host"},
+                   {"seconds", summary},
+                   {"triangles_per_s", triangles / summary["median"].get<double>()},
+                   {"bytes", last.bytes},
+                   {"bytes_a_triangle", double(last.bytes) / triangles},
+                   {"link_bytes", last.link_bytes},
+                   {"slots", last.slots},
+                   {"used_slots", last.used},
+                   {"used_share", double(last.used) / double(last.slots)},
+                   {"entries_a_triangle", double(last.entries) / triangles},
+                   {"depth", last.depth}};
     if (!last.is_on_device) return entry;
     entry["parts"] = describe_parts(builds, triangles);
     entry["share_of_bandwidth_bound"] = summarize(shares);
@@ -89,13 +86,13 @@ class MeshMeasure {
         }
     }
 
-    Json run(const std::string& name) {
+    Value run(const std::string& name) {
         for (const Paper2Model& model : kPaper2Models)
             if (model.stands_for == name && options_.detail == MeshDetail::full)
                 heap_levels_ = int(model.levels);
-        Json builds = Json::array();
+        Value builds = Value::list();
         for (const TreeKind kind : tree_kinds()) builds.push_back(measure_tree(kind));
-        Json rays;
+        Value rays;
         for (const RaySet& set : sets_) rays[set.name] = set.rays.size();
         return {{"mesh", name},
                 {"triangles", trees_.triangle_count()},
@@ -109,7 +106,7 @@ class MeshMeasure {
     }
 
   private:
-    Json measure_tree(TreeKind kind) {
+    Value measure_tree(TreeKind kind) {
         report_(fmt::format("build {}", tree_name(kind)));
         trees_.build(kind, heap_levels_); // warms up
         std::vector<TreeBuild> builds;
@@ -154,14 +151,14 @@ class MeshMeasure {
         const std::vector<TreeHit> hits = find_hits(query, set, keys);
         require_equal(hits, s, fmt::format("{}, {}", tree_name(kind), traversal_name(traversal)));
         const double count = double(set.rays.size());
-        Json entry = {{"tree", tree_name(kind)},
-                      {"traversal", traversal_name(traversal)},
-                      {"rays", set.name},
-                      {"start", start == Start::root ? "root" : "last hit"},
-                      {"boxes_a_ray", double(counts_.box_tests) / count},
-                      {"triangles_a_ray", double(counts_.triangle_tests) / count},
-                      {"bytes_a_ray", double(counts_.bytes) / count},
-                      {"restarts_a_ray", double(counts_.restarts) / count}};
+        Value entry = {{"tree", tree_name(kind)},
+                       {"traversal", traversal_name(traversal)},
+                       {"rays", set.name},
+                       {"start", start == Start::root ? "root" : "last hit"},
+                       {"boxes_a_ray", double(counts_.box_tests) / count},
+                       {"triangles_a_ray", double(counts_.triangle_tests) / count},
+                       {"bytes_a_ray", double(counts_.bytes) / count},
+                       {"restarts_a_ray", double(counts_.restarts) / count}};
         query.counting = Counting::off;
         std::vector<double> seconds;
         for (int run = 0; run <= options_.runs; ++run) {
@@ -207,12 +204,12 @@ class MeshMeasure {
     int combinations_ = 0;
     uint64_t doubtful_hits_ = 0; ///< that differ, over all casts
     int heap_levels_ = 0;        ///< those of the paper where it has such a mesh
-    Json casts_ = Json::array();
+    Value casts_ = Value::list();
 };
 
-Json make_head(const Paper2Options& options) {
+Value make_head(const Paper2Options& options) {
     const RenderSettings& s = options.settings;
-    Json head = {{"suite", "paper2"}, {"build", describe_build()}, {"machine", describe_machine()}};
+    Value head = {{"suite", "paper2"}, {"build", describe_build()}, {"machine", describe_machine()}};
     head["settings"] = {{"engine", s.device.engine == EngineKind::cpu ? "cpu" : "vulkan"},
                         {"device", s.device.index},
                         {"threads", s.device.threads},
@@ -246,9 +243,9 @@ Paper2Options make_quick_options(Paper2Options options) {
     return options;
 }
 
-Json run_paper2(const Paper2Options& options, const Report& report) {
-    Json result = make_head(options);
-    result["meshes"] = Json::array();
+Value run_paper2(const Paper2Options& options, const Report& report) {
+    Value result = make_head(options);
+    result["meshes"] = Value::list();
     const auto measure = [&](const std::string& name, const Scene& scene) {
         const Report tell = [&](const std::string& line) { report(name + ": " + line); };
         result["meshes"].push_back(MeshMeasure(options, scene, tell).run(name));

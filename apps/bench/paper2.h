@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 #include "lab/scenes/structure_scenes.h"
 #include "relief/render.h"
 
@@ -26,9 +24,6 @@ struct Paper2Options {
 Paper2Options make_quick_options(Paper2Options options);
 
 /// Throws Error{failed} where any two combinations disagree about a hit: then nothing is reported.
-nlohmann::ordered_json run_paper2(const Paper2Options& options, const Report& report);
-
-/// paper2.json, paper2.csv, charts of builds and bytes, and of each mesh and kind of rays.
-std::vector<ReportFile> make_paper2_files(const nlohmann::ordered_json& result);
+Value run_paper2(const Paper2Options& options, const Report& report);
 
 } // namespace relief::bench

@@ -2,16 +2,12 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-const Json* find_build(const Json& mesh, const std::string& tree) {
-    for (const Json& build : mesh["builds"])
+const Value* find_build(const Value& mesh, const std::string& tree) {
+    for (const Value& build : mesh["builds"])
         if (build["tree"] == tree) return &build;
     return nullptr;
 }
@@ -21,20 +17,20 @@ struct CastName {
 };
 
 /// Seconds, 0 where it was not measured.
-double find_seconds(const Json& mesh, const CastName& name) {
-    for (const Json& cast : mesh["casts"])
+double find_seconds(const Value& mesh, const CastName& name) {
+    for (const Value& cast : mesh["casts"])
         if (cast["tree"] == name.tree && cast["traversal"] == name.traversal && cast["rays"] == name.rays &&
             cast["start"] == name.start)
-            return cast["seconds"]["median"];
+            return cast["seconds"]["median"].get<double>();
     return 0;
 }
 
-void add_goal(Json& goals, const std::string& name, double goal, double reached) {
+void add_goal(Value& goals, const std::string& name, double goal, double reached) {
     goals.push_back(
         {{"name", name}, {"goal", goal}, {"reached", reached}, {"unit", "ratio"}, {"met", reached <= goal}});
 }
 
-void add_time_goal(Json& goals, const Json& mesh, const std::string& name, const CastName& cast,
+void add_time_goal(Value& goals, const Value& mesh, const std::string& name, const CastName& cast,
                    const CastName& reference) {
     const double seconds = find_seconds(mesh, cast), reference_seconds = find_seconds(mesh, reference);
     if (seconds > 0 && reference_seconds > 0)
@@ -43,10 +39,10 @@ void add_time_goal(Json& goals, const Json& mesh, const std::string& name, const
 
 } // namespace
 
-Json make_paper2_goals(const Json& result) {
-    Json goals = Json::array();
-    for (const Json& mesh : result["meshes"]) {
-        const Json *heap = find_build(mesh, "heap"), *succinct = find_build(mesh, "succinct lbvh");
+Value make_paper2_goals(const Value& result) {
+    Value goals = Value::list();
+    for (const Value& mesh : result["meshes"]) {
+        const Value *heap = find_build(mesh, "heap"), *succinct = find_build(mesh, "succinct lbvh");
         if (heap && succinct)
             add_goal(goals, mesh["mesh"].get<std::string>() + ", succinct heap against heap, bytes", 0.5,
                      (*succinct)["bytes"].get<double>() / (*heap)["bytes"].get<double>());

@@ -1,11 +1,11 @@
 // What a result says about the worth of the structures, as ratios.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "common/report.h"
 
 namespace relief::bench {
 
 /// A list of {name, goal, reached, unit, met} from the meshes in `result`.
-nlohmann::ordered_json make_paper2_goals(const nlohmann::ordered_json& result);
+Value make_paper2_goals(const Value& result);
 
 } // namespace relief::bench

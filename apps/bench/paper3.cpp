@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/machine.h"
 #include "bench/paper_statement.h"
@@ -17,8 +16,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::array<PaperStatement, 2> kStatements = {
     {{"methods", "the hybrid method is the best on mobile devices"},
@@ -118,11 +115,11 @@ uint64_t count_different_pixels(const Way& way, const Way& reference) {
     return std::max(count(*way.first), count(*way.last));
 }
 
-Json describe_way(const Way& way, const Way* reference) {
-    Json entry = {{"structure", structure_name(way.settings.experiment.structure)},
-                  {"traversal", traversal_name(way.settings.experiment.traversal)},
-                  {"method", method_name(way.settings.experiment.method)},
-                  {"outcome", way.refusal.empty() ? "measured" : "refused"}};
+Value describe_way(const Way& way, const Way* reference) {
+    Value entry = {{"structure", structure_name(way.settings.experiment.structure)},
+                   {"traversal", traversal_name(way.settings.experiment.traversal)},
+                   {"method", method_name(way.settings.experiment.method)},
+                   {"outcome", way.refusal.empty() ? "measured" : "refused"}};
     if (!way.refusal.empty()) {
         entry["reason"] = way.refusal;
         return entry;
@@ -135,12 +132,12 @@ Json describe_way(const Way& way, const Way* reference) {
 }
 
 /// That the pictures of all ways are one; missed where fewer than two ways could be compared.
-Json make_goals(const Json& result) {
-    Json goals = Json::array();
-    for (const Json& scene : result["scenes"]) {
+Value make_goals(const Value& result) {
+    Value goals = Value::list();
+    for (const Value& scene : result["scenes"]) {
         double different = 0;
         int compared = 0;
-        for (const Json& way : scene["ways"]) {
+        for (const Value& way : scene["ways"]) {
             if (!way.contains("pixels_that_differ")) continue;
             different = std::max(different, way["pixels_that_differ"].get<double>());
             ++compared;
@@ -155,9 +152,9 @@ Json make_goals(const Json& result) {
     return goals;
 }
 
-Json make_head(const Paper3Options& options) {
+Value make_head(const Paper3Options& options) {
     const RenderSettings& s = options.settings;
-    Json head = {{"suite", "paper3"}, {"build", describe_build()}, {"machine", describe_machine()}};
+    Value head = {{"suite", "paper3"}, {"build", describe_build()}, {"machine", describe_machine()}};
     head["settings"] = {{"engine", s.device.engine == EngineKind::cpu ? "cpu" : "vulkan"},
                         {"width", s.image.width},
                         {"height", s.image.height},
@@ -185,9 +182,9 @@ class Paper3 {
   public:
     Paper3(const Paper3Options& options, const Report& report) : options_(options), report_(report) {}
 
-    Json run() {
+    Value run() {
         result_ = make_head(options_);
-        result_["scenes"] = Json::array();
+        result_["scenes"] = Value::list();
         const std::vector<std::string> structure_scenes = structure_scene_names();
         for (const std::string& name : options_.scenes) {
             report_("making the scene " + name);
@@ -214,7 +211,7 @@ class Paper3 {
                                     run < 0 ? std::string("warm-up") : fmt::format("run {}", run + 1)));
                 render_way(scene, way, run);
             }
-        Json entry = {{"scene", name}, {"ways", Json::array()}};
+        Value entry = {{"scene", name}, {"ways", Value::list()}};
         for (const Way& way : ways) {
             entry["ways"].push_back(describe_way(way, find_reference(ways)));
             if (way.runs.empty()) continue;
@@ -226,7 +223,7 @@ class Paper3 {
 
     const Paper3Options& options_;
     const Report& report_;
-    Json result_;
+    Value result_;
 };
 
 } // namespace
@@ -240,6 +237,6 @@ Paper3Options make_quick_options(Paper3Options options) {
     return options;
 }
 
-Json run_paper3(const Paper3Options& options, const Report& report) { return Paper3(options, report).run(); }
+Value run_paper3(const Paper3Options& options, const Report& report) { return Paper3(options, report).run(); }
 
 } // namespace relief::bench

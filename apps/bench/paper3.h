@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 #include "lab/scenes/structure_scenes.h"
 #include "relief/render.h"
 
@@ -30,9 +28,6 @@ struct Paper3Options {
 Paper3Options make_quick_options(Paper3Options options);
 
 /// What a device cannot do, or has no memory for, is a result: the reason stands in the place of figures.
-nlohmann::ordered_json run_paper3(const Paper3Options& options, const Report& report);
-
-/// paper3.json, paper3.csv and a chart of the frames and the bytes of each scene.
-std::vector<ReportFile> make_paper3_files(const nlohmann::ordered_json& result);
+Value run_paper3(const Paper3Options& options, const Report& report);
 
 } // namespace relief::bench

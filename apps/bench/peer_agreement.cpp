@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/peers.h"
 #include "relief/error.h"
@@ -176,7 +175,7 @@ void require_agreement(const std::string& scene, const Agreement& agreement) {
          scene, "the programs trace different surfaces: please report this"});
 }
 
-nlohmann::ordered_json describe_agreement(const Agreement& a) {
+Value describe_agreement(const Agreement& a) {
     return {{"rays", a.rays},       {"against", a.against},
             {"count", a.count},     {"hits", a.hits},
             {"missed", a.missed},   {"extra", a.extra},

@@ -3,10 +3,9 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/embree_scene.h"
 #include "bench/peer_rays.h"
+#include "common/report.h"
 
 namespace relief::bench {
 
@@ -39,6 +38,6 @@ Agreement compare_with_tessellated(const TracerProbe& probe, const TracerProbe& 
 /// more than eight, and more than one in a thousand of those that hit.
 void require_agreement(const std::string& scene, const Agreement& agreement);
 
-nlohmann::ordered_json describe_agreement(const Agreement& agreement);
+Value describe_agreement(const Agreement& agreement);
 
 } // namespace relief::bench

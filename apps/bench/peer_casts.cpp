@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/embree_scene.h"
 #include "bench/peer_agreement.h"
@@ -17,13 +16,11 @@ namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<int, 3> kWidths = {1, 8, 16};
 
 /// One way to answer a set of rays, and what it is called in the results.
 struct CastWay {
-    Json labels;
+    Value labels;
     Measure measure;
 };
 
@@ -49,7 +46,7 @@ class CastMeasure {
         scene_.report(scene_.name + ": comparing hits");
         compare(result.agreements);
         result.memory = describe_memory();
-        result.casts = Json::array();
+        result.casts = Value::list();
         for (const PeerRays& set : sets_) {
             scene_.report(fmt::format("{}: {} rays", scene_.name, set.name));
             result.casts.push_back(measure(set));
@@ -71,8 +68,8 @@ class CastMeasure {
         variants_.push_back({settings, isa, std::make_unique<TracerProbe>(scene_.scene, settings)});
     }
 
-    void compare(Json& agreements) {
-        agreements = Json::array();
+    void compare(Value& agreements) {
+        agreements = Value::list();
         const auto add = [&](const Agreement& agreement) {
             agreements.push_back(describe_agreement(agreement));
             require_agreement(scene_.name, agreement);
@@ -89,16 +86,16 @@ class CastMeasure {
     }
 
     /// After all kinds of rays have been traced, so that what they ask for is built.
-    Json describe_memory() const {
+    Value describe_memory() const {
         const ProbeCounts counts = probe_.count();
-        Json memory = {{"patches", counts.patches},
-                       {"micro_quads", counts.micro_quads},
-                       {"triangles", counts.triangles},
-                       {"geometry_bytes", counts.geometry_bytes},
-                       {"structures_bytes", counts.structures_bytes},
-                       {"plain_bytes", counts.plain_bytes},
-                       {"cache_bytes", counts.cache_bytes},
-                       {"bottom_trees_built", counts.trees_built}};
+        Value memory = {{"patches", counts.patches},
+                        {"micro_quads", counts.micro_quads},
+                        {"triangles", counts.triangles},
+                        {"geometry_bytes", counts.geometry_bytes},
+                        {"structures_bytes", counts.structures_bytes},
+                        {"plain_bytes", counts.plain_bytes},
+                        {"cache_bytes", counts.cache_bytes},
+                        {"bottom_trees_built", counts.trees_built}};
         if (counts.patches > 0)
             memory["bytes_a_patch"] =
                 double(counts.geometry_bytes + counts.structures_bytes - counts.plain_bytes) /
@@ -125,7 +122,7 @@ class CastMeasure {
         frame_probes_.push_back(std::make_unique<TracerProbe>(scene_.scene, settings));
         TracerProbe& probe = *frame_probes_.back();
         const auto label = [&](const char* way) {
-            return Json{
+            return Value{
                 {"program", "relief"}, {"way", way}, {"threads", settings.device.threads}, {"isa", isa}};
         };
         ways.push_back({label("frame"), [&probe] { return probe.trace_camera().seconds; }});
@@ -163,19 +160,19 @@ class CastMeasure {
         return ways;
     }
 
-    Json measure(const PeerRays& set) {
+    Value measure(const PeerRays& set) {
         const std::vector<CastWay> ways = list_ways(set);
         std::vector<Measure> measures;
         for (const CastWay& way : ways) measures.push_back(way.measure);
         const std::vector<std::vector<double>> seconds = time_in_turn(measures, scene_.runs);
-        Json cast = {{"rays", set.name},
-                     {"kind", set.kind == HitKind::any ? "any" : "closest"},
-                     {"coherent", set.is_coherent},
-                     {"count", set.rays.size()},
-                     {"hits", probe_.trace(set.rays, set.kind, RayGrouping::packets).hit_count},
-                     {"ways", Json::array()}};
+        Value cast = {{"rays", set.name},
+                      {"kind", set.kind == HitKind::any ? "any" : "closest"},
+                      {"coherent", set.is_coherent},
+                      {"count", set.rays.size()},
+                      {"hits", probe_.trace(set.rays, set.kind, RayGrouping::packets).hit_count},
+                      {"ways", Value::list()}};
         for (size_t k = 0; k < ways.size(); ++k) {
-            Json entry = ways[k].labels;
+            Value entry = ways[k].labels;
             entry["seconds"] = summarize(seconds[k]);
             entry["rays_per_s"] = double(set.rays.size()) / entry["seconds"]["median"].get<double>();
             cast["ways"].push_back(std::move(entry));

@@ -6,7 +6,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/embree_scene.h"
 #include "bench/peers.h"
@@ -15,8 +14,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Values of all runs by name.
 using Record = std::map<std::string, std::vector<double>>;
@@ -34,7 +31,7 @@ class ColdMeasure {
           diffuse_(find_rays(sets, "diffuse_1")),
           surface_(scene.scene, scene.settings) {}
 
-    Json run() {
+    Value run() {
         for (int run = 0; run <= scene_.runs; ++run) {
             scene_.report(fmt::format("{}: first images, {}", scene_.name,
                                       run == 0 ? std::string("warm-up") : fmt::format("run {}", run)));
@@ -43,14 +40,14 @@ class ColdMeasure {
             for (const EmbreeWay way : kEmbreeWays)
                 if (way != EmbreeWay::triangles || scene_.has_triangles) run_embree(way);
         }
-        Json result;
+        Value result;
         for (auto& [way, record] : records_) result[way] = describe(record);
         return result;
     }
 
   private:
-    static Json describe(const Record& record) {
-        Json result;
+    static Value describe(const Record& record) {
+        Value result;
         for (const std::string& part : kParts)
             if (const auto found = record.find(part); found != record.end())
                 result[part] = summarize(found->second);
@@ -129,7 +126,7 @@ class ColdMeasure {
 
 } // namespace
 
-Json measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets) {
+Value measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets) {
     return ColdMeasure(scene, sets).run();
 }
 

@@ -3,16 +3,15 @@
 
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/peer_rays.h"
 #include "bench/peer_scene.h"
+#include "common/report.h"
 
 namespace relief::bench {
 
 /// {relief, triangles, grid, subdivision}, each with seconds of its parts (prepare, tessellate, build,
 /// primary, occlusion, diffuse), of the images first_primary, first_occlusion and first_diffuse, bytes, and
 /// the peak of what it took resident; in turns.
-nlohmann::ordered_json measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets);
+Value measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets);
 
 } // namespace relief::bench

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/machine.h"
 #include "bench/peer_casts.h"
@@ -20,8 +19,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr float kRough = 1, kMild = 0.3f;
 constexpr const char* kParty = "party";
@@ -57,7 +54,7 @@ class Peers {
         settings_.image.spp = 1;
     }
 
-    Json run() {
+    Value run() {
         check_scenes();
         begin();
         // First, while the process has held nothing else.
@@ -99,7 +96,7 @@ class Peers {
                      {"tessellated_limit_bytes", options_.tessellated_limit_bytes},
                      {"scenes", options_.scenes}}},
                    {"embree_version", embree_version()},
-                   {"scenes", Json::array()}};
+                   {"scenes", Value::list()}};
     }
 
     void measure_party() {
@@ -127,7 +124,7 @@ class Peers {
         const TracerProbe probe(scene, settings);
         const std::vector<PeerRays> sets = make_peer_rays(probe, scene.camera);
         PeerCasts casts = measure_casts(peer, probe, sets);
-        Json entry = {{"scene", name}, {"level", format_level(level)}, {"isa", probe.isa()}};
+        Value entry = {{"scene", name}, {"level", format_level(level)}, {"isa", probe.isa()}};
         if (!has_triangles)
             entry["triangles_left_out"] = fmt::format("they would need {} bytes, the limit of this run is {}",
                                                       bytes, options_.tessellated_limit_bytes);
@@ -140,14 +137,14 @@ class Peers {
     }
 
     /// Relief's own paths, all surfaces white: seconds a ray by depth.
-    Json measure_bounces(const PeerScene& peer) const {
+    Value measure_bounces(const PeerScene& peer) const {
         RenderSettings settings = peer.settings;
         settings.image.bounces = kPeerBounces;
         std::vector<Variant> variants = {{peer.name + ": paths", settings, {}, {}}};
         measure_in_turn(make_white(peer.scene), peer.runs, variants, peer.report);
-        Json bounces = Json::array();
+        Value bounces = Value::list();
         if (!variants[0].refusal.empty()) return bounces;
-        for (const Json& cast : describe_casts(variants[0].runs))
+        for (const Value& cast : describe_casts(variants[0].runs))
             if (cast["kind"] == "bounce" && cast["rays"].get<double>() > 0)
                 bounces.push_back({{"depth", cast["depth"]},
                                    {"rays", cast["rays"]},
@@ -160,7 +157,7 @@ class Peers {
     const PeersOptions& options_;
     const Report& report_;
     RenderSettings settings_;
-    Json result_;
+    Value result_;
 };
 
 } // namespace
@@ -193,6 +190,6 @@ PeersOptions make_quick_options(PeersOptions options) {
     return options;
 }
 
-Json run_peers(const PeersOptions& options, const Report& report) { return Peers(options, report).run(); }
+Value run_peers(const PeersOptions& options, const Report& report) { return Peers(options, report).run(); }
 
 } // namespace relief::bench

@@ -4,11 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/embree_scene.h"
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 
@@ -39,9 +37,6 @@ std::string format_level(int level);
 
 /// Throws Error{usage} for an unknown scene, Error{failed} where the programs do not meet the same surface,
 /// and what preparing a scene throws.
-nlohmann::ordered_json run_peers(const PeersOptions& options, const Report& report);
-
-/// peers.json, peers.csv, peers_goals.md and charts: first images, and each kind of rays.
-std::vector<ReportFile> make_peers_files(const nlohmann::ordered_json& result);
+Value run_peers(const PeersOptions& options, const Report& report);
 
 } // namespace relief::bench

@@ -7,13 +7,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kBytesAPatch = 64, kBytesAMicroQuad = 14, kPartyPeakMebibytes = 512;
 constexpr double kColdPrimary = 12, kColdPrimaryTriangles = 60, kColdSecond = 3, kColdSecondTriangles = 10;
@@ -23,7 +20,7 @@ constexpr double kDepthRatio = 1.3, kTwoThreads = 1.9, kAvx2 = 0.7;
 /// Ratio of a goal that nothing is to be left, where nothing is.
 constexpr double kReachedFully = 1;
 
-std::optional<double> get_median(const Json& parts, const char* part) {
+std::optional<double> get_median(const Value& parts, const char* part) {
     if (!parts.contains(part)) return std::nullopt;
     return parts[part]["median"].get<double>();
 }
@@ -34,10 +31,10 @@ struct WayKey {
     int threads;
 };
 
-std::optional<double> find_seconds(const Json& cast, const WayKey& key) {
-    for (const Json& way : cast["ways"]) {
+std::optional<double> find_seconds(const Value& cast, const WayKey& key) {
+    for (const Value& way : cast["ways"]) {
         const auto fits = [&](const char* label, std::string_view wanted) {
-            return wanted.empty() || way.value(label, "") == wanted;
+            return wanted.empty() || way.text_or_empty(label) == wanted;
         };
         if (fits("program", key.program) && fits("way", key.way) && fits("call", key.call) &&
             fits("isa", key.isa) && (key.threads == 0 || way["threads"] == key.threads))
@@ -48,7 +45,9 @@ std::optional<double> find_seconds(const Json& cast, const WayKey& key) {
 
 class GoalList {
   public:
-    void set_place(const Json& scene) { scene_ = scene["scene"], level_ = scene["level"]; }
+    void set_place(const Value& scene) {
+        scene_ = scene["scene"].get<std::string>(), level_ = scene["level"].get<std::string>();
+    }
 
     void add_most(const std::string& name, double goal, std::optional<double> reached, const char* unit) {
         if (reached)
@@ -62,7 +61,7 @@ class GoalList {
         add(name, goal, reached, "at least", reached / goal, "times");
     }
 
-    Json take() { return std::move(goals_); }
+    Value take() { return std::move(goals_); }
 
   private:
     void add(const std::string& name, double goal, double reached, const char* bound, double ratio,
@@ -80,11 +79,11 @@ class GoalList {
              {"met", ratio >= 1}});
     }
 
-    Json goals_ = Json::array();
+    Value goals_ = Value::list();
     std::string scene_, level_;
 };
 
-std::optional<double> find_best(const Json& cold, const char* part) {
+std::optional<double> find_best(const Value& cold, const char* part) {
     std::optional<double> best;
     for (const char* way : {"triangles", "grid", "subdivision"})
         if (cold.contains(way))
@@ -93,7 +92,7 @@ std::optional<double> find_best(const Json& cold, const char* part) {
     return best;
 }
 
-void add_cold_goals(const Json& cold, GoalList& goals) {
+void add_cold_goals(const Value& cold, GoalList& goals) {
     struct Image {
         const char *part, *name;
         double best, triangles;
@@ -111,8 +110,8 @@ void add_cold_goals(const Json& cold, GoalList& goals) {
     }
 }
 
-void add_cast_goals(const Json& cast, const std::string& isa, int threads, GoalList& goals) {
-    const std::string rays = cast["rays"];
+void add_cast_goals(const Value& cast, const std::string& isa, int threads, GoalList& goals) {
+    const std::string rays = cast["rays"].get<std::string>();
     const std::string call = cast["kind"] == "any" ? "rtcOccluded" : "rtcIntersect";
     const auto relief = [&](const char* way, const std::string& set, int count) {
         return find_seconds(cast, {"relief", way, "", set, count});
@@ -130,7 +129,7 @@ void add_cast_goals(const Json& cast, const std::string& isa, int threads, GoalL
                         relief(frame, isa, threads));
         goals.add_least("avx2 of avx512, pinhole primary", kAvx2, relief(frame, "avx512", threads),
                         relief(frame, "avx2", threads));
-    } else if (cast["coherent"]) {
+    } else if (cast["coherent"].get<bool>()) {
         goals.add_least(fmt::format("{}, {}16 on triangles", rays, call), kCoherent, embree("triangles", 16),
                         own);
     } else {
@@ -145,9 +144,9 @@ void add_cast_goals(const Json& cast, const std::string& isa, int threads, GoalL
                     relief("rays", "avx2", threads));
 }
 
-void add_bounce_goal(const Json& bounces, GoalList& goals) {
+void add_bounce_goal(const Value& bounces, GoalList& goals) {
     std::optional<double> first, last;
-    for (const Json& bounce : bounces) {
+    for (const Value& bounce : bounces) {
         if (bounce["depth"] == 1) first = bounce["seconds_a_ray"].get<double>();
         if (bounce["depth"] == 5) last = bounce["seconds_a_ray"].get<double>();
     }
@@ -157,10 +156,10 @@ void add_bounce_goal(const Json& bounces, GoalList& goals) {
 
 /// Rays that differ from Embree's triangles elsewhere than at edges or where they graze, or from the
 /// tessellated surface at all.
-void add_agreement_goal(const Json& agreements, GoalList& goals) {
+void add_agreement_goal(const Value& agreements, GoalList& goals) {
     double unexplained = 0;
     bool has_any = false;
-    for (const Json& a : agreements)
+    for (const Value& a : agreements)
         if (a["against"] == "Embree triangles" || a["against"] == "tessellated") {
             has_any = true;
             unexplained += a["missed"].get<double>() + a["extra"].get<double>() + a["depth"].get<double>() -
@@ -171,27 +170,28 @@ void add_agreement_goal(const Json& agreements, GoalList& goals) {
 
 } // namespace
 
-Json make_peers_goals(const Json& result) {
+Value make_peers_goals(const Value& result) {
     GoalList goals;
     if (result.contains("party"))
         goals.add_most("party, peak resident of this process, making the scene included", kPartyPeakMebibytes,
                        result["party"]["peak_resident_bytes"].get<double>() / (1 << 20), "MiB");
-    const auto is_goal_level = [](const Json& scene) {
+    const auto is_goal_level = [](const Value& scene) {
         return scene["level"] == "5" || scene["level"] == "auto";
     };
-    const Json& scenes = result["scenes"];
+    const Value& scenes = result["scenes"];
     const bool has_goal_level = std::any_of(scenes.begin(), scenes.end(), is_goal_level);
-    for (const Json& scene : scenes) {
+    for (const Value& scene : scenes) {
         if (has_goal_level && !is_goal_level(scene)) continue;
         goals.set_place(scene);
-        const Json& memory = scene["memory"];
+        const Value& memory = scene["memory"];
         for (const auto& [part, goal] :
              {std::pair("bytes_a_patch", kBytesAPatch), {"bytes_a_micro_quad", kBytesAMicroQuad}})
             if (memory.contains(part)) goals.add_most(part, goal, memory[part].get<double>(), "bytes");
         add_agreement_goal(scene["agreement"], goals);
         add_cold_goals(scene["cold"], goals);
-        for (const Json& cast : scene["casts"])
-            add_cast_goals(cast, scene["isa"], result["settings"]["threads"], goals);
+        for (const Value& cast : scene["casts"])
+            add_cast_goals(cast, scene["isa"].get<std::string>(), result["settings"]["threads"].get<int>(),
+                           goals);
         add_bounce_goal(scene["bounces"], goals);
     }
     return goals.take();

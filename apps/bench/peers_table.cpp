@@ -3,7 +3,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/peers_goals.h"
 
@@ -11,31 +10,29 @@ namespace relief::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string get_column(const Json& goal) {
+std::string get_column(const Value& goal) {
     return fmt::format("{}, {}", goal["scene"].get<std::string>(), goal["level"].get<std::string>());
 }
 
 /// In the order in which they come.
-template <class Get> std::vector<std::string> list_distinct(const Json& goals, Get get) {
+template <class Get> std::vector<std::string> list_distinct(const Value& goals, Get get) {
     std::vector<std::string> names;
-    for (const Json& goal : goals)
+    for (const Value& goal : goals)
         if (const std::string name = get(goal); std::find(names.begin(), names.end(), name) == names.end())
             names.push_back(name);
     return names;
 }
 
-std::string format_cell(const Json& goal) {
+std::string format_cell(const Value& goal) {
     const std::string reached = fmt::format("{:.3g}", goal["reached"].get<double>());
     return goal["met"].get<bool>() ? reached
                                    : fmt::format("**{}** ({:.2g})", reached, goal["ratio"].get<double>());
 }
 
-std::string make_row(const Json& goals, const std::string& what, const std::vector<std::string>& columns) {
+std::string make_row(const Value& goals, const std::string& what, const std::vector<std::string>& columns) {
     std::string bound;
     std::vector<std::string> cells(columns.size());
-    for (const Json& goal : goals) {
+    for (const Value& goal : goals) {
         if (goal["what"] != what) continue;
         bound = fmt::format("{} {:g} {}", goal["bound"].get<std::string>(), goal["goal"].get<double>(),
                             goal["unit"].get<std::string>());
@@ -47,10 +44,10 @@ std::string make_row(const Json& goals, const std::string& what, const std::vect
 
 } // namespace
 
-std::string make_goal_table(const Json& goals) {
-    Json places = Json::array();
+std::string make_goal_table(const Value& goals) {
+    Value places = Value::list();
     std::string text;
-    for (const Json& goal : goals) {
+    for (const Value& goal : goals) {
         if (!goal["scene"].get<std::string>().empty())
             places.push_back(goal);
         else
@@ -64,7 +61,7 @@ std::string make_goal_table(const Json& goals) {
     for (size_t k = 0; k < columns.size(); ++k) text += "---|";
     text += "\n";
     for (const std::string& what :
-         list_distinct(places, [](const Json& goal) { return goal["what"].get<std::string>(); }))
+         list_distinct(places, [](const Value& goal) { return goal["what"].get<std::string>(); }))
         text += make_row(places, what, columns);
     return text;
 }

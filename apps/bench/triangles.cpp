@@ -7,7 +7,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/embree_scene.h"
 #include "bench/machine.h"
@@ -17,8 +16,6 @@
 namespace relief::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kTraceGoal = 1.2, kBuildGoal = 1.5;
 
@@ -62,7 +59,7 @@ size_t count_differences(std::span<const TreeHit> a, std::span<const TreeHit> b)
     return count;
 }
 
-double get_median(const Json& part) { return part["median"].get<double>(); }
+double get_median(const Value& part) { return part["median"].get<double>(); }
 
 Scene make_bare_scene(const Mesh& mesh) {
     Scene scene;
@@ -106,7 +103,7 @@ struct Contest {
     }
 };
 
-Json measure_rays(const Contest& contest, const RaySet& set, int runs) {
+Value measure_rays(const Contest& contest, const RaySet& set, int runs) {
     const std::vector<TreeHit> fast = contest.fast.trace(set.rays, {}).hits;
     const std::vector<TreeHit> robust = contest.robust.trace(set.rays, {}).hits;
     const std::vector<TreeHit> single = contest.find_hits(set, RayGrouping::single);
@@ -116,34 +113,34 @@ Json measure_rays(const Contest& contest, const RaySet& set, int runs) {
                                        [&] { return contest.time_relief(set, RayGrouping::single); },
                                        [&] { return contest.time_relief(set, RayGrouping::packets); }},
                                       runs);
-    Json cast = {{"rays", set.name},
-                 {"count", set.rays.size()},
-                 {"hits", std::count_if(single.begin(), single.end(),
-                                        [](const TreeHit& hit) { return hit.primitive != kNoIndex; })},
-                 {"differences_from_embree", count_differences(single, fast)},
-                 {"differences_from_embree_robust", count_differences(single, robust)},
-                 {"differences_of_packets", count_differences(single, packets)},
-                 {"embree_s", summarize(seconds[0])},
-                 {"embree_robust_s", summarize(seconds[1])},
-                 {"relief_single_s", summarize(seconds[2])},
-                 {"relief_packets_s", summarize(seconds[3])}};
+    Value cast = {{"rays", set.name},
+                  {"count", set.rays.size()},
+                  {"hits", std::count_if(single.begin(), single.end(),
+                                         [](const TreeHit& hit) { return hit.primitive != kNoIndex; })},
+                  {"differences_from_embree", count_differences(single, fast)},
+                  {"differences_from_embree_robust", count_differences(single, robust)},
+                  {"differences_of_packets", count_differences(single, packets)},
+                  {"embree_s", summarize(seconds[0])},
+                  {"embree_robust_s", summarize(seconds[1])},
+                  {"relief_single_s", summarize(seconds[2])},
+                  {"relief_packets_s", summarize(seconds[3])}};
     cast["ratio"] = get_median(cast["relief_single_s"]) / get_median(cast["embree_s"]);
     cast["ratio_robust"] = get_median(cast["relief_single_s"]) / get_median(cast["embree_robust_s"]);
     cast["ratio_packets"] = get_median(cast["relief_packets_s"]) / get_median(cast["embree_s"]);
     return cast;
 }
 
-Json measure_build(const Contest& contest, int runs) {
+Value measure_build(const Contest& contest, int runs) {
     const auto seconds = time_in_turn({[&] { return EmbreeScene(contest.mesh, EmbreeMode::fast).build_s(); },
                                        [&] { return contest.relief.measure_build(); }},
                                       runs);
-    Json build = {{"embree_s", summarize(seconds[0])}, {"relief_s", summarize(seconds[1])}};
+    Value build = {{"embree_s", summarize(seconds[0])}, {"relief_s", summarize(seconds[1])}};
     build["ratio"] = get_median(build["relief_s"]) / get_median(build["embree_s"]);
     build["relief_bytes"] = contest.relief.count().structures_bytes;
     return build;
 }
 
-Json measure_mesh(const Scene& scene, const TrianglesOptions& options, const Report& report) {
+Value measure_mesh(const Scene& scene, const TrianglesOptions& options, const Report& report) {
     const Mesh mesh = cut_into_triangles(scene.meshes.at(0));
     report(fmt::format("{}: {} triangles", mesh.name, mesh.face_sizes.size()));
     const Contest contest(mesh, options);
@@ -152,14 +149,14 @@ Json measure_mesh(const Scene& scene, const TrianglesOptions& options, const Rep
     const std::vector<RaySet> secondary = make_secondary_rays(mesh, primary, hits, {0, 1, 0});
     const RaySet& diffuse = *std::find_if(secondary.begin(), secondary.end(),
                                           [](const RaySet& set) { return set.name == "diffuse"; });
-    Json result = {{"name", mesh.name}, {"triangles", mesh.face_sizes.size()}};
+    Value result = {{"name", mesh.name}, {"triangles", mesh.face_sizes.size()}};
     result["build"] = measure_build(contest, options.runs);
-    result["casts"] = {measure_rays(contest, primary, options.runs),
-                       measure_rays(contest, diffuse, options.runs)};
+    result["casts"] = Value::list(
+        {measure_rays(contest, primary, options.runs), measure_rays(contest, diffuse, options.runs)});
     return result;
 }
 
-void add_goal(Json& goals, const std::string& name, double goal, double reached) {
+void add_goal(Value& goals, const std::string& name, double goal, double reached) {
     goals.push_back({{"name", name},
                      {"goal", goal},
                      {"reached", reached},
@@ -176,47 +173,28 @@ TrianglesOptions make_quick_options(TrianglesOptions options) {
     return options;
 }
 
-Json run_triangles(const TrianglesOptions& options, const Report& report) {
-    Json result = {
+Value run_triangles(const TrianglesOptions& options, const Report& report) {
+    Value result = {
         {"suite", "triangles"},
         {"build", describe_build()},
         {"machine", describe_machine()},
         {"settings", {{"runs", options.runs}, {"width", options.width}, {"height", options.height}}},
-        {"meshes", Json::array()},
-        {"goals", Json::array()}};
+        {"meshes", Value::list()},
+        {"goals", Value::list()}};
     std::vector<Scene> scenes = {make_structure_scene("body", options.detail),
                                  make_structure_scene("hall", options.detail)};
     scenes.insert(scenes.end(), options.meshes.begin(), options.meshes.end());
     for (const Scene& scene : scenes) {
-        const Json measured = measure_mesh(scene, options, report);
-        const std::string name = measured["name"];
-        for (const Json& cast : measured["casts"])
+        const Value measured = measure_mesh(scene, options, report);
+        const std::string name = measured["name"].get<std::string>();
+        for (const Value& cast : measured["casts"])
             add_goal(result["goals"],
                      fmt::format("{}: {} rays, one at a time", name, cast["rays"].get<std::string>()),
-                     kTraceGoal, cast["ratio"]);
-        add_goal(result["goals"], name + ": build", kBuildGoal, measured["build"]["ratio"]);
+                     kTraceGoal, cast["ratio"].get<double>());
+        add_goal(result["goals"], name + ": build", kBuildGoal, measured["build"]["ratio"].get<double>());
         result["meshes"].push_back(measured);
     }
     return result;
-}
-
-std::vector<ReportFile> make_triangles_files(const Json& result) {
-    std::string csv = "mesh,triangles,part,count,embree_s,embree_robust_s,relief_single_s,relief_packets_s,"
-                      "ratio,differences\n";
-    for (const Json& mesh : result["meshes"]) {
-        const std::string start =
-            fmt::format("{},{}", mesh["name"].get<std::string>(), mesh["triangles"].get<size_t>());
-        const Json& build = mesh["build"];
-        csv += fmt::format("{},build,,{:.6g},,{:.6g},,{:.4g},\n", start, get_median(build["embree_s"]),
-                           get_median(build["relief_s"]), build["ratio"].get<double>());
-        for (const Json& cast : mesh["casts"])
-            csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.4g},{}\n", start,
-                               cast["rays"].get<std::string>(), cast["count"].get<size_t>(),
-                               get_median(cast["embree_s"]), get_median(cast["embree_robust_s"]),
-                               get_median(cast["relief_single_s"]), get_median(cast["relief_packets_s"]),
-                               cast["ratio"].get<double>(), cast["differences_from_embree"].get<size_t>());
-    }
-    return {{"triangles.json", result.dump(1) + "\n"}, {"triangles.csv", csv}};
 }
 
 } // namespace relief::bench

@@ -3,10 +3,8 @@
 
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
-#include "bench/report_file.h"
+#include "common/report.h"
 #include "lab/scenes/structure_scenes.h"
 #include "relief/render.h"
 #include "relief/scene.h"
@@ -24,9 +22,6 @@ struct TrianglesOptions {
 TrianglesOptions make_quick_options(TrianglesOptions options);
 
 /// Builds both trees, compares all hits, then times. Throws Error as TracerProbe does.
-nlohmann::ordered_json run_triangles(const TrianglesOptions& options, const Report& report);
-
-/// triangles.json and triangles.csv.
-std::vector<ReportFile> make_triangles_files(const nlohmann::ordered_json& result);
+Value run_triangles(const TrianglesOptions& options, const Report& report);
 
 } // namespace relief::bench

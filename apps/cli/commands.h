@@ -1,15 +1,9 @@
 // The verbs of the command line: each adds its options to a subcommand and returns what runs it.
 #pragma once
 
-#include <functional>
-
-#include "cli_app.h"
+#include "common/command_line.h"
 
 namespace relief::cli {
-
-/// Runs a verb whose options have been parsed and returns the exit code; bad input and failures are
-/// relief::Error.
-using Command = std::function<int()>;
 
 Command add_render(CLI::App& verb);
 Command add_inspect(CLI::App& verb);
@@ -18,6 +12,7 @@ Command add_scene(CLI::App& verb);
 Command add_compare(CLI::App& verb);
 Command add_merge(CLI::App& verb);
 Command add_devices(CLI::App& verb);
+/// All words after `bench` go to the program relief-bench, which takes the place of this one.
 Command add_bench(CLI::App& verb);
 
 /// Parses the command line, runs its verb, reports errors on stderr. Returns the exit code.

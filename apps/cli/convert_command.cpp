@@ -12,14 +12,14 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
-#include "values.h"
 
 namespace relief::cli {
 

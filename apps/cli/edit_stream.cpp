@@ -8,17 +8,15 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/suggest.h"
+#include "common/report.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
 namespace relief::cli {
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 5> kKeys = {"displacement", "tile", "at", "texels", "output"};
 constexpr const char* kForm = R"(write {"at": [column, row], "texels": "part.exr", "output": "next.exr"})";
@@ -27,22 +25,30 @@ constexpr const char* kForm = R"(write {"at": [column, row], "texels": "part.exr
     throw Error(ErrorKind::bad_input, {std::move(message), "", std::move(hint)});
 }
 
-void check_keys(const Json& json) {
-    if (!json.is_object()) refuse("an edit is one JSON object a line", kForm);
-    for (const auto& [key, value] : json.items())
-        if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
-            refuse(fmt::format("unknown key '{}'", key), suggest_word(key, kKeys));
+Value read_object(const std::string& text) {
+    Value json;
+    try {
+        json = read_json(text);
+    } catch (const Error&) {
+        refuse("this is no JSON", kForm);
+    }
+    if (json.kind() != Value::Kind::record) refuse("an edit is one JSON object a line", kForm);
+    for (const Member& member : json.members())
+        if (std::find(kKeys.begin(), kKeys.end(), member.name) == kKeys.end())
+            refuse(fmt::format("unknown key '{}'", member.name), suggest_word(member.name, kKeys));
+    return json;
 }
 
-uint32_t get_whole_number(const Json& value, const char* key) {
-    if (!value.is_number_unsigned() || value.get<uint64_t>() > std::numeric_limits<int32_t>::max())
+uint32_t get_whole_number(const Value& value, const char* key) {
+    if (value.kind() != Value::Kind::integer || value < 0 || value > std::numeric_limits<int32_t>::max())
         refuse(fmt::format("'{}' must be whole and not negative", key), kForm);
     return value.get<uint32_t>();
 }
 
-std::string get_text(const Json& json, const char* key) {
-    if (!json.contains(key) || !json[key].is_string()) refuse(fmt::format("'{}' must be a text", key), kForm);
-    return json[key];
+std::string get_text(const Value& json, const char* key) {
+    if (!json.contains(key) || json[key].kind() != Value::Kind::text)
+        refuse(fmt::format("'{}' must be a text", key), kForm);
+    return json[key].get<std::string>();
 }
 
 } // namespace
@@ -65,16 +71,14 @@ std::optional<EditLine> EditStream::next() {
 }
 
 EditLine EditStream::parse(const std::string& text) const {
-    const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded()) refuse("this is no JSON", kForm);
-    check_keys(json);
+    const Value json = read_object(text);
     EditLine line;
     line.edit.displacement =
         json.contains("displacement") ? get_text(json, "displacement") : only_displacement_;
     if (line.edit.displacement.empty())
         refuse("'displacement' is missing", "the scene has none or several: name one");
     if (json.contains("tile")) line.edit.udim = int(get_whole_number(json["tile"], "tile"));
-    if (!json.contains("at") || !json["at"].is_array() || json["at"].size() != 2)
+    if (!json.contains("at") || json["at"].kind() != Value::Kind::list || json["at"].size() != 2)
         refuse("'at' must be two numbers, column and row", kForm);
     line.edit.x = get_whole_number(json["at"][0], "at"), line.edit.y = get_whole_number(json["at"][1], "at");
     line.edit.texels = read_texture(get_text(json, "texels"));

@@ -9,19 +9,19 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/option_names.h"
+#include "common/report.h"
+#include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
-#include "option_names.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/render.h"
-#include "values.h"
 
 namespace relief::cli {
 
@@ -179,19 +179,18 @@ void print_inspection(const Inspection& inspection) {
     for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
     for (const Fact& fact : inspection.facts) fmt::print("{:<{}}  {}\n", fact.name, width, fact.value);
     for (const Finding& finding : inspection.findings)
-        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code, name_options(finding.text));
+        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code,
+                   name_options(finding.text));
 }
 
 void print_inspection_json(const Inspection& inspection, const std::string& file) {
-    nlohmann::ordered_json json = {{"file", file},
-                                   {"facts", nlohmann::ordered_json::object()},
-                                   {"findings", nlohmann::ordered_json::array()}};
+    Value json = {{"file", file}, {"facts", Value::record()}, {"findings", Value::list()}};
     for (const Fact& fact : inspection.facts) json["facts"][fact.name] = fact.value;
     for (const Finding& finding : inspection.findings)
         json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
                                     {"code", finding.code},
                                     {"text", name_options(finding.text)}});
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}", write_json(json, 2));
 }
 
 void check_options(const InspectOptions& options) {

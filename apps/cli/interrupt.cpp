@@ -6,7 +6,7 @@
 #include <ctime>
 #include <unistd.h>
 
-#include "exit_codes.h"
+#include "common/exit_codes.h"
 
 namespace relief::cli {
 

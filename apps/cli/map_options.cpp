@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "values.h"
+#include "common/values.h"
 
 namespace relief::cli {
 

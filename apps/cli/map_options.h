@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli_app.h"
+#include "common/cli_app.h"
 #include "relief/io.h"
 
 namespace relief::cli {

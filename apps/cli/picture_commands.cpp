@@ -7,15 +7,15 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/report.h"
+#include "common/values.h"
 #include "inputs.h"
 #include "relief/error.h"
 #include "relief/image.h"
 #include "relief/io.h"
-#include "values.h"
 
 namespace relief::cli {
 
@@ -38,10 +38,10 @@ int run_compare(const CompareOptions& options) {
     const ImageDifference d =
         compare_images(read_image(options.a), read_image(options.b), options.layer, options.threshold);
     if (options.is_json) {
-        const nlohmann::ordered_json json = {
+        const Value json = {
             {"pixels", d.pixels}, {"one_only", d.one_only}, {"over_threshold", d.over_threshold},
             {"max", d.max},       {"mean", d.mean},         {"rms", d.rms}};
-        fmt::print("{}\n", json.dump());
+        fmt::print("{}\n", write_json(json));
     } else {
         fmt::print("pixels          {}\nin one only     {}\nover threshold  {}\nmax             {:.6g}\n"
                    "mean            {:.6g}\nrms             {:.6g}\n",

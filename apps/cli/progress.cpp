@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "common/report.h"
 #include "interrupt.h"
 
 namespace relief::cli {
@@ -41,15 +41,15 @@ std::string format_progress(const Progress& progress) {
 }
 
 std::string format_progress_json(const Progress& progress) {
-    nlohmann::ordered_json line = {{"percent", 100 * progress.fraction},
-                                   {"samples", progress.samples_done},
-                                   {"samples_total", progress.samples_total},
-                                   {"rays", progress.rays},
-                                   {"rays_per_second", compute_rays_per_second(progress)},
-                                   {"elapsed_s", progress.elapsed_s}};
+    Value line = {{"percent", 100 * progress.fraction},
+                  {"samples", progress.samples_done},
+                  {"samples_total", progress.samples_total},
+                  {"rays", progress.rays},
+                  {"rays_per_second", compute_rays_per_second(progress)},
+                  {"elapsed_s", progress.elapsed_s}};
     const double left = compute_left(progress);
-    line["left_s"] = left < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(left);
-    return line.dump();
+    line["left_s"] = left < 0 ? Value() : Value(left);
+    return write_json(line);
 }
 
 ProgressPrinter::ProgressPrinter(ProgressStyle style)

@@ -13,11 +13,12 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "common/exit_codes.h"
+#include "common/report.h"
+#include "common/values.h"
 #include "edit_stream.h"
-#include "exit_codes.h"
 #include "inputs.h"
 #include "interrupt.h"
 #include "output.h"
@@ -28,8 +29,7 @@
 #include "relief/render.h"
 #include "relief/session.h"
 #include "render_options.h"
-#include "statistics_json.h"
-#include "values.h"
+#include "statistics_report.h"
 
 namespace relief::cli {
 
@@ -51,7 +51,7 @@ Scene load_input(const RenderOptions& options) {
 
 void write_statistics(const std::filesystem::path& file, const RenderResult& result,
                       const RenderSettings& settings) {
-    write_text_file(file, make_statistics_json(result, settings).dump(2) + "\n");
+    write_text_file(file, write_json(describe_statistics(result, settings), 2));
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
-#include "values.h"
 
 namespace relief::cli {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cli_app.h"
-#include "engine_options.h"
+#include "common/cli_app.h"
+#include "common/engine_options.h"
 #include "progress.h"
 #include "relief/io.h"
 #include "relief/render.h"

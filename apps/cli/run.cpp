@@ -1,10 +1,5 @@
-#include <cstdio>
-#include <exception>
-#include <memory>
-#include <new>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,15 +7,12 @@
 
 #include "base/suggest.h"
 #include "commands.h"
-#include "option_names.h"
+#include "common/command_line.h"
 #include "relief/error.h"
 
 namespace relief::cli {
 
 namespace {
-
-constexpr int kExitFailed = int(ErrorKind::failed);
-constexpr int kExitOutOfMemory = int(ErrorKind::out_of_memory);
 
 struct Verb {
     CLI::App* app;
@@ -45,99 +37,35 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     return verbs;
 }
 
-[[noreturn]] void refuse_word(const std::string& word, const std::string& what,
-                              const std::vector<std::string>& known, const std::string& help) {
-    const std::vector<std::string_view> views(known.begin(), known.end());
-    std::string hint = suggest_word(word, views);
-    if (hint.empty()) hint = help;
-    throw Error(ErrorKind::usage, {fmt::format("unknown {} '{}'", what, word), "", hint});
-}
-
-std::vector<std::string> get_option_names(const CLI::App& verb) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : verb.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-    }
-    return names;
-}
-
-void refuse_extras(const CLI::App& verb) {
-    const std::vector<std::string> extras = verb.remaining();
-    if (extras.empty()) return;
-    const std::string help = fmt::format("relief {} --help lists the options", verb.get_name());
-    for (const std::string& extra : extras) {
-        if (extra.size() > 1 && extra[0] == '-')
-            refuse_word(extra.substr(0, extra.find('=')), "option", get_option_names(verb), help);
-    }
-    throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extras.front()), "", help});
-}
-
 int run_verb(CLI::App& app, const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs) {
         if (!verb.app->parsed()) continue;
-        refuse_extras(*verb.app);
+        if (!verb.app->get_prefix_command()) refuse_extras(*verb.app, "relief " + verb.app->get_name());
         return verb.command();
     }
-    std::vector<std::string> names;
-    for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
     const std::vector<std::string> extras = app.remaining();
-    if (extras.empty())
-        throw Error(ErrorKind::usage, {"no command given", "", "relief --help lists the commands"});
-    const bool is_option = extras.front()[0] == '-';
-    refuse_word(extras.front(), is_option ? "option" : "command", is_option ? get_option_names(app) : names,
-                "relief --help lists the commands");
+    const std::string help = "relief --help lists the commands";
+    if (extras.empty()) throw Error(ErrorKind::usage, {"no command given", "", help});
+    if (extras.front()[0] == '-') refuse_option(extras.front(), app, help);
+    std::vector<std::string_view> names;
+    for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+    const std::string hint = suggest_word(extras.front(), names);
+    throw Error(ErrorKind::usage,
+                {fmt::format("unknown command '{}'", extras.front()), "", hint.empty() ? help : hint});
 }
-
-void report(const std::string& where, const std::string& message, const std::string& hint) {
-    fmt::print(stderr, "relief: error: {}{}{}\n", where, where.empty() ? "" : ": ", message);
-    if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
-}
-
-/// One empty line between groups of options in place of two: a help shall fit on a screen.
-class HelpFormatter : public CLI::Formatter {
-  public:
-    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-        std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
-        for (size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
-        return text;
-    }
-};
 
 int parse_and_run(int argument_count, const char* const* arguments) {
     CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
-    app.formatter(std::make_shared<HelpFormatter>());
-    app.get_formatter()->column_width(30);
-    app.set_version_flag("--version", "relief " RELIEF_VERSION);
-    app.allow_extras();
+    prepare_parsing(app);
     const std::vector<Verb> verbs = add_verbs(app);
-    try {
-        app.parse(argument_count, arguments);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
-        throw Error(ErrorKind::usage, {error.what(), "",
-                                       "relief --help lists the commands, "
-                                       "relief COMMAND --help its options"});
-    }
+    if (const auto answered = parse_words(app, argument_count, arguments)) return *answered;
     return run_verb(app, verbs);
 }
 
 } // namespace
 
 int run(int argument_count, const char* const* arguments) {
-    try {
-        return parse_and_run(argument_count, arguments);
-    } catch (const Error& error) {
-        report(error.where(), error.message(), name_options(error.hint()));
-        return int(error.kind());
-    } catch (const std::bad_alloc&) {
-        report("", "out of memory",
-               "a smaller picture, a lower --level or a smaller --bottom-cache need less");
-        return kExitOutOfMemory;
-    } catch (const std::exception& error) {
-        report("", error.what(), "");
-        return kExitFailed;
-    }
+    return run_guarded([&] { return parse_and_run(argument_count, arguments); });
 }
 
 } // namespace relief::cli

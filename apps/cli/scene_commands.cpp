@@ -11,10 +11,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "exit_codes.h"
+#include "common/exit_codes.h"
+#include "common/report.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/devices.h"
 #include "relief/error.h"
@@ -86,8 +86,8 @@ std::vector<std::string> list_traversals(EngineKind engine, StructureKind struct
     return names;
 }
 
-nlohmann::ordered_json traversals_to_json(EngineKind engine) {
-    nlohmann::ordered_json structures;
+Value traversals_to_json(EngineKind engine) {
+    Value structures;
     for (const StructureKind structure : kStructures)
         structures[structure_name(structure)] = list_traversals(engine, structure);
     return structures;
@@ -99,7 +99,7 @@ void print_traversals(EngineKind engine) {
                    fmt::join(list_traversals(engine, structure), " | "));
 }
 
-nlohmann::ordered_json to_json(const DeviceInfo& device) {
+Value to_json(const DeviceInfo& device) {
     return {{"engine", "vulkan"},
             {"device", device.index},
             {"name", device.name},
@@ -128,13 +128,13 @@ int run_devices(bool is_json) {
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     const std::vector<DeviceInfo> devices = vulkan_devices();
     if (is_json) {
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        Value list = Value::list();
         list.push_back({{"engine", "cpu"},
                         {"threads", threads},
                         {"isa", isas},
                         {"structures", traversals_to_json(EngineKind::cpu)}});
         for (const DeviceInfo& device : devices) list.push_back(to_json(device));
-        fmt::print("{}\n", list.dump());
+        fmt::print("{}\n", write_json(list));
     } else {
         fmt::print("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
         print_traversals(EngineKind::cpu);

@@ -9,17 +9,15 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/machine.h"
 #include "bench/paper1.h"
+#include "bench/tables.h"
 #include "gpu/parity.h"
 #include "relief/error.h"
 
 namespace relief::gpu {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path output;
@@ -62,10 +60,10 @@ int run_parity_verb(const Options& options) {
         parity.noise_samples = 16;
         if (options.scenes.empty()) parity.scenes = {"ear"};
     }
-    Json result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
+    Value result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
     result.update(run_parity(parity, report));
     fmt::print("parity: {} passed, {} failed\n", result["passed"].get<int>(), result["failed"].get<int>());
-    if (!options.output.empty()) write_text(options.output, result.dump(1) + "\n");
+    if (!options.output.empty()) write_text(options.output, write_json(result, 1));
     return result["failed"] == 0 && result["passed"] > 0 ? 0 : 1;
 }
 
@@ -81,10 +79,10 @@ int run_bench_verb(const Options& options) {
         paper1 = bench::make_quick_options(paper1);
         if (options.scenes.empty()) paper1.scenes = {"bark"};
     }
-    const Json result = bench::run_paper1(paper1, report);
-    for (const bench::ReportFile& file : bench::make_paper1_files(result))
-        write_text(folder / file.name, file.text);
-    for (const Json& goal : result["goals"])
+    const Value result = bench::run_paper1(paper1, report);
+    write_text(folder / "paper1.json", write_json(result, 1));
+    write_text(folder / "paper1.csv", write_csv(bench::make_paper1_table(result)));
+    for (const Value& goal : result["goals"])
         fmt::print("{}: {:.4g} {}, goal {:.4g}\n", goal["name"].get<std::string>(),
                    goal["reached"].get<double>(), goal["unit"].get<std::string>(),
                    goal["goal"].get<double>());
@@ -92,8 +90,8 @@ int run_bench_verb(const Options& options) {
 }
 
 int run_devices_verb() {
-    const Json devices = bench::describe_vulkan_devices();
-    fmt::print("{}\n", devices.dump(1));
+    const Value devices = bench::describe_vulkan_devices();
+    fmt::print("{}", write_json(devices, 1));
     return devices.empty() ? int(ErrorKind::device_missing) : 0;
 }
 
@@ -117,7 +115,7 @@ int run(int argument_count, char** arguments) {
         ->expected(2)
         ->check(CLI::Range(1, 16384));
     CLI::App* paper1 = app.add_subcommand("bench", "Table and figures of Harada 2015");
-    add_options(*paper1, options, "folder for JSON, CSV and charts; default: paper1");
+    add_options(*paper1, options, "folder for JSON and CSV; default: paper1");
     paper1->add_option("--runs", options.runs, "that count, after one to warm up")
         ->check(CLI::Range(1, 1000));
     paper1

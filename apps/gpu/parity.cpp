@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "relief/error.h"
 #include "relief/samples.h"
@@ -18,8 +17,6 @@
 namespace relief::gpu {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kBlocks = 16; ///< a side
 
@@ -76,7 +73,7 @@ class Parity {
   public:
     Parity(const ParityOptions& options, const bench::Report& report) : options_(options), report_(report) {}
 
-    Json run() {
+    Value run() {
         for (const std::string& name : options_.scenes) {
             report_(fmt::format("making the scene {}", name));
             // One of them with shared meshes: all its instances share the jobs of a patch.
@@ -90,8 +87,8 @@ class Parity {
   private:
     void check_scene(const std::string& scene_name, const Scene& scene) {
         for (const Setting& setting : list_settings()) check_setting(scene_name, scene, setting);
-        add_case("same bits twice, " + scene_name, [&](Json&) { return check_repeat(scene); });
-        add_case("means, " + scene_name, [&](Json& entry) { return check_means(scene, entry); });
+        add_case("same bits twice, " + scene_name, [&](Value&) { return check_repeat(scene); });
+        add_case("means, " + scene_name, [&](Value& entry) { return check_means(scene, entry); });
     }
 
     /// Both forms of the bottom kernel, where it is used, against one picture of the CPU engine.
@@ -104,7 +101,7 @@ class Parity {
         std::optional<Image> expected;
         const auto add_form = [&](const std::string& case_name, BottomForm form) {
             settings.experiment.bottom = form;
-            add_case(case_name, [&](Json& entry) {
+            add_case(case_name, [&](Value& entry) {
                 if (!expected) expected = render_cpu(scene, settings).image;
                 return check_hits(scene, settings, *expected, entry);
             });
@@ -115,10 +112,10 @@ class Parity {
     }
 
     /// Runs a check that fills in what it found and tells whether that is good.
-    void add_case(const std::string& name, const std::function<bool(Json&)>& check) {
+    void add_case(const std::string& name, const std::function<bool(Value&)>& check) {
         if (name.find(options_.only) == std::string::npos) return;
         report_(name);
-        Json entry = {{"name", name}, {"outcome", ""}};
+        Value entry = {{"name", name}, {"outcome", ""}};
         try {
             entry["outcome"] = check(entry) ? "passed" : "failed";
         } catch (const Error& error) {
@@ -134,18 +131,18 @@ class Parity {
     }
 
     static bool check_hits(const Scene& scene, const RenderSettings& settings, const Image& expected,
-                           Json& entry) {
+                           Value& entry) {
         const RenderResult found = render_vulkan(scene, settings);
         const HitDifference d = compare_hits(found.image, expected);
         const Statistics& s = found.statistics;
-        entry.update(Json{{"pixels", d.pixels},
-                          {"one_only", d.one_only},
-                          {"other_depth", d.other_depth},
-                          {"other_id", d.other_id},
-                          {"largest_depth_difference", d.largest_depth_difference},
-                          {"render_s", s.render_s},
-                          {"pairs", s.pairs_emitted},
-                          {"bottom_built", s.bottom_built}});
+        entry.update(Value{{"pixels", d.pixels},
+                           {"one_only", d.one_only},
+                           {"other_depth", d.other_depth},
+                           {"other_id", d.other_id},
+                           {"largest_depth_difference", d.largest_depth_difference},
+                           {"render_s", s.render_s},
+                           {"pairs", s.pairs_emitted},
+                           {"bottom_built", s.bottom_built}});
         return d.share() <= kLargestShare;
     }
 
@@ -159,7 +156,7 @@ class Parity {
                           second.pixels.end(), same_bits);
     }
 
-    bool check_means(const Scene& scene, Json& entry) const {
+    bool check_means(const Scene& scene, Value& entry) const {
         RenderSettings settings = options_.settings;
         settings.image.width = std::max(1, settings.image.width / 4),
         settings.image.height = std::max(1, settings.image.height / 4);
@@ -190,7 +187,7 @@ class Parity {
 
     const ParityOptions& options_;
     const bench::Report& report_;
-    Json cases_ = Json::array();
+    Value cases_ = Value::list();
     int passed_ = 0, failed_ = 0, refused_ = 0;
 };
 
@@ -235,7 +232,7 @@ double compute_largest_z(const Image& a, const Image& b) {
     return largest;
 }
 
-Json run_parity(const ParityOptions& options, const bench::Report& report) {
+Value run_parity(const ParityOptions& options, const bench::Report& report) {
     return Parity(options, report).run();
 }
 

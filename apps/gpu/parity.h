@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "bench/measure.h"
 #include "relief/image.h"
 #include "relief/render.h"
@@ -41,6 +39,6 @@ struct ParityOptions {
 
 /// {cases: [{name, outcome, ...}], passed, failed}: first hits at every level, leaf, form of the bottom
 /// kernel, with and without cache, instanced or not; the same bits twice; means of noisy pictures.
-nlohmann::ordered_json run_parity(const ParityOptions& options, const bench::Report& report);
+Value run_parity(const ParityOptions& options, const bench::Report& report);
 
 } // namespace relief::gpu

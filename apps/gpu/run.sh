@@ -2,7 +2,7 @@
 # Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and nothing else.
 #   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick] [--parity WORDS] [--bench WORDS]
 # WORDS are more options of `relief-gpu parity` or `relief-gpu bench`, e.g. --bench "--scenes bark,party --runs 7".
-# RESULT.json (default relief-gpu.json here) tells each part's outcome; logs and charts lie in a folder beside it.
+# RESULT.json (default relief-gpu.json here) tells each part's outcome; logs lie in a folder beside it.
 # Exit code: 0 when every part asked for passed, 1 otherwise, 2 for wrong usage.
 set -u
 

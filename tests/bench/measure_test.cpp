@@ -1,7 +1,6 @@
 #include "bench/measure.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "support/bodies.h"
 

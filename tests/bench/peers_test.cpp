@@ -4,7 +4,6 @@
 #include "bench/peers.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>
@@ -17,8 +16,6 @@
 
 namespace relief::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 RenderSettings make_settings(int level) {
     RenderSettings settings;
@@ -103,20 +100,20 @@ TEST(Peers, leaves_out_triangles_above_the_limit) {
     PeersOptions options;
     options.scenes = {"rock"}, options.levels = {2};
     options.tessellated_limit_bytes = 0;
-    const Json result = run_peers(make_quick_options(options), [](const std::string&) {});
-    const Json& scene = result["scenes"][0];
+    const Value result = run_peers(make_quick_options(options), [](const std::string&) {});
+    const Value& scene = result["scenes"][0];
     EXPECT_TRUE(scene.contains("triangles_left_out"));
     EXPECT_FALSE(scene["cold"].contains("triangles"));
     EXPECT_TRUE(scene["cold"].contains("grid"));
 }
 
-Json make_summary(double value) {
+Value make_summary(double value) {
     return {{"median", value}, {"lowest", value}, {"highest", value}, {"runs", 1}};
 }
 
-Json make_way(const char* program, const char* way, const char* call, int threads, const char* isa,
-              double seconds) {
-    Json result = {
+Value make_way(const char* program, const char* way, const char* call, int threads, const char* isa,
+               double seconds) {
+    Value result = {
         {"program", program}, {"way", way}, {"threads", threads}, {"seconds", make_summary(seconds)}};
     if (*call) result["call"] = call;
     if (*isa) result["isa"] = isa;
@@ -124,33 +121,33 @@ Json make_way(const char* program, const char* way, const char* call, int thread
 }
 
 /// What was reached, by the name of the goal.
-double find_reached(const Json& goals, const std::string& name) {
-    for (const Json& goal : goals)
-        if (goal["what"] == name) return goal["reached"];
+double find_reached(const Value& goals, const std::string& name) {
+    for (const Value& goal : goals)
+        if (goal["what"] == name) return goal["reached"].get<double>();
     return -1;
 }
 
 TEST(Peers, computes_goals_from_measures) {
-    Json scene = {{"scene", "rock"}, {"level", "5"}, {"isa", "avx512"}, {"bounces", Json::array()}};
+    Value scene = {{"scene", "rock"}, {"level", "5"}, {"isa", "avx512"}, {"bounces", Value::list()}};
     scene["memory"] = {{"bytes_a_patch", 128.0}, {"bytes_a_micro_quad", 7.0}};
-    scene["agreement"] = {{{"against", "Embree triangles"},
-                           {"missed", 1},
-                           {"extra", 0},
-                           {"depth", 2},
-                           {"at_edges", 2},
-                           {"grazing", 1}}};
+    scene["agreement"] = Value::list({{{"against", "Embree triangles"},
+                                       {"missed", 1},
+                                       {"extra", 0},
+                                       {"depth", 2},
+                                       {"at_edges", 2},
+                                       {"grazing", 1}}});
     for (const auto& [way, seconds] : {std::pair("relief", 0.1), {"triangles", 9.0}, {"grid", 1.5}})
         scene["cold"][way] = {{"first_primary_s", make_summary(seconds)},
                               {"first_occlusion_s", make_summary(2 * seconds)},
                               {"first_diffuse_s", make_summary(2 * seconds)}};
-    scene["casts"] = {{{"rays", "occlusion"}, {"kind", "any"}, {"coherent", false}}};
-    scene["casts"][0]["ways"] = {make_way("relief", "rays", "", 2, "avx512", 0.5),
-                                 make_way("relief", "rays", "", 2, "avx2", 0.625),
-                                 make_way("relief", "rays", "", 1, "avx512", 1.0),
-                                 make_way("embree", "triangles", "rtcOccluded1", 2, "", 1.0),
-                                 make_way("embree", "triangles", "rtcOccluded1", 1, "", 7.0)};
+    scene["casts"] = Value::list({{{"rays", "occlusion"}, {"kind", "any"}, {"coherent", false}}});
+    scene["casts"][0]["ways"] = Value::list({make_way("relief", "rays", "", 2, "avx512", 0.5),
+                                             make_way("relief", "rays", "", 2, "avx2", 0.625),
+                                             make_way("relief", "rays", "", 1, "avx512", 1.0),
+                                             make_way("embree", "triangles", "rtcOccluded1", 2, "", 1.0),
+                                             make_way("embree", "triangles", "rtcOccluded1", 1, "", 7.0)});
     for (int depth : {1, 5}) scene["bounces"].push_back({{"depth", depth}, {"seconds_a_ray", 1e-6 * depth}});
-    const Json goals = make_peers_goals({{"settings", {{"threads", 2}}}, {"scenes", {scene}}});
+    const Value goals = make_peers_goals({{"settings", {{"threads", 2}}}, {"scenes", Value::list({scene})}});
     EXPECT_DOUBLE_EQ(find_reached(goals, "first image from cold, primary, best of Embree"), 15);
     EXPECT_DOUBLE_EQ(find_reached(goals, "first image from cold, primary, Embree's triangles"), 90);
     EXPECT_DOUBLE_EQ(find_reached(goals, "occlusion, rtcOccluded1 on triangles"), 2);
@@ -163,11 +160,12 @@ TEST(Peers, computes_goals_from_measures) {
     EXPECT_NE(table.find("| what | goal | rock, 5 |\n"), std::string::npos);
     EXPECT_NE(table.find("| bytes_a_patch | at most 64 bytes | **128** (0.5) |\n"), std::string::npos);
     EXPECT_NE(table.find("| bytes_a_micro_quad | at most 14 bytes | 7 |\n"), std::string::npos);
-    for (const Json& goal : goals) {
-        const double reached = goal["reached"], bound = goal["goal"];
-        EXPECT_EQ(goal["met"], goal["bound"] == "at least" ? reached >= bound : reached <= bound)
-            << goal["name"];
-        EXPECT_EQ(goal["met"], goal["ratio"].get<double>() >= 1) << goal["name"];
+    for (const Value& goal : goals) {
+        const double reached = goal["reached"].get<double>(), bound = goal["goal"].get<double>();
+        EXPECT_EQ(goal["met"].get<bool>(), goal["bound"] == "at least" ? reached >= bound : reached <= bound)
+            << goal["name"].get<std::string>();
+        EXPECT_EQ(goal["met"].get<bool>(), goal["ratio"].get<double>() >= 1)
+            << goal["name"].get<std::string>();
     }
 }
 

@@ -46,6 +46,7 @@ void CommandTest::SetUp() {
     std::string pattern = (std::filesystem::temp_directory_path() / "relief-cli-XXXXXX").string();
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
     folder_ = pattern;
+    program_ = RELIEF_BINARY;
     write("plane.obj", kPlane);
     write_image(make_bump(), folder_ / "bump.exr");
 }
@@ -59,7 +60,7 @@ CommandResult CommandTest::run(const std::vector<std::string>& arguments) { retu
 
 pid_t CommandTest::start(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
     std::vector<char*> words;
-    std::string program = RELIEF_BINARY;
+    std::string program = program_.string();
     words.push_back(program.data());
     std::vector<std::string> copies = arguments;
     for (std::string& copy : copies) words.push_back(copy.data());

@@ -39,6 +39,7 @@ class CommandTest : public testing::Test {
     bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 
     std::filesystem::path folder_;
+    std::filesystem::path program_; ///< what runs: the built command
 };
 
 } // namespace relief::cli

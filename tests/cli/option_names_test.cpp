@@ -1,5 +1,5 @@
 // Settings of the library, as users of the command read of them.
-#include "option_names.h"
+#include "common/option_names.h"
 
 #include <gtest/gtest.h>
 

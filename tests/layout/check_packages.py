@@ -25,7 +25,7 @@ PACKAGES = {
     # The headers; the loader comes with them. Tests need a driver and the validation layer.
     "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],
 }
-TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc"]
+TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "python3-matplotlib"]
 
 root = pathlib.Path(sys.argv[1])
 listed = set((root / "tools/packages.txt").read_text().splitlines())

@@ -21,6 +21,8 @@ DECLARED = {
     "chrono": "chrono",
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot ilogb isfinite
         isinf isnan ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
+    "compare": "partial_ordering",
+    "concepts": "floating_point integral same_as",
     "csignal": "signal",
     "cstddef": "byte ptrdiff_t",
     "cstdio": "fclose fflush fopen fprintf fputs fseek ftell fwrite printf snprintf",
@@ -59,10 +61,10 @@ DECLARED = {
     "system_error": "errc error_code system_error",
     "thread": "jthread this_thread thread",
     "tuple": "get tie tuple tuple_element_t",
-    "type_traits": "conditional_t decay_t invoke_result_t is_same_v remove_reference_t type_identity_t",
+    "type_traits": "conditional_t decay_t invoke_result_t is_arithmetic_v is_same_v remove_reference_t type_identity_t",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_set",
-    "utility": "declval exchange forward get in_place index_sequence make_index_sequence make_pair move pair swap",
+    "utility": "as_const declval exchange forward get in_place index_sequence make_index_sequence make_pair move pair swap",
     "variant": "get get_if holds_alternative monostate variant visit",
     "vector": "vector",
 }

@@ -1,25 +1,21 @@
-#include "statistics_json.h"
-
-#include <nlohmann/json.hpp>
+#include "statistics_report.h"
 
 namespace relief::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json make_times(const Statistics& s) {
+Value make_times(const Statistics& s) {
     return {{"load", s.load_s},     {"prepare", s.prepare_s}, {"first_image", s.first_image_s},
             {"render", s.render_s}, {"write", s.write_s},     {"total", s.total_s}};
 }
 
-Json make_stages(const Statistics& s) {
+Value make_stages(const Statistics& s) {
     return {
         {"top_traversal", s.top_traversal_s},       {"sort", s.sort_s},   {"bottom_build", s.bottom_build_s},
         {"bottom_traversal", s.bottom_traversal_s}, {"shade", s.shade_s}, {"film", s.film_s}};
 }
 
-Json make_rays(const Statistics& s) {
+Value make_rays(const Statistics& s) {
     const uint64_t total = s.camera_rays + s.shadow_rays + s.bounce_rays;
     return {{"camera", s.camera_rays},
             {"shadow", s.shadow_rays},
@@ -28,7 +24,7 @@ Json make_rays(const Statistics& s) {
             {"per_second", s.render_s > 0 ? double(total) / s.render_s : 0.0}};
 }
 
-Json make_memory(const Statistics& s) {
+Value make_memory(const Statistics& s) {
     const uint64_t total = s.geometry_bytes + s.structures_bytes + s.displacement_bytes +
                            s.bottom_cache_bytes + s.ray_buffers_bytes;
     return {{"geometry", s.geometry_bytes},          {"structures", s.structures_bytes},
@@ -37,8 +33,8 @@ Json make_memory(const Statistics& s) {
             {"peak_resident", s.peak_resident_bytes}};
 }
 
-Json make_casts(const Statistics& s) {
-    Json casts = Json::array();
+Value make_casts(const Statistics& s) {
+    Value casts = Value::list();
     for (const CastStatistics& cast : s.casts)
         casts.push_back({{"depth", cast.depth},
                          {"kind", cast.is_shadow ? "shadow" : (cast.depth == 0 ? "camera" : "bounce")},
@@ -53,9 +49,9 @@ Json make_casts(const Statistics& s) {
 
 } // namespace
 
-Json make_statistics_json(const RenderResult& result, const RenderSettings& settings) {
+Value describe_statistics(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
-    Json root;
+    Value root;
     root["relief"] = {{"version", RELIEF_VERSION}};
     root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
     root["image"] = {{"width", settings.image.width},

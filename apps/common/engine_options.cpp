@@ -1,4 +1,4 @@
-#include "engine_options.h"
+#include "common/engine_options.h"
 
 #include <array>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "values.h"
+#include "common/values.h"
 
 namespace relief::cli {
 

@@ -1,4 +1,4 @@
-#include "option_names.h"
+#include "common/option_names.h"
 
 #include <array>
 #include <string_view>

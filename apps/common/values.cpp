@@ -1,4 +1,4 @@
-#include "values.h"
+#include "common/values.h"
 
 #include <cctype>
 #include <charconv>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli_app.h"
+#include "common/cli_app.h"
 #include "relief/render.h"
 
 namespace relief::cli {

@@ -1,0 +1,39 @@
+// What `relief bench` was asked for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/cli_app.h"
+#include "common/engine_options.h"
+#include "relief/render.h"
+
+namespace relief::bench {
+
+struct BenchOptions {
+    std::string suite = "paper1";
+    std::filesystem::path folder; ///< for the results; empty: the name of the suite
+    cli::EngineOptions engine;
+    RenderSettings settings; ///< of the engine; the size is below
+    std::optional<std::pair<int, int>> size;
+    std::vector<std::string> scenes; ///< none: all of the suite
+    std::vector<std::string> meshes, scene_files;
+    std::optional<int> runs;
+    std::optional<uint64_t> tessellated_limit_bytes;
+    std::optional<int> level;
+    std::vector<int> levels; ///< none: all of the suite
+    bool is_quick = false, is_quiet = false;
+};
+
+/// Adds all options; `options` must outlive the parsing.
+void add_bench_options(CLI::App& app, BenchOptions& options);
+
+/// Options given on this command line that not every suite has.
+std::vector<std::string_view> list_given(const BenchOptions& options);
+
+} // namespace relief::bench

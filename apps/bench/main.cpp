@@ -1,0 +1,66 @@
+// relief-bench: the suites of measurements. Users start it as `relief bench`.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/bench_options.h"
+#include "bench/charts.h"
+#include "bench/suites.h"
+#include "common/command_line.h"
+#include "common/exit_codes.h"
+#include "relief/io.h"
+
+namespace relief::bench {
+
+namespace {
+
+void print_goals(const Value& goals) {
+    for (const auto& goal : goals)
+        fmt::print("{}  {}: {:.4g} {}, goal {:.4g}\n", goal["met"].get<bool>() ? "met    " : "not met",
+                   goal["name"].get<std::string>(), goal["reached"].get<double>(),
+                   goal["unit"].get<std::string>(), goal["goal"].get<double>());
+}
+
+int run_bench(const BenchOptions& options) {
+    const Suite& suite = find_suite(options.suite);
+    refuse_options_of_others(suite, options);
+    const std::filesystem::path folder =
+        options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
+    std::filesystem::create_directories(folder);
+    check_text_writable(folder / (options.suite + ".json"));
+    const Report report = [&](const std::string& line) {
+        if (!options.is_quiet) fmt::print(stderr, "relief bench: {}\n", line);
+    };
+    const SuiteResult outcome = suite.run(options, report);
+    for (const ReportFile& file : outcome.files) {
+        write_text_file(folder / file.name, file.text);
+        fmt::print("wrote {}\n", (folder / file.name).string());
+    }
+    const DrawnCharts charts = draw_charts(folder / outcome.files.front().name);
+    for (const std::string& line : charts.lines) fmt::print("{}\n", line);
+    if (!charts.failure.empty()) fmt::print(stderr, "relief bench: {}\n", charts.failure);
+    print_goals(outcome.result["goals"]);
+    return cli::kExitDone;
+}
+
+int parse_and_run(int argument_count, const char* const* arguments) {
+    CLI::App app("Measure, and compare with the figures of a paper", "relief bench");
+    cli::prepare_parsing(app);
+    BenchOptions options;
+    add_bench_options(app, options);
+    if (const auto answered = cli::parse_words(app, argument_count, arguments)) return *answered;
+    cli::refuse_extras(app, "relief bench");
+    cli::complete_engine_options(options.engine, options.settings);
+    return run_bench(options);
+}
+
+} // namespace
+
+} // namespace relief::bench
+
+int main(int argument_count, char** arguments) {
+    return relief::cli::run_guarded([&] { return relief::bench::parse_and_run(argument_count, arguments); });
+}

@@ -1,0 +1,209 @@
+#include "bench/suites.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "bench/cycles.h"
+#include "bench/edits.h"
+#include "bench/paper1.h"
+#include "bench/paper2.h"
+#include "bench/paper3.h"
+#include "bench/tables.h"
+#ifdef RELIEF_EMBREE
+#include "bench/peers.h"
+#include "bench/peers_goals.h"
+#include "bench/triangles.h"
+#endif
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief::bench {
+
+namespace {
+
+/// The settings for a suite whose pictures are of that size unless the command says otherwise.
+RenderSettings make_settings(const BenchOptions& o, int width, int height) {
+    RenderSettings settings = o.settings;
+    std::tie(settings.image.width, settings.image.height) = o.size.value_or(std::pair(width, height));
+    return settings;
+}
+
+std::vector<std::string> check_scenes(const BenchOptions& o, const std::vector<std::string>& all) {
+    const std::vector<std::string_view> known(all.begin(), all.end());
+    for (const std::string& scene : o.scenes)
+        if (std::find(known.begin(), known.end(), scene) == known.end())
+            throw Error(ErrorKind::usage,
+                        {fmt::format("'{}' is not one of: {}", scene, fmt::join(known, ", ")), "--scenes",
+                         suggest_word(scene, known)});
+    return o.scenes.empty() ? all : o.scenes;
+}
+
+/// Meshes of files come with a camera; they are measured under the sun of our own scenes.
+std::vector<Scene> load_meshes(const BenchOptions& o) {
+    std::vector<Scene> scenes;
+    for (const std::string& file : o.meshes) {
+        Scene scene = load_mesh_scene(file, {});
+        scene.meshes.resize(1), scene.objects.resize(1);
+        scene.meshes[0].name = std::filesystem::path(file).filename().string();
+        scene.environment.reset();
+        scene.lights = make_structure_scene("body", MeshDetail::reduced).lights;
+        scenes.push_back(std::move(scene));
+    }
+    return scenes;
+}
+
+/// What all suites have in common once their options are known.
+template <class Options>
+SuiteResult run_suite(const BenchOptions& o, Options options, const Report& report,
+                      Value (*run)(const Options&, const Report&), Table (*make_table)(const Value&)) {
+    options.runs = o.runs.value_or(options.runs);
+    const Value result = run(o.is_quick ? make_quick_options(options) : options, report);
+    return {result,
+            {{o.suite + ".json", write_json(result, 1)}, {o.suite + ".csv", write_csv(make_table(result))}}};
+}
+
+SuiteResult run_paper1_suite(const BenchOptions& o, const Report& report) {
+    Paper1Options options;
+    options.settings = make_settings(o, 1280, 720);
+    options.settings.surface.level = o.level.value_or(options.settings.surface.level);
+    options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
+    options.scenes = check_scenes(o, kPaper1Scenes);
+    return run_suite(o, std::move(options), report, run_paper1, make_paper1_table);
+}
+
+SuiteResult run_paper2_suite(const BenchOptions& o, const Report& report) {
+    Paper2Options options;
+    options.settings = make_settings(o, 320, 180);
+    options.scenes = check_scenes(o, structure_scene_names());
+    options.meshes = load_meshes(o);
+    return run_suite(o, std::move(options), report, run_paper2, make_paper2_table);
+}
+
+SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
+    Paper3Options options;
+    options.settings = make_settings(o, 640, 360);
+    options.scenes = check_scenes(o, paper3_scenes());
+    options.meshes = load_meshes(o);
+    return run_suite(o, std::move(options), report, run_paper3, make_paper3_table);
+}
+
+/// Scenes of its own, rendered by the command `relief` that lies beside this program.
+SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
+    CyclesOptions options;
+    options.settings = make_settings(o, 1280, 720);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
+    check_scenes(o, cycles_scene_names());
+    if (!o.scenes.empty()) options.scenes = o.scenes;
+    return run_suite(o, std::move(options), report, run_cycles, make_cycles_table);
+}
+
+/// The CPU engine, a scene of its own.
+SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
+    EditsOptions options;
+    options.settings = make_settings(o, 1280, 720);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    return run_suite(o, std::move(options), report, run_edits, make_edits_table);
+}
+
+#ifdef RELIEF_EMBREE
+/// One thread of the CPU engine; its own meshes are always measured.
+SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
+    TrianglesOptions options;
+    options.isa = o.settings.device.isa;
+    options.meshes = load_meshes(o);
+    return run_suite(o, std::move(options), report, run_triangles, make_triangles_table);
+}
+
+/// Scenes of files take the place of the suite's own, unless those are asked for as well.
+SuiteResult run_peers_suite(const BenchOptions& o, const Report& report) {
+    PeersOptions options;
+    const RenderSettings settings = make_settings(o, options.width, options.height);
+    options.width = settings.image.width, options.height = settings.image.height;
+    options.isa = settings.device.isa, options.threads = settings.device.threads;
+    options.scenes = check_scenes(o, peers_scene_names());
+    for (const std::string& file : o.scene_files) {
+        options.files.push_back(load_scene(file));
+        options.files.back().source = file;
+    }
+    if (!o.scene_files.empty()) options.scenes = o.scenes;
+    if (!o.levels.empty()) options.levels = o.levels;
+    options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
+    SuiteResult outcome = run_suite(o, std::move(options), report, run_peers, make_peers_table);
+    outcome.files.push_back({"peers_goals.md", make_goal_table(outcome.result["goals"])});
+    return outcome;
+}
+#endif
+
+const std::vector<Suite>& list_suites() {
+    static const std::vector<Suite> kSuites = {
+        {"paper1",
+         "table and figures of Harada 2015 (default)",
+         run_paper1_suite,
+         {"--scenes", "--size", "--level", "--tessellated-limit", "--engine", "--bottom", "--threads",
+          "--isa"}},
+        {"paper2",
+         "builders and traversals over triangle meshes",
+         run_paper2_suite,
+         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
+        {"paper3",
+         "structures, traversals and render methods of GRAPP 2019",
+         run_paper3_suite,
+         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
+        {"cycles",
+         "displaced scenes beside Blender's Cycles, where `blender` is found",
+         run_cycles_suite,
+         {"--scenes", "--size", "--threads"}},
+        {"edits",
+         "a painted rectangle of a map until the next picture, beside a fresh load",
+         run_edits_suite,
+         {"--size", "--threads", "--isa"}},
+#ifdef RELIEF_EMBREE
+        {"triangles",
+         "plain triangle meshes on the CPU against Embree",
+         run_triangles_suite,
+         {"--mesh", "--isa"}},
+        {"peers",
+         "displaced surfaces on the CPU against Embree's three ways",
+         run_peers_suite,
+         {"--scenes", "--scene", "--levels", "--size", "--tessellated-limit", "--threads", "--isa"}},
+#endif
+    };
+    return kSuites;
+}
+
+} // namespace
+
+const Suite& find_suite(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Suite& suite : list_suites()) {
+        if (suite.name == name) return suite;
+        names.push_back(suite.name);
+    }
+    throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}', known: {}", name, fmt::join(names, ", ")),
+                                   "", suggest_word(name, names)});
+}
+
+std::string describe_suites() {
+    std::string text;
+    for (const Suite& suite : list_suites())
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
+    return text;
+}
+
+void refuse_options_of_others(const Suite& suite, const BenchOptions& o) {
+    for (const std::string_view option : list_given(o)) {
+        if (std::find(suite.options.begin(), suite.options.end(), option) != suite.options.end()) continue;
+        throw Error(ErrorKind::usage, {fmt::format("{} has no such option", suite.name), std::string(option),
+                                       fmt::format("beside --runs, --quick, -o and -q it takes {}",
+                                                   fmt::join(suite.options, ", "))});
+    }
+}
+
+} // namespace relief::bench

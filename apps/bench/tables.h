@@ -1,0 +1,16 @@
+// The table of each suite's result: one measure a row.
+#pragma once
+
+#include "common/report.h"
+
+namespace relief::bench {
+
+Table make_paper1_table(const Value& result);
+Table make_paper2_table(const Value& result);
+Table make_paper3_table(const Value& result);
+Table make_cycles_table(const Value& result);
+Table make_edits_table(const Value& result);
+Table make_triangles_table(const Value& result);
+Table make_peers_table(const Value& result);
+
+} // namespace relief::bench

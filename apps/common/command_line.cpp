@@ -1,0 +1,95 @@
+#include "common/command_line.h"
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "common/option_names.h"
+#include "relief/error.h"
+
+namespace relief::cli {
+
+namespace {
+
+void report(const std::string& where, const std::string& message, const std::string& hint) {
+    fmt::print(stderr, "relief: error: {}{}{}\n", where, where.empty() ? "" : ": ", message);
+    if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
+}
+
+/// One empty line between groups of options in place of two: a help shall fit on a screen.
+class HelpFormatter : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+        for (size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
+        return text;
+    }
+};
+
+} // namespace
+
+int run_guarded(const std::function<int()>& body) {
+    try {
+        return body();
+    } catch (const Error& error) {
+        report(error.where(), error.message(), name_options(error.hint()));
+        return int(error.kind());
+    } catch (const std::bad_alloc&) {
+        report("", "out of memory",
+               "a smaller picture, a lower --level or a smaller --bottom-cache need less");
+        return int(ErrorKind::out_of_memory);
+    } catch (const std::exception& error) {
+        report("", error.what(), "");
+        return int(ErrorKind::failed);
+    }
+}
+
+void prepare_parsing(CLI::App& app) {
+    app.formatter(std::make_shared<HelpFormatter>());
+    app.get_formatter()->column_width(30);
+    app.set_version_flag("--version", "relief " RELIEF_VERSION);
+    app.allow_extras();
+}
+
+std::optional<int> parse_words(CLI::App& app, int argument_count, const char* const* arguments) {
+    try {
+        app.parse(argument_count, arguments);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
+        throw Error(ErrorKind::usage, {error.what(), "",
+                                       "relief --help lists the commands, "
+                                       "relief COMMAND --help its options"});
+    }
+    return std::nullopt;
+}
+
+void refuse_option(const std::string& word, const CLI::App& app, const std::string& help) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string hint = suggest_word(word, views);
+    throw Error(ErrorKind::usage, {fmt::format("unknown option '{}'", word), "", hint.empty() ? help : hint});
+}
+
+void refuse_extras(const CLI::App& app, const std::string& command) {
+    const std::vector<std::string> extras = app.remaining();
+    if (extras.empty()) return;
+    const std::string help = fmt::format("{} --help lists the options", command);
+    for (const std::string& extra : extras)
+        if (extra.size() > 1 && extra[0] == '-') refuse_option(extra.substr(0, extra.find('=')), app, help);
+    throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extras.front()), "", help});
+}
+
+} // namespace relief::cli
