@@ -53,11 +53,20 @@ TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
 }
 
 TEST(CastStatistics, show_that_trees_are_built_again_for_every_cast_without_a_cache) {
-    RenderSettings settings = make_settings();
-    settings.surface.cache_bytes = 0;
-    const Statistics s = render(get_ear(), settings).statistics;
-    for (const CastStatistics& cast : s.casts)
-        if (cast.pairs > 0) EXPECT_GT(cast.bottom_build_s, 0) << cast.depth << " " << cast.is_shadow;
+    uint64_t previous = 0;
+    for (const int bounces : {0, 1}) {
+        RenderSettings settings = make_settings();
+        settings.image.bounces = bounces;
+        const Statistics cached = render(get_ear(), settings).statistics;
+        settings.surface.cache_bytes = 0;
+        const Statistics s = render(get_ear(), settings).statistics;
+        EXPECT_GT(cached.bottom_reused, 0u);
+        EXPECT_EQ(s.bottom_reused, 0u);
+        // Shadow rays need the trees that camera rays had, and bounces need theirs once more.
+        EXPECT_GT(s.bottom_built, 2 * cached.bottom_built) << bounces;
+        EXPECT_GT(s.bottom_built, previous + cached.bottom_built) << bounces;
+        previous = s.bottom_built;
+    }
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 // Settings that contradict each other are refused before anything is made.
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -11,68 +13,82 @@
 namespace relief {
 namespace {
 
-void expect_usage_error(const RenderSettings& settings) {
-    try {
-        render(Scene{}, settings);
-        FAIL() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
-        EXPECT_FALSE(error.hint().empty());
-    }
-    EXPECT_THROW(Intersector(Scene{}, settings), Error);
+/// Changes plain settings, expects a usage error whose message holds `part`, from every call that takes them.
+void expect_refused(const std::function<void(RenderSettings&)>& change, const std::string& part) {
+    RenderSettings settings;
+    change(settings);
+    const auto expect = [&](const std::function<void()>& call) {
+        try {
+            call();
+            ADD_FAILURE() << "no error: " << part;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+            EXPECT_NE(error.message().find(part), std::string::npos) << error.what();
+            EXPECT_FALSE(error.hint().empty()) << error.what();
+        }
+    };
+    expect([&] { render(Scene{}, settings); });
+    expect([&] { Intersector(Scene{}, settings); });
 }
 
+void choose_vulkan(RenderSettings& s) { s.engine = EngineKind::vulkan; }
+
 TEST(Settings, of_one_engine_do_not_go_with_the_other) {
-    RenderSettings settings;
-    settings.device.index = 0;
-    expect_usage_error(settings);
-    settings = {};
-    settings.experiment.bottom = BottomForm::fused;
-    expect_usage_error(settings);
-    settings = {};
-    settings.device.engine = EngineKind::vulkan;
-    settings.device.isa = Isa::scalar;
-    expect_usage_error(settings);
-    settings.device.isa = Isa::best;
-    settings.device.index = -2;
-    expect_usage_error(settings);
+    expect_refused([](auto& s) { s.device.index = 0; }, "go with the Vulkan engine");
+    expect_refused([](auto& s) { s.experiment.bottom = BottomForm::fused; }, "go with the Vulkan engine");
+    expect_refused([](auto& s) { choose_vulkan(s), s.device.isa = Isa::scalar; }, "goes with the CPU engine");
+    expect_refused([](auto& s) { choose_vulkan(s), s.device.index = -2; }, "device is out of range");
 }
 
 TEST(Settings, of_costs_are_refused_where_no_tree_is_built_by_them) {
-    RenderSettings settings;
-    settings.experiment.sah_costs = SahCosts{};
-    expect_usage_error(settings);
-    settings.experiment.traversal = TraversalKind::wide;
-    expect_usage_error(settings);
-    settings.experiment.structure = StructureKind::lbvh, settings.experiment.traversal = TraversalKind::stack;
-    expect_usage_error(settings);
-    settings.experiment.structure = StructureKind::bvh;
-    for (const float cost : {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
-        settings.experiment.sah_costs = SahCosts{cost, 1};
-        expect_usage_error(settings);
-        settings.experiment.sah_costs = SahCosts{1, cost};
-        expect_usage_error(settings);
-    }
-    settings.device.engine = EngineKind::vulkan, settings.experiment.sah_costs = SahCosts{};
-    expect_usage_error(settings);
+    const std::string where = "do not go with the linear BVH and the engine's default trees";
+    expect_refused([](auto& s) { s.experiment.sah_costs = SahCosts{}; }, where);
+    expect_refused(
+        [](auto& s) { s.experiment.sah_costs = SahCosts{}, s.experiment.traversal = TraversalKind::wide; },
+        where);
+    expect_refused([](auto& s) { choose_vulkan(s), s.experiment.sah_costs = SahCosts{}; }, where);
+    expect_refused(
+        [](auto& s) {
+            choose_vulkan(s), s.experiment.sah_costs = SahCosts{},
+                              s.experiment.traversal = TraversalKind::stack;
+        },
+        where);
+    expect_refused(
+        [](auto& s) {
+            s.experiment.sah_costs = SahCosts{};
+            s.experiment.structure = StructureKind::lbvh, s.experiment.traversal = TraversalKind::stack;
+        },
+        where);
+    for (const float cost : {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::nanf("")})
+        for (const SahCosts& costs : {SahCosts{cost, 1}, SahCosts{1, cost}})
+            expect_refused(
+                [&](auto& s) {
+                    s.experiment.sah_costs = costs, s.experiment.traversal = TraversalKind::stack;
+                },
+                "costs of the surface-area heuristic are out of range");
 }
 
 TEST(Settings, of_a_method_name_what_goes_with_it) {
-    RenderSettings settings;
-    settings.experiment.method = RenderMethod::fragment;
-    expect_usage_error(settings);
-    settings.experiment.method = RenderMethod::hybrid;
-    expect_usage_error(settings);
-    settings.device.engine = EngineKind::vulkan;
-    settings.surface.lod = LodRule::ray;
-    expect_usage_error(settings);
-    settings.surface.lod = LodRule::field;
-    settings.surface.leaf = LeafKind::box;
-    expect_usage_error(settings);
-    settings.surface.leaf = LeafKind::exact;
-    settings.experiment.method = RenderMethod::fragment;
-    settings.experiment.bottom = BottomForm::fused;
-    expect_usage_error(settings);
+    expect_refused([](auto& s) { s.experiment.method = RenderMethod::fragment; },
+                   "goes with the Vulkan engine");
+    expect_refused([](auto& s) { s.experiment.method = RenderMethod::hybrid; },
+                   "goes with the Vulkan engine");
+    expect_refused(
+        [](auto& s) {
+            choose_vulkan(s), s.experiment.method = RenderMethod::hybrid, s.surface.lod = LodRule::ray;
+        },
+        "one level");
+    expect_refused(
+        [](auto& s) {
+            choose_vulkan(s), s.experiment.method = RenderMethod::hybrid, s.surface.leaf = LeafKind::box;
+        },
+        "not their boxes");
+    expect_refused(
+        [](auto& s) {
+            choose_vulkan(s), s.experiment.method = RenderMethod::fragment,
+                              s.experiment.bottom = BottomForm::fused;
+        },
+        "fused form");
 }
 
 TEST(Settings, of_the_hybrid_method_want_a_camera_without_a_lens) {

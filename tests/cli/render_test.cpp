@@ -247,8 +247,34 @@ TEST_F(Render, statistics_add_up) {
     for (const auto& [stage, seconds] : s["stage_s"].items()) EXPECT_GE(seconds, 0.0) << stage;
 }
 
-TEST_F(Render, the_structure_and_traversal_that_exist_can_be_chosen) {
-    render_ok("a.exr", {"--structure", "bvh", "--traversal", "wide"});
+TEST_F(Render, the_structure_and_traversal_of_the_options_are_those_that_trace) {
+    ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
+    const auto trace = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> all = {"render", "rock/scene.json", "-o",    "a.exr",     "--size",
+                                        "16x16",  "--spp",           "1",     "--bounces", "0",
+                                        "-q",     "--stats",         "s.json"};
+        all.insert(all.end(), options.begin(), options.end());
+        const CommandResult result = run(all);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return json::parse(read("s.json"));
+    };
+    const auto count_bytes = [](const json& s) { return s["memory_bytes"]["structures"].get<uint64_t>(); };
+    const json usual = trace({}), wide = trace({"--structure", "bvh", "--traversal", "wide"});
+    EXPECT_EQ(wide["visits"], usual["visits"]);
+    EXPECT_EQ(count_bytes(wide), count_bytes(usual));
+    EXPECT_GT(wide["visits"]["upper_nodes"], 0);
+
+    // Links and cells take room of their own, and each tree leads to patches in an order of its own.
+    const json stack = trace({"--traversal", "stack"}), link = trace({"--traversal", "parent-link"});
+    EXPECT_EQ(stack["visits"]["upper_nodes"], 0);
+    EXPECT_NE(count_bytes(stack), count_bytes(usual));
+    EXPECT_GT(count_bytes(link), count_bytes(stack));
+    const json linear = trace({"--structure", "lbvh", "--traversal", "stack"});
+    EXPECT_NE(linear["visits"], stack["visits"]);
+    const json restart = trace({"--structure", "kdtree", "--traversal", "restart"});
+    const json backtrack = trace({"--structure", "kdtree", "--traversal", "backtrack"});
+    EXPECT_NE(count_bytes(restart), count_bytes(stack));
+    EXPECT_GT(count_bytes(backtrack), count_bytes(restart));
 }
 
 TEST_F(Render, a_picture_that_fills_the_disk_goes_elsewhere) {
