@@ -64,19 +64,19 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
                     if (tree->level == 6) {
                         EXPECT_LE(tree->root().bounds[axis][b / 32], value);
                         EXPECT_GE(tree->root().bounds[3 + axis][b / 32], value);
-                        EXPECT_LE(tree->wide_group(int(b / 32)).bounds[axis][b / 2 % 16], value);
-                        EXPECT_GE(tree->wide_group(int(b / 32)).bounds[3 + axis][b / 2 % 16], value);
+                        EXPECT_LE(tree->node<6>(b / 32).bounds[axis][b / 2 % 16], value);
+                        EXPECT_GE(tree->node<6>(b / 32).bounds[3 + axis][b / 2 % 16], value);
                     } else if (tree->level == 5) {
                         EXPECT_LE(tree->root().bounds[axis][b / 8], value);
                         EXPECT_GE(tree->root().bounds[3 + axis][b / 8], value);
-                        EXPECT_LE(tree->group(int(b / 8)).bounds[axis][b % 8], value);
-                        EXPECT_GE(tree->group(int(b / 8)).bounds[3 + axis][b % 8], value);
+                        EXPECT_LE(tree->node<5>(b / 8).bounds[axis][b % 8], value);
+                        EXPECT_GE(tree->node<5>(b / 8).bounds[3 + axis][b % 8], value);
                     } else if (tree->level == 4) {
                         EXPECT_LE(tree->root().bounds[axis][b / 2], value);
                         EXPECT_GE(tree->root().bounds[3 + axis][b / 2], value);
                     } else if (tree->level == 3) {
-                        EXPECT_LE(tree->group(0).bounds[axis][b], value);
-                        EXPECT_GE(tree->group(0).bounds[3 + axis][b], value);
+                        EXPECT_LE(tree->node<3>(0).bounds[axis][b], value);
+                        EXPECT_GE(tree->node<3>(0).bounds[3 + axis][b], value);
                     }
                 }
             }
