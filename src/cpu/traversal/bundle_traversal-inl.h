@@ -148,23 +148,15 @@ void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32
     visit.count_pairs(count_rays(probe.tested), count_rays(probe.hit));
 }
 
-/// Bounds of the children of a quantised node, by the decoder that the builder checked with.
-HWY_INLINE void load_bounds(const WideNode& node, Lanes8 (&bound)[6]) {
-    for (int k = 0; k < 3; ++k) {
-        const float scale = WideNode::decode_scale(node.exponent[k]);
-        bound[k] = Lanes8::decode(node.planes[k], node.origin[k], scale);
-        bound[3 + k] = Lanes8::decode(node.planes[3 + k], node.origin[k], scale);
-    }
+/// The boxes of a node, and the slots in use: a bundle may enter an empty box.
+template <class Node, size_t W> HWY_INLINE void load_bounds(const Node& node, Lanes<W> (&bound)[6]) {
+    for (int k = 0; k < 6; ++k) bound[k] = load_plane(node, k, k % 3);
 }
-HWY_INLINE void load_bounds(const cpu::PolygonNode& node, Lanes8 (&bound)[6]) {
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(node.bounds[k]);
-}
-
-HWY_INLINE uint32_t count_children(const WideNode& node) { return node.child_count; }
-HWY_INLINE uint32_t count_children(const cpu::PolygonNode& node) {
-    uint32_t count = 0;
-    while (count < 8 && node.child[count] != cpu::PolygonNode::kNoChild) ++count;
-    return count;
+HWY_INLINE LaneMask find_used(const WideNode& node) { return mask_children(node); }
+HWY_INLINE LaneMask find_used(const cpu::PolygonNode& node) {
+    LaneMask used = 0;
+    for (uint32_t k = 0; k < 8; ++k) used |= LaneMask(node.child[k] != WideChild::kNoChild) << k;
+    return used;
 }
 
 /// Of box k of eight.
@@ -208,7 +200,7 @@ template <class Nodes, class Bundle> struct BundleWalker {
     HWY_INLINE bool open(const Node& node, BundleEntry& top, BundleEntry* stack, uint32_t& size) {
         Lanes8 bound[6], nearest;
         load_bounds(node, bound);
-        LaneMask mask = test_boxes(bound, bundle, nearest) & ((1u << count_children(node)) - 1);
+        LaneMask mask = test_boxes(bound, bundle, nearest) & find_used(node);
         alignas(32) float depth[8];
         nearest.store(depth);
         uint32_t count = 0;

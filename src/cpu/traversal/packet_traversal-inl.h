@@ -18,43 +18,31 @@ namespace relief::HWY_NAMESPACE {
 /// Fewer rays than this go on alone: sixteen lanes for two rays waste more than they share.
 inline constexpr int kLeastPacket = 3;
 
-/// Children that some ray of the packet may enter; load(plane) gives a plane of their boxes.
-template <size_t W, class Load> HWY_INLINE LaneMask test_planes(const PacketBounds& bounds, Load load) {
-    Lanes<W> entry(bounds.t_min), exit(bounds.t_max);
+/// Children that some ray of the packet may enter.
+template <class Node> HWY_INLINE LaneMask test_children(const Node& node, const PacketBounds& bounds) {
+    using Plane = decltype(load_plane(node, 0, 0));
+    Plane entry(bounds.t_min), exit(bounds.t_max);
     for (int k = 0; k < 3; ++k) {
-        const Lanes<W> least(bounds.least_reciprocal[k]), greatest(bounds.greatest_reciprocal[k]);
-        const Lanes<W> near = load(bounds.near_plane[k]) - Lanes<W>(bounds.near_origin[k]);
-        const Lanes<W> far = load(bounds.far_plane[k]) - Lanes<W>(bounds.far_origin[k]);
+        const Plane least(bounds.least_reciprocal[k]), greatest(bounds.greatest_reciprocal[k]);
+        const Plane near = load_plane(node, bounds.near_plane[k], k) - Plane(bounds.near_origin[k]);
+        const Plane far = load_plane(node, bounds.far_plane[k], k) - Plane(bounds.far_origin[k]);
         entry = max(entry, min(near * least, near * greatest));
         exit = min(exit, max(far * least, far * greatest));
     }
-    return less_equal(entry, exit * Lanes<W>(kBoxSlack));
-}
-template <size_t W>
-HWY_INLINE LaneMask test_children(const float (&planes)[6][W], const PacketBounds& bounds) {
-    return test_planes<W>(bounds, [&](int plane) { return Lanes<W>::load(planes[plane]); });
-}
-HWY_INLINE LaneMask test_children(const cpu::PolygonNode& node, const PacketBounds& bounds) {
-    return test_children(node.bounds, bounds);
-}
-HWY_INLINE LaneMask test_children(const WideNode& node, const PacketBounds& bounds) {
-    const auto load = [&](int plane) {
-        const int axis = plane % 3;
-        return Lanes8::decode(node.planes[plane], node.origin[axis],
-                              WideNode::decode_scale(node.exponent[axis]));
-    };
-    return test_planes<8>(bounds, load) & ((1u << node.child_count) - 1);
+    return less_equal(entry, exit * Plane(kBoxSlack)) & mask_children(node);
 }
 
-/// Lanes of `mask` that enter a box, and the nearest entry among them (other lanes included: a bound from
+/// Lanes of `mask` that enter child k, and the nearest entry among them (other lanes included: a bound from
 /// below).
-HWY_INLINE LaneMask test_box(const float (&lower)[3], const float (&upper)[3], const Packet& packet,
-                             LaneMask mask, float& nearest) {
+template <class Node>
+HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask,
+                               float& nearest) {
     Lanes16 near[3], far[3];
-    for (int k = 0; k < 3; ++k) {
-        const Lanes16 a = (Lanes16(lower[k]) - packet.lower_origin[k]) * packet.reciprocal[k];
-        const Lanes16 b = (Lanes16(upper[k]) - packet.upper_origin[k]) * packet.reciprocal[k];
-        near[k] = min(a, b), far[k] = max(a, b);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Lanes16 lower(get_plane(node, axis, axis, k)), upper(get_plane(node, 3 + axis, axis, k));
+        const Lanes16 a = (lower - packet.lower_origin[axis]) * packet.reciprocal[axis];
+        const Lanes16 b = (upper - packet.upper_origin[axis]) * packet.reciprocal[axis];
+        near[axis] = min(a, b), far[axis] = max(a, b);
     }
     const Lanes16 entry = max(max(near[0], near[1]), max(near[2], packet.t_min));
     const Lanes16 exit = min(min(far[0], far[1]), min(far[2], Lanes16::load(packet.t_max)));
@@ -71,26 +59,6 @@ struct PacketEntry {
     static bool is_nearer(const PacketEntry& a, const PacketEntry& b) { return a.entry < b.entry; }
     static bool is_farther(const PacketEntry& a, const PacketEntry& b) { return a.entry > b.entry; }
 };
-
-/// Child k of a node of boxes stored as lower x y z, upper x y z.
-template <size_t W>
-HWY_INLINE LaneMask test_child(const float (&bounds)[6][W], uint32_t k, const Packet& packet, LaneMask mask,
-                               float& nearest) {
-    const float lower[3] = {bounds[0][k], bounds[1][k], bounds[2][k]};
-    const float upper[3] = {bounds[3][k], bounds[4][k], bounds[5][k]};
-    return test_box(lower, upper, packet, mask, nearest);
-}
-HWY_INLINE LaneMask test_child(const cpu::PolygonNode& node, uint32_t k, const Packet& packet, LaneMask mask,
-                               float& nearest) {
-    return test_child(node.bounds, k, packet, mask, nearest);
-}
-HWY_INLINE LaneMask test_child(const WideNode& node, uint32_t k, const Packet& packet, LaneMask mask,
-                               float& nearest) {
-    const Box box = node.child_box(int(k));
-    const float lower[3] = {box.lower.x, box.lower.y, box.lower.z};
-    const float upper[3] = {box.upper.x, box.upper.y, box.upper.z};
-    return test_box(lower, upper, packet, mask, nearest);
-}
 
 /// Calls take(child, lanes, nearest entry) for the boxes of a node that lanes of `mask` enter.
 template <class Node, class Take>

@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
-/// bounds go through the operations of test_box in the same order and rounding keeps that order. After
+/// bounds go through the operations of test_child in the same order and rounding keeps that order. After
 /// Boulos, Wald, Shirley 2006 (Geometric and Arithmetic Culling Methods for Entire Ray Packets). The rays are
 /// finite; empty slots, from +inf to -inf, are excluded.
 struct PacketBounds {
