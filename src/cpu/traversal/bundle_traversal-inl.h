@@ -61,11 +61,17 @@ HWY_INLINE ProjectedBounds find_union(const PartBounds& part) {
             reduce_max(part.upper_y), reduce_min(part.depth),   reduce_max(part.far)};
 }
 
+inline uint32_t count_rays(const LaneMask (&bits)[kGroupCount]) {
+    uint32_t sum = 0;
+    for (const LaneMask group : bits) sum += uint32_t(__builtin_popcount(group));
+    return sum;
+}
+
 /// A bundle inside a patch, and the rays that were tested against its triangles.
 template <class Bundle> struct BundleProbe {
     static constexpr bool kListsLeaves = false;
 
-    const PatchVisit& visit;
+    PatchVisit visit;
     Bundle& bundle;
     LaneMask tested[kGroupCount] = {}, hit[kGroupCount] = {};
 
@@ -93,6 +99,8 @@ template <class Bundle> struct BundleProbe {
             visit_child(order[k].child, rays);
         return false;
     }
+
+    void count_pairs(LaneMask) const { visit.count_pairs(count_rays(tested), count_rays(hit)); }
 
     /// The triangles of a block, for each ray that may meet one.
     HWY_NOINLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask) {
@@ -133,20 +141,6 @@ template <class Bundle> struct BundleProbe {
         return false;
     }
 };
-
-inline uint32_t count_rays(const LaneMask (&bits)[kGroupCount]) {
-    uint32_t sum = 0;
-    for (const LaneMask group : bits) sum += uint32_t(__builtin_popcount(group));
-    return sum;
-}
-
-template <class Bundle>
-void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch, Bundle& bundle) {
-    const PatchVisit visit(scene, context, bundle.instance, patch, bundle.rays->lod_bias);
-    BundleProbe<Bundle> probe{visit, bundle};
-    visit_patch(probe, 1);
-    visit.count_pairs(count_rays(probe.tested), count_rays(probe.hit));
-}
 
 /// The boxes of a node, and the slots in use: a bundle may enter an empty box.
 template <class Node, size_t W> HWY_INLINE void load_bounds(const Node& node, Lanes<W> (&bound)[6]) {
@@ -284,59 +278,54 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, Bun
         const WideBvh& tree = scene.surface_trees[surface];
         BundleWalker walker{tree.nodes, bundle};
         walk_primitives(tree, context, walker, {}, [&](uint32_t patch, const BundleEntry&) {
-            trace_patch(scene, context, patch, bundle);
+            BundleProbe<Bundle> probe{{scene, context, bundle.instance, patch, bundle.rays->lod_bias},
+                                      bundle};
+            visit_patch(probe, 1);
             return false;
         });
     }
     write_hits(bundle);
 }
 
-/// The same from another space. False, with nothing done, where the rays are no bundle in that of the
-/// instance.
+/// Everything of all instances; `world` is in world space.
 template <class Bundle>
-bool enter_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                    BundleRays& rays) {
-    Bundle bundle;
-    bundle.rays = &rays, bundle.instance = instance;
-    if (!enter_space(scene.instances[instance].object_from_world, bundle)) return false;
-    trace_instance(scene, context, bundle);
-    return true;
-}
-
-/// Everything of all instances, into found and hits. False where the rays are no bundle.
-template <class Bundle>
-bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays) {
-    if (scene.instance_count == 1) return enter_instance<Bundle>(scene, context, 0, rays);
-    Bundle world;
-    world.rays = &rays;
-    if (!enter_space(Affine{}, world)) return false;
-    const auto trace = [&](uint32_t instance, const BundleEntry&) {
+void trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, Bundle& world) {
+    BundleWalker walker{scene.instance_tree->nodes, world};
+    walk_primitives(*scene.instance_tree, context, walker, {}, [&](uint32_t instance, const BundleEntry&) {
         if (scene.instances[instance].is_in_place) {
             world.instance = instance;
             trace_instance(scene, context, world);
             return false;
         }
-        if (!enter_instance<Bundle>(scene, context, instance, rays))
-            trace_singly(scene, context, instance, rays);
+        Bundle local;
+        local.rays = world.rays, local.instance = instance;
+        if (enter_space(scene.instances[instance].object_from_world, local))
+            trace_instance(scene, context, local);
+        else
+            trace_singly(scene, context, instance, *world.rays);
         for (uint32_t group = 0; group < kGroupCount; ++group)
             world.group_farthest[group] = find_farthest(world, group);
         update_farthest(world);
         return false;
-    };
-    BundleWalker walker{scene.instance_tree->nodes, world};
-    walk_primitives(*scene.instance_tree, context, walker, {}, trace);
-    return true;
+    });
 }
 
 /// Nearest hits of the rays, as a RayFrustum or ParallelBeam; pad_inactive_lanes comes before. False where
-/// they are no bundle; `hits` is undefined then.
+/// they are no bundle; `hits` is undefined then. An only instance needs no tree over instances.
 template <class Bundle>
 bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, BundleRays& rays,
                   cpu::TraceHit* hits) {
     HitLog log;
     rays.hits = hits, rays.log = &log;
     std::fill_n(rays.found, kBundleSize, kNothing);
-    if (!trace_instances<Bundle>(scene, context, rays)) return false;
+    Bundle bundle;
+    bundle.rays = &rays, bundle.instance = 0;
+    const bool is_alone = scene.instance_count == 1;
+    if (!enter_space(is_alone ? scene.instances[0].object_from_world : Affine{}, bundle)) return false;
+    if (is_alone)
+        trace_instance(scene, context, bundle);
+    else
+        trace_instances(scene, context, bundle);
     cpu::TraceHit none;
     none.lod_bias = uint8_t(rays.lod_bias);
     for (uint32_t k = 0; k < rays.count; ++k)

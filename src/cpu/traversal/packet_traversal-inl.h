@@ -74,9 +74,13 @@ HWY_INLINE void find_entered(const Node& node, const Packet& packet, LaneMask ma
 template <Query kQuery> struct PacketProbe {
     static constexpr bool kListsLeaves = false;
 
-    const PatchVisit& visit;
+    PatchVisit visit;
     Packet& packet;
     LaneMask hits = 0;
+
+    void count_pairs(LaneMask rays) const {
+        visit.count_pairs(uint32_t(__builtin_popcount(rays)), uint32_t(__builtin_popcount(hits)));
+    }
 
     template <size_t W, class Visit>
     HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
@@ -109,17 +113,6 @@ template <Query kQuery> struct PacketProbe {
         return false;
     }
 };
-
-/// A patch for the lanes of `mask`.
-template <Query kQuery>
-void trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t patch, Packet& packet,
-                 LaneMask mask) {
-    const uint32_t lane = uint32_t(__builtin_ctz(mask));
-    const PatchVisit visit(scene, context, packet.ray[lane].instance, patch, packet.world[lane].lod_bias);
-    PacketProbe<kQuery> probe{visit, packet};
-    visit_patch(probe, mask);
-    visit.count_pairs(uint32_t(__builtin_popcount(mask)), uint32_t(__builtin_popcount(probe.hits)));
-}
 
 /// A packet in a wide tree. traverse_single(child, lane) takes subtrees that few rays enter.
 template <class TraverseSingle> struct PacketWalker {
@@ -167,8 +160,13 @@ HWY_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& co
     if (scene.surfaces[surface].has_displacement) {
         walk_primitives(scene.surface_trees[surface], context, walker, {0, mask, 0},
                         [&](uint32_t patch, const PacketEntry& leaf) {
-                            if (const LaneMask left = leaf.mask & packet.active)
-                                trace_patch<kQuery>(scene, context, patch, packet, left);
+                            const LaneMask left = leaf.mask & packet.active;
+                            if (left == 0) return false;
+                            const uint32_t lane = uint32_t(__builtin_ctz(left)); // all have one LOD bias
+                            PacketProbe<kQuery> probe{{scene, context, packet.ray[lane].instance, patch,
+                                                       packet.world[lane].lod_bias},
+                                                      packet};
+                            visit_patch(probe, left);
                             return false;
                         });
         return;

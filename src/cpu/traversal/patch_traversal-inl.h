@@ -139,9 +139,11 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
 template <Query kQuery> struct RayProbe {
     static constexpr bool kListsLeaves = true;
 
-    const PatchVisit& visit;
+    PatchVisit visit;
     RayState& ray;
     bool has_hit = false;
+
+    void count_pairs(LaneMask) const { visit.count_pairs(1, has_hit); }
 
     HWY_INLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask) {
         const BlockPlace at(tree, level, block);
@@ -192,11 +194,9 @@ template <Query kQuery> struct RayProbe {
 template <Query kQuery>
 HWY_INLINE bool trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
                             const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
-    PatchVisit visit(scene, context, ray.instance, patch, world.lod_bias);
-    if (scene.lod == LodRule::ray) choose_ray_level(visit, scene.instances[ray.instance], world);
-    RayProbe<kQuery> probe{visit, ray};
+    RayProbe<kQuery> probe{{scene, context, ray.instance, patch, world.lod_bias}, ray};
+    if (scene.lod == LodRule::ray) choose_ray_level(probe.visit, scene.instances[ray.instance], world);
     visit_patch(probe, 1);
-    visit.count_pairs(1, probe.has_hit);
     return probe.has_hit;
 }
 

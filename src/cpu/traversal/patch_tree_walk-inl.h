@@ -63,6 +63,8 @@ concept PatchProbe = requires(Probe& probe, const cpu::BottomTree& tree, uint32_
     { probe.visit_children(boxes16, rays, visit) } -> std::same_as<bool>;
     /// Sixteen triangles. True where nothing more is asked.
     { probe.test_block(tree, 6, block, rays) } -> std::same_as<bool>;
+    /// Counts the rays of a visit and those with a hit.
+    probe.count_pairs(rays);
 };
 
 /// The boxes of a tree, a step or two.
@@ -162,6 +164,7 @@ template <PatchProbe Probe> HWY_INLINE void visit_patch(Probe& probe, LaneMask r
         visit_patch_tree(probe.visit.find_tree(0), probe, rays);
     else
         visit_directory(probe.visit.find_directory(), 0, 0, 0, probe, rays);
+    probe.count_pairs(rays);
 }
 
 } // namespace relief::HWY_NAMESPACE
