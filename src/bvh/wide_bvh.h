@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "bvh/wide_children.h"
 
 namespace relief {
 
@@ -16,12 +17,8 @@ namespace relief {
 /// Unused slots have lower code 255 and upper code 0 in x and decode to lower > upper there; a slab test that
 /// widens its interval may still enter them where the box is tiny next to its distance, so walkers must mask
 /// by child_count.
-struct WideNode {
-    static constexpr uint32_t kLeafFlag =
-        0x80000000u; ///< then bits 28..30: primitives - 1, bits 0..27: first
-    static constexpr uint32_t kNoChild = 0xffffffffu;
-    static constexpr int kMaxChildCount = 8;
-    static constexpr uint32_t kMaxLeafFirst = 0x0fffffffu;
+struct WideNode : WideChild {
+    static constexpr int kMaxChildCount = kMaxWideChildCount;
 
     float origin[3];
     int8_t exponent[3]; ///< [-126, 127]: a normal float
@@ -31,15 +28,6 @@ struct WideNode {
 
     /// Box of child k < child_count; holds the original box.
     Box child_box(int k) const;
-
-    /// What the words in `child` mean; not for kNoChild.
-    static bool is_leaf(uint32_t child) { return (child & kLeafFlag) != 0; }
-    static uint32_t leaf_first(uint32_t child) { return child & kMaxLeafFirst; }
-    static uint32_t leaf_count(uint32_t child) { return ((child >> 28) & 7) + 1; }
-    /// `first` <= kMaxLeafFirst, `count` in [1, 8].
-    static uint32_t make_leaf(uint32_t first, uint32_t count) {
-        return kLeafFlag | (count - 1) << 28 | first;
-    }
 
     static float decode_scale(int exponent) { return std::bit_cast<float>(uint32_t(exponent + 127) << 23); }
     static float decode(float origin, float scale, uint8_t code) { return origin + float(code) * scale; }

@@ -12,6 +12,31 @@ namespace relief {
 
 inline constexpr int kMaxWideChildCount = 8;
 
+/// What the words mean that name the children of a wide node, in every layout.
+struct WideChild {
+    static constexpr uint32_t kLeafFlag =
+        0x80000000u; ///< then bits 28..30: primitives - 1, bits 0..27: first
+    static constexpr uint32_t kNoChild = 0xffffffffu;
+    static constexpr uint32_t kMaxLeafFirst = 0x0fffffffu;
+
+    /// Not for kNoChild.
+    static bool is_leaf(uint32_t child) { return (child & kLeafFlag) != 0; }
+    static uint32_t leaf_first(uint32_t child) { return child & kMaxLeafFirst; }
+    static uint32_t leaf_count(uint32_t child) { return ((child >> 28) & 7) + 1; }
+    /// `first` <= kMaxLeafFirst, `count` in [1, 8].
+    static uint32_t make_leaf(uint32_t first, uint32_t count) {
+        return kLeafFlag | (count - 1) << 28 | first;
+    }
+};
+
+/// A wide node before it has a layout; slots from `count` on have empty boxes and kNoChild.
+struct WideNodeParts {
+    Box bounds;
+    int count = 0;
+    std::array<Box, kMaxWideChildCount> boxes{};
+    std::array<uint32_t, kMaxWideChildCount> child{};
+};
+
 /// Up to eight nodes of the binary tree, in its order.
 struct WideChildren {
     std::array<uint32_t, kMaxWideChildCount> nodes{};
@@ -50,5 +75,37 @@ class WideCollapse {
     double area_scale_ = 0; ///< so that the root has 1
     float node_cost_ = 0;
 };
+
+/// The wide nodes that `collapse` cuts `bvh` into, node 0 the root; inner children of a node are adjacent and
+/// behind it. make_leaf(binary leaf) gives child words, encode(parts) nodes.
+template <class Nodes, class MakeLeaf, class Encode>
+void make_wide_nodes(const Bvh& bvh, const WideCollapse& collapse, Nodes& nodes, MakeLeaf make_leaf,
+                     Encode encode) {
+    struct Pending {
+        uint32_t binary_node, node;
+    };
+    std::vector<Pending> pending{{0, 0}};
+    nodes.resize(1);
+    while (!pending.empty()) {
+        const Pending next = pending.back();
+        pending.pop_back();
+        const WideChildren list = collapse.collect_children(next.binary_node);
+        WideNodeParts parts{bvh.nodes[next.binary_node].box(), list.count, {}, {}};
+        parts.child.fill(WideChild::kNoChild);
+        for (size_t k = 0; k < size_t(list.count); ++k) {
+            const BvhNode& source = bvh.nodes[list.nodes[k]];
+            parts.boxes[k] = source.box();
+            if (source.is_leaf()) {
+                parts.child[k] = make_leaf(source);
+                continue;
+            }
+            parts.child[k] = uint32_t(nodes.size());
+            pending.push_back({list.nodes[k], uint32_t(nodes.size())});
+            nodes.emplace_back();
+        }
+        nodes[next.node] = encode(parts);
+    }
+    nodes.shrink_to_fit();
+}
 
 } // namespace relief

@@ -56,4 +56,12 @@ void encode_boxes(WideNode& node, const Box& bounds, const std::array<Box, 8>& b
     }
 }
 
+WideNode encode_node(const WideNodeParts& parts) {
+    WideNode node{};
+    node.child_count = uint8_t(parts.count);
+    std::copy(parts.child.begin(), parts.child.end(), node.child);
+    encode_boxes(node, parts.bounds, parts.boxes);
+    return node;
+}
+
 } // namespace relief

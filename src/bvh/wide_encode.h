@@ -10,4 +10,6 @@ namespace relief {
 /// `bounds` holds the first `node.child_count` boxes; sets origin, exponents and codes.
 void encode_boxes(WideNode& node, const Box& bounds, const std::array<Box, 8>& boxes);
 
+WideNode encode_node(const WideNodeParts& parts);
+
 } // namespace relief

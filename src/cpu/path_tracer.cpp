@@ -280,7 +280,7 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
 void TileTracer::draw_lights(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
-        receivers_[n] = {points_[k].position, hits_[k].bias};
+        receivers_[n] = {points_[k].position, hits_[k].lod_bias};
         light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
                             random_[scalar::kLightPair][k]};
     }
@@ -358,7 +358,7 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     const Vec3f contribution =
         path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
-    TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].bias};
+    TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].lod_bias};
     if (light.emitter) {
         const Vec3f to = tracer_.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to) * (1 - 1e-6f);
@@ -377,10 +377,10 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     path.previous = points_[k].position;
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
-    const uint32_t bias = hits_[k].bias;
+    const uint32_t lod_bias = hits_[k].lod_bias;
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
-                   bias};
+                   lod_bias};
     return true;
 }
 

@@ -42,37 +42,6 @@ struct Tracer::Implementation {
         trees = std::make_unique<UpperTreeHolder>(scene, *kernels, polygon_trees);
     }
 
-    /// trace(kernels' view, context), by the kernels' own trees.
-    template <class Trace> void trace_wide(size_t cast, size_t rays, const Trace& trace) const {
-        const std::shared_ptr<const UpperTrees> current = trees->current();
-        SceneView full = view;
-        full.surface_trees = current->surfaces.data();
-        full.instance_tree = &current->instances;
-        trace_batch(cast, rays, [&](TraceContext& context) { trace(full, context); });
-        trees->count_rays(rays);
-    }
-
-    /// `cast` is the place in TraceContext::casts.
-    template <class Trace> void trace_batch(size_t cast, size_t rays, const Trace& trace) const {
-        TraceContext& context = cache->acquire();
-        if (context.casts.size() <= cast) context.casts.resize(cast + 1);
-        context.is_timed = context.casts[cast].batches % kTimedBatchInterval == 0;
-        const Timer timer;
-        const TraceCounters before = context.counters;
-        try {
-            trace(context);
-        } catch (...) {
-            cache->release(context);
-            throw;
-        }
-        const double built = context.counters.bottom_build_s - before.bottom_build_s;
-        const double seconds = timer.seconds() - built;
-        context.casts[cast].add({1, rays, context.counters.pairs_emitted - before.pairs_emitted, built,
-                                 seconds, context.is_timed ? seconds : 0,
-                                 context.counters.sampled_bottom_s - before.sampled_bottom_s});
-        cache->release(context);
-    }
-
     void add_casts(Statistics& statistics) const {
         const std::vector<CastCounters> casts = cache->sum_casts();
         for (size_t k = 0; k < casts.size(); ++k) {
@@ -90,6 +59,45 @@ struct Tracer::Implementation {
     }
 };
 
+/// One batch of rays: the context of a worker, the scene with its trees as they are now, and the clock.
+class Tracer::Batch {
+  public:
+    /// `cast` is the place in TraceContext::casts.
+    Batch(const Implementation& tracer, size_t cast, size_t rays)
+        : view(tracer.view), context(tracer.cache->acquire()), tracer_(tracer), cast_(cast), rays_(rays) {
+        if (tracer.trees) {
+            trees_ = tracer.trees->current();
+            view.surface_trees = trees_->surfaces.data();
+            view.instance_tree = &trees_->instances;
+        }
+        if (context.casts.size() <= cast) context.casts.resize(cast + 1);
+        context.is_timed = context.casts[cast].batches % kTimedBatchInterval == 0;
+        before_ = context.counters;
+        timer_.restart();
+    }
+    ~Batch() {
+        const double built = context.counters.bottom_build_s - before_.bottom_build_s;
+        const double seconds = timer_.seconds() - built;
+        context.casts[cast_].add({1, rays_, context.counters.pairs_emitted - before_.pairs_emitted, built,
+                                  seconds, context.is_timed ? seconds : 0,
+                                  context.counters.sampled_bottom_s - before_.sampled_bottom_s});
+        tracer_.cache->release(context);
+        if (tracer_.trees) tracer_.trees->count_rays(rays_);
+    }
+    Batch(const Batch&) = delete;
+    Batch& operator=(const Batch&) = delete;
+
+    SceneView view;
+    TraceContext& context;
+
+  private:
+    const Implementation& tracer_;
+    std::shared_ptr<const UpperTrees> trees_;
+    size_t cast_, rays_;
+    TraceCounters before_;
+    Timer timer_;
+};
+
 Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings)
     : Tracer(std::move(scene), settings, nullptr) {}
 
@@ -104,7 +112,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);
-    self.cache = std::make_unique<BottomCache>(settings.surface.cache_bytes);
+    self.cache = std::make_unique<BottomCache>(settings.surface.cache_bytes, self.kernels->build_tree);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view.instances = scene_->instances.data();
@@ -153,16 +161,12 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
     const Implementation& self = *implementation_;
-    const size_t cast = 2 * size_t(depth);
+    Batch batch(self, 2 * size_t(depth), rays.size());
     if (self.trees)
-        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
-            self.kernels->closest_hits(view, context, rays.data(), hits.data(), rays.size());
-        });
+        self.kernels->closest_hits(batch.view, batch.context, rays.data(), hits.data(), rays.size());
     else
-        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
-            self.walk->closest_hits(self.view, self.kernels->primitive, context, rays.data(), hits.data(),
-                                    rays.size());
-        });
+        self.walk->closest_hits(batch.view, self.kernels->primitive, batch.context, rays.data(), hits.data(),
+                                rays.size());
 }
 
 void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
@@ -171,33 +175,25 @@ void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2
     DCHECK(rays.empty() || rays.size() == positions.size());
     const Implementation& self = *implementation_;
     if (self.trees) {
-        self.trace_wide(0, positions.size(), [&](const SceneView& view, TraceContext& context) {
-            self.kernels->camera_hits(view, context, {camera, positions.data(), positions.size()},
-                                      rays.empty() ? nullptr : rays.data(), hits.data());
-        });
+        Batch batch(self, 0, positions.size());
+        self.kernels->camera_hits(batch.view, batch.context, {camera, positions.data(), positions.size()},
+                                  rays.empty() ? nullptr : rays.data(), hits.data());
         return;
     }
     std::vector<TraceRay> aimed(rays.empty() ? positions.size() : 0);
     const std::span<TraceRay> all = rays.empty() ? std::span(aimed) : rays;
-    self.trace_batch(0, all.size(), [&](TraceContext& context) {
-        self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
-        self.walk->closest_hits(self.view, self.kernels->primitive, context, all.data(), hits.data(),
-                                all.size());
-    });
+    self.shading->aim_rays(camera, positions.data(), positions.size(), all.data());
+    closest_hits(all, hits);
 }
 
 void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
     const Implementation& self = *implementation_;
-    const size_t cast = 2 * size_t(depth) + 1;
+    Batch batch(self, 2 * size_t(depth) + 1, rays.size());
     if (self.trees)
-        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
-            self.kernels->any_hits(view, context, rays.data(), occluded.data(), rays.size());
-        });
+        self.kernels->any_hits(batch.view, batch.context, rays.data(), occluded.data(), rays.size());
     else
-        self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
-            self.walk->any_hits(self.view, self.kernels->primitive, context, rays.data(), occluded.data(),
-                                rays.size());
-        });
+        self.walk->any_hits(batch.view, self.kernels->primitive, batch.context, rays.data(), occluded.data(),
+                            rays.size());
 }
 
 SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
@@ -205,8 +201,8 @@ SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
     return make_shading_point(*scene_, hit, samples ? &*samples : nullptr);
 }
 
-SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const {
-    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, bias);
+SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const {
+    const TraceHit hit = locate_hit(*scene_, instance, patch, uv, lod_bias);
     const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
     return make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
 }

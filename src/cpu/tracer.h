@@ -1,4 +1,4 @@
-// Rays against the prepared scene on the CPU: the door between shading and the SIMD kernels.
+// Rays against the prepared scene on the CPU: the interface between shading and the SIMD kernels.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TraceRay {
     float t_min = 0;
     Vec3f direction{};
     float t_max = std::numeric_limits<float>::infinity();
-    uint32_t bias = 0; ///< surface M_bias is seen: every level lowered by it
+    uint32_t lod_bias = 0; ///< surface M_bias is seen: every level lowered by it
 };
 
 /// Where a ray met the surface. `i`, `j` is the cell at the patch's biased level, `is_upper` its second
@@ -33,7 +33,7 @@ struct TraceHit {
     float u = 0, v = 0; ///< on the patch, [0, 1]^2; on a triangle primitive likewise, with v <= u
     uint16_t i = 0, j = 0;
     uint8_t is_upper = 0;
-    uint8_t bias = 0;
+    uint8_t lod_bias = 0;
     uint32_t levels = 0; ///< of the patch as this ray saw it: pack_levels (surface/patch/surface.h)
     bool is_hit() const { return instance != kNoIndex; }
 };
@@ -117,7 +117,7 @@ class Tracer {
                              PointScratch& scratch) const;
 
     /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
-    SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t bias) const;
+    SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
     /// along the geometric normal, to the side that the direction is on.
@@ -132,6 +132,7 @@ class Tracer {
 
   private:
     struct Implementation;
+    class Batch;
     std::shared_ptr<const PreparedScene> scene_;
     std::unique_ptr<Implementation> implementation_;
 };

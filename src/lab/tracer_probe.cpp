@@ -155,8 +155,8 @@ struct TracerProbe::Implementation {
     void trace_batch(std::span<const Ray> rays, size_t begin, RayGrouping grouping, HitKind kind,
                      ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        // Displaced patches alone see a ray's bias, and packets are of one bias: with two in turn, rays of a
-        // scene without displacement go alone and meet the same surface.
+        // Displaced patches alone see a ray's LOD bias, and packets are of one LOD bias: with two in turn,
+        // rays of a scene without displacement go alone and meet the same surface.
         const uint32_t largest_bias = grouping == RayGrouping::single ? 1 : 0;
         buffer.rays.resize(rays.size());
         // Field by field into place: a ray that is put together elsewhere first waits for its own stores.
@@ -164,7 +164,7 @@ struct TracerProbe::Implementation {
             cpu::TraceRay& ray = buffer.rays[k];
             ray.origin = rays[k].origin, ray.t_min = rays[k].t_min;
             ray.direction = rays[k].direction, ray.t_max = rays[k].t_max;
-            ray.bias = uint32_t(k) & largest_bias;
+            ray.lod_bias = uint32_t(k) & largest_bias;
         }
         if (kind == HitKind::any) {
             tracer->any_hits(buffer.rays, std::span(result.occluded).subspan(begin, rays.size()));

@@ -31,7 +31,7 @@ void expect_refused(const std::function<void(RenderSettings&)>& change, const st
     expect([&] { Intersector(Scene{}, settings); });
 }
 
-void choose_vulkan(RenderSettings& s) { s.engine = EngineKind::vulkan; }
+void choose_vulkan(RenderSettings& s) { s.device.engine = EngineKind::vulkan; }
 
 TEST(Settings, of_one_engine_do_not_go_with_the_other) {
     expect_refused([](auto& s) { s.device.index = 0; }, "go with the Vulkan engine");

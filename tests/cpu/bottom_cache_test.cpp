@@ -27,7 +27,7 @@ std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
         cpu::TraceRay ray;
         ray.origin = k % 16 ? rays.back().origin : normalize(draw()) * 3.0f;
         ray.direction = draw() * 0.4f - ray.origin;
-        ray.bias = k / 16 % 5;
+        ray.lod_bias = k / 16 % 5;
         rays.push_back(ray);
     }
     return rays;

@@ -218,7 +218,7 @@ float& get_field(cpu::TraceRay& ray, int k) {
     return *fields[k];
 }
 
-TEST(Bundle, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
+TEST(Bundle, a_ray_with_a_nan_hits_nothing_and_leaves_the_hits_of_others) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Rays rays = make_tiles({1.2f, 1.0f, 3.6f}, {}, 0.2f, 1);
     for (const Isa isa : test::machine_isas()) {

@@ -61,23 +61,16 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
                     << kernels.name << " patch " << patch << " vertex " << i << " " << j;
                 for (int axis = 0; axis < 3; ++axis) {
                     const float value = tree->vertices(axis)[number];
-                    if (tree->level == 6) {
-                        EXPECT_LE(tree->root().bounds[axis][b / 32], value);
-                        EXPECT_GE(tree->root().bounds[3 + axis][b / 32], value);
-                        EXPECT_LE(tree->wide_group(int(b / 32)).bounds[axis][b / 2 % 16], value);
-                        EXPECT_GE(tree->wide_group(int(b / 32)).bounds[3 + axis][b / 2 % 16], value);
-                    } else if (tree->level == 5) {
-                        EXPECT_LE(tree->root().bounds[axis][b / 8], value);
-                        EXPECT_GE(tree->root().bounds[3 + axis][b / 8], value);
-                        EXPECT_LE(tree->group(int(b / 8)).bounds[axis][b % 8], value);
-                        EXPECT_GE(tree->group(int(b / 8)).bounds[3 + axis][b % 8], value);
-                    } else if (tree->level == 4) {
-                        EXPECT_LE(tree->root().bounds[axis][b / 2], value);
-                        EXPECT_GE(tree->root().bounds[3 + axis][b / 2], value);
-                    } else if (tree->level == 3) {
-                        EXPECT_LE(tree->group(0).bounds[axis][b], value);
-                        EXPECT_GE(tree->group(0).bounds[3 + axis][b], value);
-                    }
+                    const auto expect_inside = [&](const auto& node, uint32_t slot) {
+                        EXPECT_LE(node.bounds[axis][slot], value);
+                        EXPECT_GE(node.bounds[3 + axis][slot], value);
+                    };
+                    if (tree->level == 6) expect_inside(tree->root(), b / 32);
+                    if (tree->level == 6) expect_inside(tree->node<6>(b / 32), b / 2 % 16);
+                    if (tree->level == 5) expect_inside(tree->root(), b / 8);
+                    if (tree->level == 5) expect_inside(tree->node<5>(b / 8), b % 8);
+                    if (tree->level == 4) expect_inside(tree->node<4>(0), b / 2);
+                    if (tree->level == 3) expect_inside(tree->node<3>(0), b);
                 }
             }
         }

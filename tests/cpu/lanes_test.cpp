@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "cpu/traversal/ray_state-inl.h"
+#include "cpu/traversal/block_lanes-inl.h"
 #include "support/targets.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -171,7 +171,7 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
             Random random{batch * 0x9e3779b97f4a7c15ull + 1};
             for (size_t k = 0; k < kBatch; ++k) {
                 const Instance& instance = prepared->instances[batch % prepared->instances.size()];
-                rays[k].bias = uint32_t(k / 1024);
+                rays[k].lod_bias = uint32_t(k / 1024);
                 rays[k].origin =
                     transform_point(instance.world_from_object, make_inner_point(c.body, random));
                 if (k / 16 % 2 == 1 && k % 16 > 0) {
@@ -180,7 +180,7 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
                     rays[k].direction += random.direction() * (0.1f * length(rays[k].direction));
                 } else {
                     rays[k].direction =
-                        k % 2 ? make_target(*prepared, instance, rays[k].bias, random) - rays[k].origin
+                        k % 2 ? make_target(*prepared, instance, rays[k].lod_bias, random) - rays[k].origin
                               : random.direction();
                 }
             }
@@ -188,7 +188,7 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
             for (size_t k = 0; k < kBatch; ++k) {
                 if (hits[k].is_hit()) continue;
                 if (leaks++ < 5)
-                    ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].bias;
+                    ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].lod_bias;
             }
         }
     });

@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kWidth = 16;
 
-enum class Kind { around_axes, along_axes, with_a_ray_that_is_no_number, with_a_reach_that_is_no_number };
+enum class Kind { around_axes, along_axes, with_a_nan_in_a_ray, with_a_nan_reach };
 
 /// Packets whose first ray has one of few directions, the others some degrees off, from places of their own.
 std::vector<TraceRay> make_packets(Kind kind, uint32_t count) {
@@ -36,9 +36,9 @@ std::vector<TraceRay> make_packets(Kind kind, uint32_t count) {
             TraceRay ray;
             ray.direction = kind == Kind::along_axes ? direction : direction + draw(0.05f);
             ray.origin = draw(0.5f) - direction * 4.0f;
-            if (lane == packet % kWidth && kind == Kind::with_a_ray_that_is_no_number)
+            if (lane == packet % kWidth && kind == Kind::with_a_nan_in_a_ray)
                 set_component(ray.origin, int(packet % 3), NAN);
-            if (lane == packet % kWidth && kind == Kind::with_a_reach_that_is_no_number)
+            if (lane == packet % kWidth && kind == Kind::with_a_nan_reach)
                 (packet % 2 == 0 ? ray.t_min : ray.t_max) = NAN;
             rays.push_back(ray);
         }
@@ -53,8 +53,8 @@ TEST(Packets, rays_have_the_hits_that_they_have_alone) {
     for (const Isa isa : test::machine_isas()) {
         settings.device.isa = isa;
         const Tracer tracer(scene, settings);
-        for (const Kind kind : {Kind::around_axes, Kind::along_axes, Kind::with_a_ray_that_is_no_number,
-                                Kind::with_a_reach_that_is_no_number}) {
+        for (const Kind kind :
+             {Kind::around_axes, Kind::along_axes, Kind::with_a_nan_in_a_ray, Kind::with_a_nan_reach}) {
             const std::vector<TraceRay> rays = make_packets(kind, 60);
             std::vector<TraceHit> together(rays.size()), alone(1);
             std::vector<uint8_t> occluded_together(rays.size()), occluded_alone(1);
@@ -129,7 +129,7 @@ TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
 }
 
 /// Of a bundle; and of what other trees are walked by.
-TEST(Packets, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
+TEST(Packets, a_ray_with_a_nan_hits_nothing_and_leaves_the_hits_of_others) {
     RenderSettings settings;
     settings.surface.level = 3;
     const auto scene = prepare_scene(test::make_scene(DisplacementSpace::object), settings);

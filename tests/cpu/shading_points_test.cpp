@@ -166,7 +166,7 @@ TEST(CameraRays, are_the_same_many_at_once_and_one_by_one) {
         for (const scalar::CameraFrame& frame : {camera, nowhere})
             for (const size_t count : {size_t(1), size_t(15), size_t(16), size_t(17), positions.size()}) {
                 cpu::TraceRay used;
-                used.t_min = 7, used.t_max = 8, used.bias = 9;
+                used.t_min = 7, used.t_max = 8, used.lod_bias = 9;
                 std::vector<cpu::TraceRay> rays(count + 1, used);
                 tracer.shading_kernels().aim_rays(frame, positions.data(), count, rays.data());
                 for (size_t k = 0; k < count; ++k) {
@@ -176,9 +176,9 @@ TEST(CameraRays, are_the_same_many_at_once_and_one_by_one) {
                         << tracer.shading_kernels().name << " " << k;
                     ASSERT_EQ(rays[k].t_min, 0.0f);
                     ASSERT_EQ(rays[k].t_max, cpu::TraceRay().t_max);
-                    ASSERT_EQ(rays[k].bias, 0u);
+                    ASSERT_EQ(rays[k].lod_bias, 0u);
                 }
-                EXPECT_EQ(rays[count].bias, used.bias) << "one ray too many";
+                EXPECT_EQ(rays[count].lod_bias, used.lod_bias) << "one ray too many";
             }
     }
 }

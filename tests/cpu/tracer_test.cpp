@@ -89,7 +89,7 @@ std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t bias, uint32_t see
             ray = rays[k / 16 * 16];
             ray.direction += Vec3f{normal(random), normal(random), normal(random)} * 0.2f;
         }
-        ray.bias = bias;
+        ray.lod_bias = bias;
         rays.push_back(ray);
     }
     return rays;
@@ -237,7 +237,7 @@ TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
     }
 }
 
-TEST(Tracer, hits_do_not_depend_on_the_company_of_a_ray) {
+TEST(Tracer, hits_are_those_of_single_rays_in_any_batch) {
     RenderSettings settings;
     settings.image.height = 150;
     Scene scene = test::make_body_scene(

@@ -29,7 +29,8 @@ class Traversals : public testing::TestWithParam<Choice> {
             ASSERT_EQ(a.t, b.t) << "ray " << k;
             ASSERT_EQ(a.patch, b.patch) << "ray " << k;
             ASSERT_TRUE(a.i == b.i && a.j == b.j && a.is_upper == b.is_upper) << "ray " << k;
-            ASSERT_TRUE(a.u == b.u && a.v == b.v && a.levels == b.levels && a.bias == b.bias) << "ray " << k;
+            ASSERT_TRUE(a.u == b.u && a.v == b.v && a.levels == b.levels && a.lod_bias == b.lod_bias)
+                << "ray " << k;
         }
         EXPECT_GT(hit_count, rays.size() / 3);
     }

@@ -19,6 +19,7 @@ DECLARED = {
     "cctype": "isalnum isalpha isdigit isspace tolower",
     "charconv": "from_chars from_chars_result to_chars",
     "chrono": "chrono",
+    "concepts": "convertible_to same_as",
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot ilogb isfinite
         isinf isnan ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering",

@@ -41,7 +41,7 @@ inline std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t seed) {
         ray.direction = Vec3f{normal(random), normal(random), normal(random)} * 0.7f - ray.origin;
         if (k % 7 == 0) ray.direction.x = 0;
         if (k % 5 == 0) ray.t_max = 0.9f;
-        ray.bias = k % 4;
+        ray.lod_bias = k % 4;
         rays.push_back(ray);
     }
     return rays;

@@ -1,4 +1,4 @@
-// Tiles of rays, as pictures are traced in, and what tells whether they meet the same in any company.
+// Tiles of rays, as pictures are traced in, and a check that hits are bit-identical to single-ray traversal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ inline bool is_same(const cpu::TraceHit& a, const cpu::TraceHit& b) {
     const auto bits = [](float value) { return std::bit_cast<uint32_t>(value); };
     return bits(a.t) == bits(b.t) && a.instance == b.instance && a.patch == b.patch &&
            bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v) && a.i == b.i && a.j == b.j &&
-           a.is_upper == b.is_upper && a.levels == b.levels && a.bias == b.bias;
+           a.is_upper == b.is_upper && a.levels == b.levels && a.lod_bias == b.lod_bias;
 }
 
 inline size_t count_different(const Hits& a, const Hits& b) {

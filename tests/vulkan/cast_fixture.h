@@ -30,13 +30,13 @@ inline CastAnswers cast_on_device(const Device& device, const PreparedScene& sce
                                   const RenderSettings& settings, const std::vector<cpu::TraceRay>& rays,
                                   TracerConfig config) {
     config.ray_capacity = std::max<uint32_t>(1, uint32_t(rays.size()));
-    config.may_see_coarser = std::ranges::any_of(rays, [](const auto& ray) { return ray.bias > 0; });
+    config.may_see_coarser = std::ranges::any_of(rays, [](const auto& ray) { return ray.lod_bias > 0; });
     const std::optional<SceneWalk> walk = make_device_walk(scene, settings);
     const DeviceScene device_scene(device, scene, walk ? &*walk : nullptr);
     Tracer tracer(device, scene, device_scene, settings, config);
     std::vector<scalar::RayData> data;
     for (const cpu::TraceRay& ray : rays)
-        data.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, ray.bias});
+        data.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, ray.lod_bias});
     std::vector<uint32_t> numbers(rays.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
     Buffer list(device, {"ray list", rays.size() * sizeof(uint32_t), Purpose::ray_buffers});

@@ -212,8 +212,8 @@ inline std::vector<ShadingCase> make_cases(const PreparedScene& scene) {
         const Instance& instance = scene.instances[c.hit.instance];
         const Surface& surface = scene.surfaces[instance.surface];
         c.hit.patch = uint32_t(random.next() * float(surface.patch_count()));
-        c.hit.bias = uint8_t(random.next() * 3);
-        const PatchLevels levels = instance.levels->at(c.hit.patch).biased(c.hit.bias);
+        c.hit.lod_bias = uint8_t(random.next() * 3);
+        const PatchLevels levels = instance.levels->at(c.hit.patch).biased(c.hit.lod_bias);
         c.hit.levels = pack_levels(levels);
         const float u = random.next(), v = random.next();
         const scalar::CellPlace place =
@@ -221,7 +221,7 @@ inline std::vector<ShadingCase> make_cases(const PreparedScene& scene) {
         c.hit.u = place.u, c.hit.v = place.v;
         c.hit.i = uint16_t(place.i), c.hit.j = uint16_t(place.j), c.hit.is_upper = place.is_upper;
         c.hit.t = 1 + random.next();
-        c.ray = {{}, 0, random.next_direction(), scalar::make_infinity(), c.hit.bias};
+        c.ray = {{}, 0, random.next_direction(), scalar::make_infinity(), c.hit.lod_bias};
         c.path.throughput = {0.2f + 0.8f * random.next(), 0.5f, 1};
         c.path.bsdf_pdf = 0.1f + random.next();
         c.path.previous = random.next_direction() * 5.0f;

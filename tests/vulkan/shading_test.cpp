@@ -158,7 +158,7 @@ struct ExpectedLight {
 
 std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const ShadingCase& c, const CpuVertex& v,
                                           const cpu::LightSet::RandomNumbers& random) {
-    const cpu::LightSet::Receiver at{v.point.position, c.hit.bias};
+    const cpu::LightSet::Receiver at{v.point.position, c.hit.lod_bias};
     cpu::LightSample light;
     const uint32_t first = 0;
     bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
@@ -170,7 +170,7 @@ std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const Shadi
         c.path.throughput * bsdf.value * light.weight * scalar::power_heuristic(light.pdf, bsdf.pdf);
     if (contribution == Vec3f{} || !is_finite(contribution)) return std::nullopt;
     scalar::RayData ray{bench.tracer.offset_origin(v.point, light.direction), 0, light.direction,
-                        light.distance, c.hit.bias};
+                        light.distance, c.hit.lod_bias};
     if (light.emitter) {
         const Vec3f to = bench.tracer.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to);
@@ -258,7 +258,7 @@ std::optional<ExpectedBounce> expect_bounce(const ShadingBench& bench, const Sha
     if (!is_finite(throughput) || draw(scalar::kRoulettePair).x >= probability) return std::nullopt;
     const Vec3f origin = bench.tracer.offset_origin(v.point, direction);
     return ExpectedBounce{throughput * (1 / probability),
-                          {origin, 0, direction, scalar::make_infinity(), c.hit.bias}};
+                          {origin, 0, direction, scalar::make_infinity(), c.hit.lod_bias}};
 }
 
 TEST_F(ShadingKernels, bounce_where_the_cpu_engine_bounces) {

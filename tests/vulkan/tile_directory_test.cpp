@@ -44,7 +44,7 @@ TEST_F(TileDirectoriesTest, made_later_join_those_that_are_there) {
     std::vector<uint32_t> numbers;
     for (const cpu::TraceRay& ray : rays) {
         numbers.push_back(uint32_t(numbers.size()));
-        data.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, ray.bias});
+        data.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max, ray.lod_bias});
     }
     tracer.rays().upload(data);
     // Sixteen tiles make a buffer with room for eight more, which are added where it is.

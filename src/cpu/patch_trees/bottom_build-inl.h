@@ -57,32 +57,24 @@ HWY_INLINE void store_union(const float (&boxes)[6][W], cpu::Node16& above, uint
     }
 }
 
-HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
-    const int level = int(tree.level);
-    const auto store_blocks = [&](uint32_t first_block, cpu::Node8& node) {
-        for (uint32_t k = 0; k < 8; ++k)
-            store_box(tree, cpu::BottomTree::find_first_vertex(level, first_block + k), 3, node.bounds, k);
-    };
-    const auto store_squares = [&](uint32_t first_block, cpu::Node16& node) {
-        for (uint32_t k = 0; k < 16; ++k)
-            store_box(tree, cpu::BottomTree::find_first_vertex(level, first_block + 2 * k), 5, node.bounds,
-                      k);
-    };
-    if (level == 6) {
-        for (uint32_t g = 0; g < 16; ++g) {
-            store_squares(g * 32, tree.wide_group(int(g)));
-            store_union(tree.wide_group(int(g)).bounds, tree.root(), g);
+template <int kLevel> HWY_INLINE void build_nodes(cpu::BottomTree& tree) {
+    using Shape = cpu::TreeShape<kLevel>;
+    for (uint32_t g = 0; g < (Shape::kHasGroups ? 16 : 1); ++g) {
+        auto& node = tree.node<kLevel>(g);
+        for (uint32_t k = 0; k < Shape::kWidth; ++k) {
+            const uint32_t block = (g * Shape::kWidth + k) * Shape::kLeafBlocks;
+            store_box(tree, cpu::BottomTree::find_first_vertex(kLevel, block), 2 * Shape::kLeafBlocks + 1,
+                      node.bounds, k);
         }
-    } else if (level == 5) {
-        for (uint32_t g = 0; g < 16; ++g) {
-            store_blocks(g * 8, tree.group(int(g)));
-            store_union(tree.group(int(g)).bounds, tree.root(), g);
-        }
-    } else if (level == 4) {
-        store_squares(0, tree.root());
-    } else if (level == 3) {
-        store_blocks(0, tree.group(0));
+        if constexpr (Shape::kHasGroups) store_union(node.bounds, tree.root(), g);
     }
+}
+
+HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
+    if (tree.level == 6) build_nodes<6>(tree);
+    if (tree.level == 5) build_nodes<5>(tree);
+    if (tree.level == 4) build_nodes<4>(tree);
+    if (tree.level == 3) build_nodes<3>(tree);
 }
 
 /// Extends `box` by (cells + 1)^2 vertices.

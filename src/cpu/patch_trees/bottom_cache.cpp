@@ -51,7 +51,8 @@ void CastCounters::add(const CastCounters& other) {
     sampled_trace_s += other.sampled_trace_s, sampled_bottom_s += other.sampled_bottom_s;
 }
 
-BottomCache::BottomCache(size_t cap_bytes) : cap_bytes_(cap_bytes) {
+BottomCache::BottomCache(size_t cap_bytes, BuildTreeFunction build_tree)
+    : cap_bytes_(cap_bytes), build_tree_(build_tree) {
     if (cap_bytes == 0) return;
     slot_count_ = std::bit_ceil(std::clamp<size_t>(cap_bytes / kMeanTreeBytes, 64, size_t(1) << 20));
     slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
@@ -119,11 +120,23 @@ void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
     context.recent.place(tree.key) = {tree.key, &tree, context.epoch.load(std::memory_order_relaxed)};
 }
 
-const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                       const TreeKey& key, BuildTreeFunction build) {
-    if (const CachedTree* found = find(context, key)) return static_cast<const BottomTree&>(*found);
+const CachedTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                       const TreeKey& key) {
+    if (const CachedTree* found = find(context, key)) return *found;
     throw_if_stopped();
     const Timer timer;
+    CachedTree* tree = nullptr;
+    if (key.tile == kDirectoryTile)
+        tree = make_directory(context, surface, key);
+    else
+        tree = make_tree(context, surface, key);
+    const bool is_scratch = tree == context.tree_scratch.get() || tree == context.directory_scratch.get();
+    if (!is_scratch) offer(context, tree);
+    context.counters.bottom_build_s += timer.seconds();
+    return *tree;
+}
+
+BottomTree* BottomCache::make_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
     const PatchLevels levels = unpack_levels(key.levels);
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
     const int level = levels.patch - depth;
@@ -135,19 +148,14 @@ const BottomTree& BottomCache::find_or_build_elsewhere(TraceContext& context, co
     tree->level = uint32_t(level);
     tree->cell_x = (key.tile & ((1u << depth) - 1)) << kTileLevel;
     tree->cell_y = (key.tile >> depth) << kTileLevel;
-    build(surface, levels, *tree);
+    build_tree_(surface, levels, *tree);
     ++context.counters.built;
     ++context.counters.built_at_level[level];
-    if (memory) offer(context, tree);
-    context.counters.bottom_build_s += timer.seconds();
-    return *tree;
+    return tree;
 }
 
-const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                          const TreeKey& key) {
-    if (const CachedTree* found = find(context, key)) return static_cast<const TileDirectory&>(*found);
-    throw_if_stopped();
-    const Timer timer;
+TileDirectory* BottomCache::make_directory(TraceContext& context, const Surface& surface,
+                                           const TreeKey& key) {
     const PatchLevels levels = unpack_levels(key.levels);
     const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
     const size_t bytes = TileDirectory::size_bytes(depth);
@@ -161,9 +169,7 @@ const TileDirectory& BottomCache::find_or_build_elsewhere(TraceContext& context,
     directory->byte_count = uint32_t(bytes);
     directory->depth = depth;
     build_tile_directory(surface, levels, *directory);
-    if (memory) offer(context, directory);
-    context.counters.bottom_build_s += timer.seconds();
-    return *directory;
+    return directory;
 }
 
 void BottomCache::throw_if_stopped() const {

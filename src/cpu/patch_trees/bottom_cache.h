@@ -80,15 +80,15 @@ struct TraceContext {
     std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1
 };
 
-/// Thrown where a tree would have to be made after an end was asked for.
+/// Thrown where a tree would have to be made after the render was cancelled.
 struct StopRequest : std::exception {
-    const char* what() const noexcept override { return "an end was asked for"; }
+    const char* what() const noexcept override { return "render cancelled"; }
 };
 
 class BottomCache {
   public:
-    /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept.
-    explicit BottomCache(size_t cap_bytes);
+    /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept. `build_tree` makes the trees.
+    BottomCache(size_t cap_bytes, BuildTreeFunction build_tree);
     ~BottomCache();
     BottomCache(const BottomCache&) = delete;
     BottomCache& operator=(const BottomCache&) = delete;
@@ -114,21 +114,12 @@ class BottomCache {
 
     /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
     /// call.
-    const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key,
-                                         BuildTreeFunction build) {
-        if (const CachedTree* recent = find_recent(context, key)) {
-            ++context.counters.reused;
-            return static_cast<const BottomTree&>(*recent);
-        }
-        return find_or_build_elsewhere(context, surface, key, build);
+    const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
+        return static_cast<const BottomTree&>(find_or_build(context, surface, key));
     }
     const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
                                                  const TreeKey& key) {
-        if (const CachedTree* recent = find_recent(context, key)) {
-            ++context.counters.reused;
-            return static_cast<const TileDirectory&>(*recent);
-        }
-        return find_or_build_elsewhere(context, surface, key);
+        return static_cast<const TileDirectory&>(find_or_build(context, surface, key));
     }
     /// One that this worker met lately, or null.
     const CachedTree* find_recent(TraceContext& context, const TreeKey& key) const {
@@ -145,10 +136,16 @@ class BottomCache {
     std::vector<CastCounters> sum_casts() const;
 
   private:
-    const BottomTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                              const TreeKey& key, BuildTreeFunction build);
-    const TileDirectory& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                 const TreeKey& key);
+    const CachedTree& find_or_build(TraceContext& context, const Surface& surface, const TreeKey& key) {
+        const CachedTree* recent = find_recent(context, key);
+        if (!recent) return find_or_build_elsewhere(context, surface, key);
+        ++context.counters.reused;
+        return *recent;
+    }
+    const CachedTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                              const TreeKey& key);
+    BottomTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
+    TileDirectory* make_directory(TraceContext& context, const Surface& surface, const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
     static void remember(TraceContext& context, const CachedTree& tree);
     void throw_if_stopped() const;
@@ -162,6 +159,7 @@ class BottomCache {
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
     size_t cap_bytes_;
+    BuildTreeFunction build_tree_;
     size_t slot_count_ = 0; ///< power of two, or 0
     std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
     std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "surface/patch/surface.h"
 
@@ -43,6 +44,14 @@ struct alignas(64) CachedTree {
     TreeKey key;
     uint32_t byte_count = 0;
     std::atomic<uint8_t> is_recent{0};
+};
+
+/// The boxes of a tree of level kLevel, 3 or more: one node, or a root over sixteen.
+template <int kLevel> struct TreeShape {
+    static constexpr bool kHasGroups = kLevel >= 5;
+    static constexpr bool kHasSquares = kLevel % 2 == 0; ///< leaves of 4 x 4 cells, else of 4 x 2
+    static constexpr uint32_t kWidth = kHasSquares ? 16 : 8, kLeafBlocks = kHasSquares ? 2 : 1;
+    using Node = std::conditional_t<kHasSquares, Node16, Node8>;
 };
 
 /// Tree over the cells of one tile with 2^level cells a side, level in [0, kTileLevel]. Boxes and vertices
@@ -83,14 +92,16 @@ struct BottomTree : CachedTree {
     char* data();
     const Node16& root() const { return *reinterpret_cast<const Node16*>(data()); }
     Node16& root() { return *reinterpret_cast<Node16*>(data()); }
-    /// Level 6: node of group g.
-    const Node16& wide_group(int g) const { return (&root())[1 + g]; }
-    Node16& wide_group(int g) { return (&root())[1 + g]; }
-    /// Level 5: node of group g; level 3: the only one (g = 0).
-    const Node8& group(int g) const {
-        return reinterpret_cast<const Node8*>(data() + (level == 5 ? sizeof(Node16) : 0))[g];
+    /// The node above the leaves: of group g, or the only one (g = 0). kLevel is the tree's.
+    template <int kLevel> const auto& node(uint32_t g) const {
+        using Shape = TreeShape<kLevel>;
+        return reinterpret_cast<const typename Shape::Node*>(data() +
+                                                             (Shape::kHasGroups ? sizeof(Node16) : 0))[g];
     }
-    Node8& group(int g) { return const_cast<Node8&>(const_cast<const BottomTree*>(this)->group(g)); }
+    template <int kLevel> auto& node(uint32_t g) {
+        return const_cast<typename TreeShape<kLevel>::Node&>(
+            const_cast<const BottomTree*>(this)->node<kLevel>(g));
+    }
     /// x of all vertices, row by row, then y, then z. `own_level` is the tree's.
     const float* grid(int own_level) const {
         return reinterpret_cast<const float*>(data() + node_bytes(own_level));

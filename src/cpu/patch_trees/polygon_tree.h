@@ -2,27 +2,21 @@
 // blocks of eight triangles, corners and all, so that a ray needs nothing but the tree.
 #pragma once
 
-#include <bit>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "base/huge_pages.h"
+#include "bvh/wide_children.h"
 #include "surface/patch/surface.h"
 
 namespace relief::cpu {
 
 /// Boxes of up to eight children: lower x y z, upper x y z. They fill the slots from 0; empty slots have
-/// lower +inf, upper -inf and kNoChild.
-struct alignas(64) PolygonNode {
-    static constexpr uint32_t kLeafFlag = 0x80000000u; ///< then bits 0..30 are the block
-    static constexpr uint32_t kNoChild = 0xffffffffu;
-
+/// lower +inf, upper -inf. A leaf is one block. Floats, where WideNode has bytes: there are as many triangles
+/// as nodes have room for, not a patch of a thousand a leaf, and a ray's tests need no decoding.
+struct alignas(64) PolygonNode : WideChild {
     float bounds[6][8];
     uint32_t child[8];
-
-    static bool is_leaf(uint32_t child) { return (child & kLeafFlag) != 0; }
-    static uint32_t leaf_block(uint32_t child) { return child & ~kLeafFlag; }
 };
 
 /// Up to eight triangles: a triangle or quad of the surface each, or half of a quad. Empty lanes are NaN,

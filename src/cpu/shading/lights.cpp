@@ -135,7 +135,7 @@ void LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u,
     const uint32_t quad = emitter - range.first;
     const bool is_triangle = scene.surfaces[instance.surface].quads[quad].is_triangle();
     const Vec2f uv = is_triangle ? scalar::square_to_triangle(u) : u;
-    const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.bias);
+    const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.lod_bias);
     const float pdf = emitter_density(emitter, at.position, point);
     static_cast<scalar::LightDraw&>(drawn) =
         scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf);

@@ -34,7 +34,7 @@ class LightSet {
     /// What is lit.
     struct Receiver {
         Vec3f position;
-        uint32_t bias; ///< emitters are sampled on surface M_bias
+        uint32_t lod_bias; ///< emitters are sampled on surface M_bias
     };
 
     /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,

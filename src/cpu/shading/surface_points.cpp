@@ -71,12 +71,12 @@ const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit
 } // namespace
 
 TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv,
-                    uint32_t bias) {
+                    uint32_t lod_bias) {
     const Instance& placed = scene.instances[instance];
     TraceHit hit;
     hit.instance = instance, hit.patch = patch;
-    hit.bias = uint8_t(bias);
-    const PatchLevels levels = placed.levels->at(patch).biased(bias);
+    hit.lod_bias = uint8_t(lod_bias);
+    const PatchLevels levels = placed.levels->at(patch).biased(lod_bias);
     hit.levels = pack_levels(levels);
     const bool is_triangle = scene.surfaces[placed.surface].quads[patch].is_triangle();
     const scalar::CellPlace place = scalar::locate_cell(is_triangle, 1u << levels.patch, uv.x, uv.y);

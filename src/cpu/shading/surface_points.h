@@ -20,7 +20,7 @@ inline bool can_batch_points(const Surface& surface, uint32_t patch) {
 
 /// The cell that holds a place of a patch on surface M_bias, as a hit.
 TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patch, const Vec2f& uv,
-                    uint32_t bias);
+                    uint32_t lod_bias);
 
 /// Nothing on a surface without displacement.
 std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit);

@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "cpu/traversal/camera_rays-inl.h"
+#include "cpu/traversal/ray-inl.h"
 #include "cpu/traversal/ray_lanes-inl.h"
-#include "cpu/traversal/ray_state-inl.h"
 #include "formulas/camera.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,7 +30,7 @@ inline constexpr uint32_t kWritten = 0xfffffffe, kNothing = 0xffffffff;
 struct BundleRays {
     cpu::TraceHit* hits; ///< those of rays with kWritten are there
     HitLog* log;
-    uint32_t count, bias;
+    uint32_t count, lod_bias;
     bool has_one_origin;
     Vec3f origin;                            ///< of all, or of the first
     alignas(64) uint32_t found[kBundleSize]; ///< number in the log, kWritten or kNothing
@@ -50,25 +50,25 @@ struct BundleRays {
 };
 
 /// Writes what a bundle keeps of sixteen rays, repeated where there are fewer. Returns those that may be in
-/// one with others of the bias: can_hit.
+/// one with others of the lod_bias: can_hit.
 HWY_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& rays) {
     for (int k = 0; k < 3; ++k) {
         lanes.direction[k].store(rays.direction[k] + at);
         if (!rays.has_one_origin) lanes.origin[k].store(rays.from[k] + at);
     }
     lanes.t_min.store(rays.t_min + at), lanes.t_max.store(rays.t + at);
-    return lanes.of_bias & lanes.can_hit();
+    return lanes.of_lod_bias & lanes.can_hit();
 }
 
 /// Takes rays at the front, at most kBundleSize, while find_fitting(lanes) has them.
 template <class FindFitting>
 HWY_INLINE void load_front(const cpu::TraceRay* world, size_t count, BundleRays& rays,
                            FindFitting find_fitting) {
-    rays.count = 0, rays.bias = world[0].bias, rays.origin = world[0].origin;
+    rays.count = 0, rays.lod_bias = world[0].lod_bias, rays.origin = world[0].origin;
     const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
     while (rays.count < most) {
         const uint32_t left = HWY_MIN(most - rays.count, kGroupSize);
-        const RayLanes lanes(world + rays.count, left, rays.bias);
+        const RayLanes lanes(world + rays.count, left, rays.lod_bias);
         const LaneMask fits = load_group(lanes, rays.count, rays) & find_fitting(lanes);
         const uint32_t taken = hwy::Num0BitsBelowLS1Bit_Nonzero32(~fits);
         rays.count += taken;
@@ -77,7 +77,7 @@ HWY_INLINE void load_front(const cpu::TraceRay* world, size_t count, BundleRays&
 }
 
 /// Takes the rays at the front that leave one point together.
-inline void load_fan(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
+inline void load_frustum(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
     const float origin[3] = {world[0].origin.x, world[0].origin.y, world[0].origin.z};
     rays.has_one_origin = true;
     load_front(world, count, rays, [&](const RayLanes& lanes) {
@@ -86,13 +86,13 @@ inline void load_fan(const cpu::TraceRay* world, size_t count, BundleRays& rays)
     });
 }
 
-/// Of the angle between a ray of a shaft and the first one: some ten degrees.
-inline constexpr float kLeastShaftSquaredCosine = 0.97f;
+/// Of the angle between a ray of a beam and the first one: some ten degrees.
+inline constexpr float kLeastBeamSquaredCosine = 0.97f;
 
 /// Takes the rays at the front that go about the way of the first, and nothing before their origins.
-inline void load_shaft(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
+inline void load_beam(const cpu::TraceRay* world, size_t count, BundleRays& rays) {
     const Vec3f first = normalize(world[0].direction);
-    const Lanes16 least(kLeastShaftSquaredCosine);
+    const Lanes16 least(kLeastBeamSquaredCosine);
     rays.has_one_origin = false;
     load_front(world, count, rays, [&](const RayLanes& lanes) {
         const Lanes16(&d)[3] = lanes.direction;
@@ -104,11 +104,11 @@ inline void load_shaft(const cpu::TraceRay* world, size_t count, BundleRays& ray
 
 /// Aims the rays of a pinhole camera through up to kBundleSize positions in the picture, and writes them to
 /// `written` unless it is null.
-inline void load_fan(const scalar::CameraFrame& camera, const Vec2f* positions, uint32_t count,
-                     cpu::TraceRay* written, BundleRays& rays) {
+inline void load_frustum(const scalar::CameraFrame& camera, const Vec2f* positions, uint32_t count,
+                         cpu::TraceRay* written, BundleRays& rays) {
     const WideCamera wide_camera(camera);
     const Lanes16 start(0.0f), end(std::numeric_limits<float>::infinity());
-    rays.count = count, rays.bias = 0, rays.has_one_origin = true, rays.origin = camera.origin;
+    rays.count = count, rays.lod_bias = 0, rays.has_one_origin = true, rays.origin = camera.origin;
     for (uint32_t at = 0; at < count; at += kGroupSize) {
         const uint32_t size = HWY_MIN(count - at, kGroupSize);
         const wide::Vec3 direction = wide_camera.aim(positions + at, size);
@@ -120,7 +120,7 @@ inline void load_fan(const scalar::CameraFrame& camera, const Vec2f* positions, 
 }
 
 /// Places behind the last ray repeat it and reach nothing.
-inline void fill_rest(BundleRays& rays) {
+inline void pad_inactive_lanes(BundleRays& rays) {
     for (uint32_t last = rays.count - 1, k = rays.count; k < kBundleSize; ++k) {
         rays.t[k] = 0, rays.t_min[k] = rays.t_min[last];
         for (float* direction : rays.direction) direction[k] = direction[last];
@@ -130,10 +130,10 @@ inline void fill_rest(BundleRays& rays) {
 }
 
 /// Width of the box of the origins over the distance of neighbours; of a tile of 16 x 16 pixels some 16.
-inline constexpr float kWidestShaft = 64;
+inline constexpr float kWidestBeam = 64;
 
-/// False where rays begin on things that lie far apart: a shaft about them would hold all that is between.
-/// Also where most neighbours begin in one place. After fill_rest.
+/// False where rays begin on things that lie far apart: a beam about them would hold all that is between.
+/// Also where most neighbours begin in one place. After pad_inactive_lanes.
 inline bool are_neighbours_close(const BundleRays& rays) {
     constexpr uint32_t kSamples = 15; // of the distances of neighbours, for their median
     std::array<float, kSamples> distance;
@@ -142,7 +142,7 @@ inline bool are_neighbours_close(const BundleRays& rays) {
         distance[n] = length(rays.origin_of(k + 1) - rays.origin_of(k));
     }
     std::nth_element(distance.begin(), distance.begin() + kSamples / 2, distance.end());
-    const float widest = kWidestShaft * distance[kSamples / 2];
+    const float widest = kWidestBeam * distance[kSamples / 2];
     for (const auto& from : rays.from) {
         Lanes16 least = Lanes16::load(from), greatest = least;
         for (uint32_t at = kGroupSize; at < rays.count; at += kGroupSize)

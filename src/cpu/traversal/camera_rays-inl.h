@@ -44,7 +44,7 @@ struct WideCamera {
 /// The rays of up to sixteen directions, into memory.
 HWY_INLINE void store_rays(const Vec3f& origin, const wide::Vec3& direction, size_t count,
                            cpu::TraceRay* rays) {
-    static_assert(offsetof(cpu::TraceRay, direction) == 16 && offsetof(cpu::TraceRay, bias) == 32);
+    static_assert(offsetof(cpu::TraceRay, direction) == 16 && offsetof(cpu::TraceRay, lod_bias) == 32);
     cpu::TraceRay start;
     start.origin = origin;
     LaneQuads quads;
@@ -53,7 +53,7 @@ HWY_INLINE void store_rays(const Vec3f& origin, const wide::Vec3& direction, siz
         char* const ray = reinterpret_cast<char*>(&rays[lane]);
         std::memcpy(ray, &start, 16);
         std::memcpy(ray + 16, quads.lane[lane], 16);
-        rays[lane].bias = 0;
+        rays[lane].lod_bias = 0;
     }
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/check.h"
 #include "cpu/traversal/ray_bundle-inl.h"
+#include "cpu/traversal/triangle_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -65,7 +66,7 @@ static_assert(sizeof(cpu::TraceHit) == 32 && offsetof(cpu::TraceHit, t) == 0 &&
               offsetof(cpu::TraceHit, instance) == 4 && offsetof(cpu::TraceHit, patch) == 8 &&
               offsetof(cpu::TraceHit, u) == 12 && offsetof(cpu::TraceHit, v) == 16 &&
               offsetof(cpu::TraceHit, i) == 20 && offsetof(cpu::TraceHit, j) == 22 &&
-              offsetof(cpu::TraceHit, is_upper) == 24 && offsetof(cpu::TraceHit, bias) == 25 &&
+              offsetof(cpu::TraceHit, is_upper) == 24 && offsetof(cpu::TraceHit, lod_bias) == 25 &&
               offsetof(cpu::TraceHit, levels) == 28);
 
 /// Hits first..first + 15 of the log, by the operations of locate_in_block and locate_on_polygon.
@@ -79,7 +80,7 @@ HWY_INLINE void make_hits(const RayBundle& bundle, HitLog& log, uint32_t first) 
     const Lanes16 place_u = (i + select_negative(cell, weight_b, both)) * size,
                   place_v = (j + select_negative(cell, both, weight_c)) * size;
     const LaneIndices flags =
-        cell.shifted_down<31>().masked(1) + LaneIndices(int32_t(uint32_t(bundle.rays->bias) << 8));
+        cell.shifted_down<31>().masked(1) + LaneIndices(int32_t(uint32_t(bundle.rays->lod_bias) << 8));
     LaneQuads begin, end;
     begin.set(Lanes16::load(log.t + first), LaneIndices(int32_t(bundle.instance)).bits(),
               LaneIndices::load(log.patch + first).bits(), place_u);
@@ -141,7 +142,7 @@ HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&h
 }
 
 /// The hits of one block: noted as they are found, and offered to their rays when all pairs of the block have
-/// been tested. At once for many, a processor foresees more of it.
+/// been tested. For many at once its branches are more predictable.
 template <class Bundle> class BlockHits {
   public:
     HWY_INLINE BlockHits(Bundle& bundle, LaneMask (&hit_rays)[kGroupCount])

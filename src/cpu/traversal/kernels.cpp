@@ -17,14 +17,15 @@ namespace {
 /// Of the angle between two rays of a packet: some 25 degrees.
 constexpr float kLeastSquaredCosine = 0.82f;
 
-/// Sixteen rays that can hit and have the bias that was asked for, whose directions lie near the first one.
+/// Sixteen rays that can hit and have the LOD bias that was asked for, whose directions lie near the first
+/// one.
 bool is_coherent(const RayLanes& rays, const Vec3f& first) {
     const Lanes16(&d)[3] = rays.direction;
     const Lanes16 projection = dot_lanes(d, first), least(kLeastSquaredCosine * dot(first, first));
     const LaneMask is_near =
         less(Lanes16(0.0f), projection) &
         less_equal(least * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), projection * projection);
-    return (is_near & rays.of_bias & rays.can_hit()) == 0xffff;
+    return (is_near & rays.of_lod_bias & rays.can_hit()) == 0xffff;
 }
 
 /// A look at some of the rays, which spares most of those that go different ways the way into lanes.
@@ -47,7 +48,7 @@ void trace_rays(const cpu::SceneView& scene, cpu::TraceContext& context, const c
         const cpu::TraceRay* const world = rays + begin;
         const size_t size = HWY_MIN(size_t(16), count - begin);
         if (size == 16 && scene.lod == LodRule::field && may_be_coherent(world)) {
-            const RayLanes lanes(world, 16, world[0].bias);
+            const RayLanes lanes(world, 16, world[0].lod_bias);
             if (is_coherent(lanes, world[0].direction)) {
                 Packet packet;
                 const LaneMask occluded = trace_packet<kQuery>(scene, context, world, lanes, packet);
@@ -73,19 +74,19 @@ size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, cons
                    cpu::TraceHit* hits, size_t count) {
     if (count < kLeastBundle || !may_trace_bundles(scene)) return 0;
     BundleRays bundle;
-    load_fan(rays, count, bundle);
+    load_frustum(rays, count, bundle);
     if (bundle.count >= kLeastBundle) {
-        fill_rest(bundle);
+        pad_inactive_lanes(bundle);
         scene.cache->refresh(context);
-        return trace_bundle<RayFan>(scene, context, bundle, hits) ? bundle.count : 0;
+        return trace_bundle<RayFrustum>(scene, context, bundle, hits) ? bundle.count : 0;
     }
     if (!may_be_coherent(rays)) return 0;
-    load_shaft(rays, count, bundle);
+    load_beam(rays, count, bundle);
     if (bundle.count < kLeastBundle) return 0;
-    fill_rest(bundle);
+    pad_inactive_lanes(bundle);
     if (!are_neighbours_close(bundle)) return 0;
     scene.cache->refresh(context);
-    return trace_bundle<RayShaft>(scene, context, bundle, hits) ? bundle.count : 0;
+    return trace_bundle<ParallelBeam>(scene, context, bundle, hits) ? bundle.count : 0;
 }
 
 /// Nearest hits of rays that are no bundle.
@@ -93,7 +94,7 @@ void trace_others(const cpu::SceneView& scene, cpu::TraceContext& context, const
                   cpu::TraceHit* hits, size_t count) {
     trace_rays<Query::closest>(scene, context, rays, count, [&](size_t k, const cpu::TraceHit& hit, bool) {
         hits[k] = hit;
-        hits[k].bias = uint8_t(rays[k].bias);
+        hits[k].lod_bias = uint8_t(rays[k].lod_bias);
     });
 }
 
@@ -114,13 +115,13 @@ void camera_hits(const cpu::SceneView& scene, cpu::TraceContext& context, const 
     for (size_t begin = 0; begin < pixels.count; begin += kBundleSize) {
         const uint32_t size = uint32_t(HWY_MIN(size_t(kBundleSize), pixels.count - begin));
         BundleRays bundle;
-        load_fan(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
-        fill_rest(bundle);
+        load_frustum(pixels.camera, pixels.positions + begin, size, rays ? rays + begin : nullptr, bundle);
+        pad_inactive_lanes(bundle);
         scene.cache->refresh(context);
         // make_pinhole_ray leaves nothing infinite in a direction; the origin is the same for all.
         const bool may_be_bundle = size >= kLeastBundle && may_trace_bundles(scene) &&
                                    relief::can_hit(cpu::TraceRay{bundle.origin, 0, bundle.direction_of(0)});
-        if (may_be_bundle && trace_bundle<RayFan>(scene, context, bundle, hits + begin)) continue;
+        if (may_be_bundle && trace_bundle<RayFrustum>(scene, context, bundle, hits + begin)) continue;
         cpu::TraceRay aimed[kBundleSize];
         for (uint32_t k = 0; k < size; ++k)
             aimed[k].origin = bundle.origin, aimed[k].direction = bundle.direction_of(k);

@@ -1,4 +1,4 @@
-// The door to the SIMD kernels: one table of functions for each instruction set that they were compiled for.
+// The interface of the SIMD kernels: a dispatch table for each instruction set that they were compiled for.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// One ray inside one patch: directory, bottom tree, leaf blocks.
+// One ray inside one patch, and its tests of leaf blocks.
 #if defined(RELIEF_PATCH_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_PATCH_TRAVERSAL_INL_H
 #undef RELIEF_PATCH_TRAVERSAL_INL_H
@@ -6,35 +6,14 @@
 #define RELIEF_PATCH_TRAVERSAL_INL_H
 #endif
 
-#include "cpu/patch_trees/bottom_build-inl.h"
-#include "cpu/traversal/ray_state-inl.h"
-#include "formulas/levels.h"
+#include "cpu/traversal/block_lanes-inl.h"
+#include "cpu/traversal/box_test-inl.h"
+#include "cpu/traversal/patch_tree_walk-inl.h"
+#include "cpu/traversal/triangle_test-inl.h"
 #include "formulas/lod.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
-
-/// The patch that a ray or packet is inside of.
-struct PatchVisit {
-    const cpu::SceneView* scene;
-    cpu::TraceContext* context;
-    uint32_t surface, patch;
-    uint32_t levels; ///< pack_levels
-
-    HWY_INLINE uint32_t level() const { return scalar::packed_patch_level(levels); }
-    /// In (u, v).
-    HWY_INLINE float cell_size() const { return 1.0f / float(1u << level()); }
-};
-
-/// Levels of the surface that a ray sees: the field's lowered by its bias.
-HWY_INLINE PatchVisit enter_patch(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                                  uint32_t patch, uint32_t bias) {
-    const Instance& placed = scene.instances[instance];
-    ++context.counters.pairs_emitted;
-    const uint32_t levels = placed.levels->packed_at(patch);
-    return {&scene, &context, placed.surface, patch,
-            bias == 0 ? levels : scalar::lower_packed_levels(levels, bias)};
-}
 
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
 HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, const cpu::TraceRay& world) {
@@ -52,18 +31,6 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, cons
     const float distance = scalar::find_passing_distance(world.origin, world.direction, world.t_min, middle);
     visit.levels = scalar::pack_uniform_level(
         scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.level()));
-}
-
-HWY_INLINE const cpu::BottomTree& find_tree(const PatchVisit& visit, uint32_t tile) {
-    return visit.scene->cache->find_or_build_tree(*visit.context, visit.scene->surfaces[visit.surface],
-                                                  {visit.surface, visit.patch, tile, visit.levels},
-                                                  build_tree);
-}
-
-HWY_INLINE const cpu::TileDirectory& find_directory(const PatchVisit& visit) {
-    return visit.scene->cache->find_or_build_directory(
-        *visit.context, visit.scene->surfaces[visit.surface],
-        {visit.surface, visit.patch, cpu::kDirectoryTile, visit.levels});
 }
 
 /// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
@@ -123,7 +90,7 @@ template <Query kQuery>
 HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
                                   RayState& ray) {
     const BlockPlace at(tree, int(tree.level), block);
-    alignas(32) float bounds[6][8];
+    alignas(64) float bounds[6][8];
     for (int axis = 0; axis < 3; ++axis)
         for (uint32_t cell = 0; cell < 8; ++cell) {
             const float* v =
@@ -132,9 +99,8 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
             bounds[axis][cell] = std::fmin(std::fmin(v[0], v[1]), std::fmin(w[0], w[1]));
             bounds[3 + axis][cell] = std::fmax(std::fmax(v[0], v[1]), std::fmax(w[0], w[1]));
         }
-    Lanes8 bound[6], entry;
-    for (int k = 0; k < 6; ++k) bound[k] = Lanes8::load(bounds[k]);
-    LaneMask mask = test_boxes(bound, ray, entry) & less(Lanes8(ray.t_min), entry);
+    Lanes8 entry;
+    LaneMask mask = test_node(bounds, ray, entry) & less(Lanes8(ray.t_min), entry);
     uint32_t column = 0, row = 0;
     cpu::BottomTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
@@ -169,119 +135,69 @@ HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& 
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
 }
 
-/// `level` as for BlockPlace.
+/// One ray.
+template <Query kQuery> struct RayProbe {
+    static constexpr bool kListsLeaves = true;
+
+    PatchVisit visit;
+    RayState& ray;
+    bool has_hit = false;
+
+    void count_pairs(LaneMask) const { visit.count_pairs(1, has_hit); }
+
+    HWY_INLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask) {
+        const BlockPlace at(tree, level, block);
+        const auto load = [&](int axis) { return at.load(axis); };
+        const bool is_hit = intersect_block<kQuery>(visit, tree, block, load, ray);
+        has_hit |= is_hit;
+        return kQuery == Query::any && is_hit;
+    }
+
+    template <size_t W, class Visit>
+    HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
+        Lanes<W> entry;
+        const LaneMask mask = test_node(bounds, ray, entry);
+        if ((mask & (mask - 1)) == 0) return mask != 0 && visit_child(uint32_t(__builtin_ctz(mask)), rays);
+        EntryList<16> entries;
+        entries.append(mask, entry, 0);
+        entries.sort();
+        for (uint32_t k = 0; k < entries.count; ++k)
+            if (entries.distance(k) <= ray.t_max * kBoxSlack && visit_child(entries.child(k), rays))
+                return true;
+        return false;
+    }
+
+    template <class Visit>
+    HWY_INLINE void visit_any_order(const float (&bounds)[6][16], Visit visit_child) const {
+        Lanes16 entry;
+        for (LaneMask mask = test_node(bounds, ray, entry); mask; mask &= mask - 1)
+            visit_child(uint32_t(__builtin_ctz(mask)));
+    }
+    template <size_t W, class List>
+    HWY_INLINE void list_children(const float (&bounds)[6][W], uint32_t first, List& leaves) const {
+        Lanes<W> entry;
+        const LaneMask mask = test_node(bounds, ray, entry);
+        leaves.append(mask, entry, first);
+    }
+    /// Nearest first; for Query::any as they come, since all of them are at hand already.
+    template <class List, class Visit> HWY_INLINE bool visit_listed(List& leaves, Visit visit_leaf) const {
+        if constexpr (kQuery == Query::closest) leaves.sort();
+        for (uint32_t k = 0; k < leaves.count; ++k) {
+            if (kQuery == Query::closest && leaves.distance(k) > ray.t_max * kBoxSlack) continue;
+            if (visit_leaf(leaves.child(k), 1)) return true;
+        }
+        return false;
+    }
+};
+
+/// A displaced patch of the instance that the ray is in the space of.
 template <Query kQuery>
-HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, int level,
-                                uint32_t block, RayState& ray) {
-    const BlockPlace at(tree, level, block);
-    return intersect_block<kQuery>(
-        visit, tree, block, [&](int axis) { return at.load(axis); }, ray);
-}
-
-/// Leaves of a list, nearest first; for Query::any as they come, since all of them are at hand already.
-/// Leaf k is the blocks [k kBlocks, (k + 1) kBlocks).
-template <Query kQuery, uint32_t kBlocks, class List>
-HWY_INLINE bool trace_leaves(const PatchVisit& visit, const cpu::BottomTree& tree, int level, List& leaves,
-                             RayState& ray) {
-    bool has_hit = false;
-    if constexpr (kQuery == Query::closest) leaves.sort();
-    for (uint32_t k = 0; k < leaves.count; ++k) {
-        if (kQuery == Query::closest && leaves.distance(k) > ray.t_max * kBoxSlack) continue;
-        const uint32_t first = leaves.child(k) * kBlocks;
-        for (uint32_t block = first; block < first + kBlocks; ++block) {
-            has_hit |= intersect_block<kQuery>(visit, tree, level, block, ray);
-            if (kQuery == Query::any && has_hit) return true;
-        }
-    }
-    return has_hit;
-}
-
-/// Everything of a tile along one ray. The boxes of all groups are tested before the first block: their loads
-/// overlap, and one list is sorted instead of many.
-template <Query kQuery> bool trace_tree(const PatchVisit& visit, const cpu::BottomTree& tree, RayState& ray) {
-    Lanes8 entry8;
-    Lanes16 entry;
-    uint64_t& nodes = visit.context->counters.patch_nodes;
-    nodes += tree.level >= 3;
-    if (tree.level == 6) {
-        EntryList<256> squares;
-        for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
-            const uint32_t g = uint32_t(__builtin_ctz(groups));
-            ++nodes;
-            Lanes16 inner;
-            const LaneMask mask = test_node(tree.wide_group(int(g)).bounds, ray, inner);
-            squares.append(mask, inner, g * 16);
-        }
-        return trace_leaves<kQuery, 2>(visit, tree, 6, squares, ray);
-    }
-    if (tree.level == 5) {
-        EntryList<128> blocks;
-        for (LaneMask groups = test_node(tree.root().bounds, ray, entry); groups; groups &= groups - 1) {
-            const uint32_t g = uint32_t(__builtin_ctz(groups));
-            ++nodes;
-            const LaneMask mask = test_node(tree.group(int(g)).bounds, ray, entry8);
-            blocks.append(mask, entry8, g * 8);
-        }
-        return trace_leaves<kQuery, 1>(visit, tree, 5, blocks, ray);
-    }
-    if (tree.level == 3) {
-        EntryList<8> blocks;
-        const LaneMask mask = test_node(tree.group(0).bounds, ray, entry8);
-        blocks.append(mask, entry8, 0);
-        return trace_leaves<kQuery, 1>(visit, tree, 3, blocks, ray);
-    }
-    bool has_hit = false;
-    const auto test_block = [&](uint32_t block) {
-        has_hit |= intersect_block<kQuery>(visit, tree, int(tree.level), block, ray);
-        return kQuery == Query::any && has_hit;
-    };
-    if (tree.level == 4) {
-        const LaneMask mask = test_node(tree.root().bounds, ray, entry);
-        visit_in_order(mask, entry, ray,
-                       [&](uint32_t g) { return test_block(2 * g) || test_block(2 * g + 1); });
-    } else {
-        for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
-            if (test_block(block)) break;
-    }
-    return has_hit;
-}
-
-/// One node of a directory and everything below it.
-template <Query kQuery>
-bool trace_directory(const PatchVisit& visit, const cpu::TileDirectory& directory, uint32_t step, uint32_t x,
-                     uint32_t y, RayState& ray) {
-    using cpu::TileDirectory;
-    const uint32_t depth = directory.depth, shift = TileDirectory::fanout(depth, step) / 2; // 2: 1, 4: 2
-    const uint32_t node =
-        TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x;
-    Lanes16 entry;
-    const LaneMask mask = test_node(directory.nodes()[node].bounds, ray, entry);
-    const bool is_last = step + 1 == TileDirectory::step_count(depth);
-    uint32_t visited = 0; // a bit a tile
-    bool has_hit = false;
-    ++visit.context->counters.patch_nodes;
-    visit_in_order(mask, entry, ray, [&](uint32_t child) {
-        const uint32_t cx = (x << shift) + (child & ((1u << shift) - 1)),
-                       cy = (y << shift) + (child >> shift);
-        if (!is_last) {
-            has_hit |= trace_directory<kQuery>(visit, directory, step + 1, cx, cy, ray);
-        } else if (const uint32_t bit = 1u << TileDirectory::find_tile_of_node(child); !(visited & bit)) {
-            visited |= bit;
-            const uint32_t tile = TileDirectory::find_tile(depth, cx, cy);
-            has_hit |= trace_tree<kQuery>(visit, find_tree(visit, tile), ray);
-        }
-        return kQuery == Query::any && has_hit;
-    });
-    return has_hit;
-}
-
-/// Everything of a patch along one ray.
-template <Query kQuery> HWY_INLINE bool trace_patch(const PatchVisit& visit, RayState& ray) {
-    const bool has_hit = visit.level() <= cpu::kTileLevel
-                             ? trace_tree<kQuery>(visit, find_tree(visit, 0), ray)
-                             : trace_directory<kQuery>(visit, find_directory(visit), 0, 0, 0, ray);
-    visit.context->counters.pairs_with_hit += has_hit;
-    return has_hit;
+HWY_INLINE bool trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
+                            const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+    RayProbe<kQuery> probe{{scene, context, ray.instance, patch, world.lod_bias}, ray};
+    if (scene.lod == LodRule::ray) choose_ray_level(probe.visit, scene.instances[ray.instance], world);
+    visit_patch(probe, 1);
+    return probe.has_hit;
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -1,10 +1,10 @@
-// What all rays that travel together have in the space of one object. They are seen on a plane, in whose
-// windows boxes and blocks are tested once for all of them, and each ray meets only the blocks whose window
-// it lies in. How a place on the plane is found depends on the kind: a fan (ray_fan-inl.h) or a shaft
-// (ray_shaft-inl.h).
+// What all rays that travel together have in the space of one object. They are seen on a plane, where boxes
+// and blocks have bounds that are tested once for all of them, and each ray meets only the blocks in whose
+// bounds it lies. How a place on the plane is found depends on the kind: a frustum (frustum-inl.h) or a
+// parallel beam (parallel_beam-inl.h).
 //
-// Windows are wider than rounding asks for; what decides a hit is the test of ray_state-inl.h, operation for
-// operation, so that a ray's hit does not depend on its company.
+// Bounds are wider than rounding asks for; what decides a hit is the test of triangle_test-inl.h, operation
+// for operation: hits are bit-identical to single-ray traversal.
 #if defined(RELIEF_RAY_BUNDLE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_RAY_BUNDLE_INL_H
 #undef RELIEF_RAY_BUNDLE_INL_H
@@ -12,35 +12,32 @@
 #define RELIEF_RAY_BUNDLE_INL_H
 #endif
 
-#include "cpu/patch_trees/bottom_build-inl.h"
 #include "cpu/traversal/bundle_rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// Some sixty roundings of a place on the plane, of how far it and its rays lie from the middle.
-inline constexpr float kWindowMargin = 4e-6f;
+inline constexpr float kBoundsMargin = 4e-6f;
 /// The same for the place of a box beside a plane, of the greatest distance of the box along an axis.
 inline constexpr float kBoxMargin = 2e-6f;
 inline constexpr float kDepthSlack = 1 - 2e-5f;
 
-/// A part of the plane, and the depths between which it is seen.
-struct Window {
-    float lower_x, upper_x, lower_y, upper_y, depth, far;
-    float middle() const { return 0.5f * (depth + far); }
-};
+HWY_INLINE float max(float a, float b) { return HWY_MAX(a, b); }
 
-/// W of them.
-template <size_t W> struct Windows {
-    Lanes<W> lower_x, upper_x, lower_y, upper_y, depth, far;
-    Lanes<W> middle() const { return Lanes<W>(0.5f) * (depth + far); }
+/// A part of the plane, and the depths between which it is seen: of one, or of as many as T has lanes.
+template <class T> struct BoundsOf {
+    T lower_x, upper_x, lower_y, upper_y, depth, far;
+    T middle() const { return T(0.5f) * (depth + far); }
 };
+using ProjectedBounds = BoundsOf<float>;
+template <size_t W> using ProjectedLanes = BoundsOf<Lanes<W>>;
 
 /// Those of the eight quads of a block, in the order of the lower triangles' lanes, or of eight triangles.
-using PartWindows = Windows<8>;
+using PartBounds = ProjectedLanes<8>;
 
 /// Sixteen or eight points as they are seen.
-template <size_t W> struct Seen { Lanes<W> x, y, depth; };
+template <size_t W> struct Projected { Lanes<W> x, y, depth; };
 
 struct RayBundle {
     BundleRays* rays;
@@ -50,8 +47,8 @@ struct RayBundle {
     float farthest;           ///< depth of the farthest nearest hit
     uint32_t instance;
     alignas(64) float x[kBundleSize],
-        y[kBundleSize];                   ///< where a ray meets the plane; of a shaft, at its pivot
-    alignas(64) float speed[kBundleSize]; ///< depth for a length of t
+        y[kBundleSize];                   ///< where a ray meets the plane; of a beam, at its pivot
+    alignas(64) float dz_dt[kBundleSize]; ///< depth for a length of t
     alignas(64) float shear[3][kBundleSize];
     alignas(64) float lower_x[kGroupCount], upper_x[kGroupCount], lower_y[kGroupCount], upper_y[kGroupCount];
     alignas(64) float group_farthest[kGroupCount];
@@ -90,11 +87,10 @@ HWY_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBundle&
     bundle.up = cross(forward, bundle.right);
 }
 
+HWY_INLINE Lanes16 magnitude(const Lanes16& a) { return max(a, Lanes16(0.0f) - a); }
+
 /// Which lanes have |a| > |b|.
-HWY_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) {
-    const Lanes16 zero(0.0f);
-    return less(max(b, zero - b), max(a, zero - a));
-}
+HWY_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) { return less(magnitude(b), magnitude(a)); }
 
 /// The major axis of sixteen directions by the choice of enter_object; 3 if they differ.
 HWY_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
@@ -125,19 +121,19 @@ HWY_INLINE bool choose_major_axis(const Affine& object_from_world, RayBundle& bu
     return major != 3;
 }
 
-/// Of sixteen rays, what their tests against triangles ask, and their speed. False where they do not go
+/// Of sixteen rays, what their tests against triangles ask, and their dz_dt. False where they do not go
 /// forward, or along another axis than bundle.axis[2].
-HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& closeness) {
+HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& rcp_dz_dt) {
     if (find_major_axis(d) != bundle.axis[2]) return false;
-    const Lanes16 speed = dot_lanes(d, bundle.forward);
+    const Lanes16 dz_dt = dot_lanes(d, bundle.forward);
     const Lanes16 squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     // Squares of other speeds might vanish, or be infinite, and tell nothing.
-    if ((less(Lanes16(1e-15f), speed) & less(speed, Lanes16(1e15f)) &
-         less_equal(squared * Lanes16(0.25f), speed * speed)) != 0xffff)
+    if ((less(Lanes16(1e-15f), dz_dt) & less(dz_dt, Lanes16(1e15f)) &
+         less_equal(squared * Lanes16(0.25f), dz_dt * dz_dt)) != 0xffff)
         return false;
-    closeness = Lanes16(1.0f) / speed;
+    rcp_dz_dt = Lanes16(1.0f) / dz_dt;
     const Lanes16 inverse = Lanes16(1.0f) / d[bundle.axis[2]];
-    speed.store(bundle.speed + at);
+    dz_dt.store(bundle.dz_dt + at);
     (d[bundle.axis[0]] * inverse).store(bundle.shear[0] + at);
     (d[bundle.axis[1]] * inverse).store(bundle.shear[1] + at);
     inverse.store(bundle.shear[2] + at);

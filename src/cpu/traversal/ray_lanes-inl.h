@@ -22,9 +22,9 @@ template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const 
 /// Sixteen rays in world space, a ray a lane: the last one again where there are fewer.
 struct RayLanes {
     Lanes16 origin[3], direction[3], t_min, t_max;
-    LaneMask of_bias; ///< rays that are there, not repeated, and have the bias asked for
+    LaneMask of_lod_bias; ///< rays that are there, not repeated, and have the LOD bias asked for
 
-    HWY_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t bias) : of_bias(0) {
+    HWY_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t lod_bias) : of_lod_bias(0) {
         static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
                       offsetof(cpu::TraceRay, t_max) == 28);
         LaneQuads starts, ends;
@@ -32,7 +32,7 @@ struct RayLanes {
             const cpu::TraceRay& ray = rays[HWY_MIN(lane, count - 1)];
             std::memcpy(starts.lane[lane], &ray.origin, 16);
             std::memcpy(ends.lane[lane], &ray.direction, 16);
-            of_bias |= LaneMask(lane < count && ray.bias == bias) << lane;
+            of_lod_bias |= LaneMask(lane < count && ray.lod_bias == lod_bias) << lane;
         }
         starts.transpose(origin[0], origin[1], origin[2], t_min);
         ends.transpose(direction[0], direction[1], direction[2], t_max);

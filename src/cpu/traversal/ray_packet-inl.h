@@ -12,15 +12,15 @@
 #include <cstring>
 #include <limits>
 
+#include "cpu/traversal/ray-inl.h"
 #include "cpu/traversal/ray_lanes-inl.h"
-#include "cpu/traversal/ray_state-inl.h"
 #include "formulas/wide-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
-/// bounds go through the operations of test_box in the same order and rounding keeps that order. After
+/// bounds go through the operations of test_child in the same order and rounding keeps that order. After
 /// Boulos, Wald, Shirley 2006 (Geometric and Arithmetic Culling Methods for Entire Ray Packets). The rays are
 /// finite; empty slots, from +inf to -inf, are excluded.
 struct PacketBounds {
@@ -118,13 +118,12 @@ struct MajorAxis {
 };
 
 // The order in which enter_object writes them, four at a time; hits follow.
-static_assert(offsetof(RayState, direction) == 4 * 3 && offsetof(RayState, reciprocal) == 4 * 6 &&
-              offsetof(RayState, lower_origin) == 4 * 9 && offsetof(RayState, upper_origin) == 4 * 12 &&
-              offsetof(RayState, near_origin) == 4 * 15 && offsetof(RayState, far_origin) == 4 * 18 &&
-              offsetof(RayState, near_plane) == 4 * 21 && offsetof(RayState, far_plane) == 4 * 24 &&
-              offsetof(RayState, axis) == 4 * 27 && offsetof(RayState, shear) == 4 * 30 &&
-              offsetof(RayState, t_min) == 4 * 33 && offsetof(RayState, t_max) == 4 * 34 &&
-              offsetof(RayState, instance) == 4 * 35 && offsetof(RayState, hit) == 4 * 36);
+static_assert(offsetof(RayState, reciprocal) == 4 * 3 && offsetof(RayState, near_origin) == 4 * 6 &&
+              offsetof(RayState, far_origin) == 4 * 9 && offsetof(RayState, near_plane) == 4 * 12 &&
+              offsetof(RayState, far_plane) == 4 * 15 && offsetof(RayState, axis) == 4 * 18 &&
+              offsetof(RayState, shear) == 4 * 21 && offsetof(RayState, t_min) == 4 * 24 &&
+              offsetof(RayState, t_max) == 4 * 25 && offsetof(RayState, instance) == 4 * 26 &&
+              offsetof(RayState, hit) == 4 * 28);
 
 /// Sixteen rays into the space of an object: enter_object of each, operation for operation. `t_max` is how
 /// far they still ask; `instance` is kNoIndex for the world itself; hits stay as they are.
@@ -144,21 +143,19 @@ HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const 
     packet.find_bounds();
     const AxisLanes &x = axis[0], &y = axis[1], &z = axis[2];
     RayState(&rays)[16] = packet.ray;
-    store_quads(x.origin, y.origin, z.origin, x.direction, 0, rays);
-    store_quads(y.direction, z.direction, x.reciprocal, y.reciprocal, 4, rays);
-    store_quads(z.reciprocal, x.lower_origin, y.lower_origin, z.lower_origin, 8, rays);
-    store_quads(x.upper_origin, y.upper_origin, z.upper_origin, x.near_origin(), 12, rays);
-    store_quads(y.near_origin(), z.near_origin(), x.far_origin(), y.far_origin(), 16, rays);
-    store_quads(z.far_origin(), x.near_plane(0), y.near_plane(1), z.near_plane(2), 20, rays);
+    store_quads(x.origin, y.origin, z.origin, x.reciprocal, 0, rays);
+    store_quads(y.reciprocal, z.reciprocal, x.near_origin(), y.near_origin(), 4, rays);
+    store_quads(z.near_origin(), x.far_origin(), y.far_origin(), z.far_origin(), 8, rays);
+    store_quads(x.near_plane(0), y.near_plane(1), z.near_plane(2), x.far_plane(0), 12, rays);
     const MajorAxis major(axis);
     const Lanes16 number[3] = {integer_lanes(0), integer_lanes(1), integer_lanes(2)};
-    store_quads(x.far_plane(0), y.far_plane(1), z.far_plane(2), major.pick(number[1], number[2], number[0]),
-                24, rays);
+    store_quads(y.far_plane(1), z.far_plane(2), major.pick(number[1], number[2], number[0]),
+                major.pick(number[2], number[0], number[1]), 16, rays);
     const Lanes16 inverse = Lanes16(1.0f) / major.pick(x.direction, y.direction, z.direction);
-    store_quads(major.pick(number[2], number[0], number[1]), major.pick(number[0], number[1], number[2]),
+    store_quads(major.pick(number[0], number[1], number[2]),
                 major.pick(y.direction, z.direction, x.direction) * inverse,
-                major.pick(z.direction, x.direction, y.direction) * inverse, 28, rays);
-    store_quads(inverse, world.t_min, t_max, integer_lanes(instance), 32, rays);
+                major.pick(z.direction, x.direction, y.direction) * inverse, inverse, 20, rays);
+    store_quads(world.t_min, t_max, integer_lanes(instance), integer_lanes(0), 24, rays);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -11,8 +11,10 @@
 #include <cstring>
 
 #include "base/check.h"
-#include "cpu/traversal/ray_fan-inl.h"
-#include "cpu/traversal/ray_shaft-inl.h"
+#include "cpu/traversal/block_lanes-inl.h"
+#include "cpu/traversal/frustum-inl.h"
+#include "cpu/traversal/parallel_beam-inl.h"
+#include "cpu/traversal/triangle_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -27,40 +29,39 @@ HWY_INLINE void find_quad_range(const Lanes16& vertex, Lanes8& least, Lanes8& gr
     greatest = max(Lanes8::load(high), Lanes8::load(high + 8));
 }
 
-/// Windows of the quads of a block; `v` is relative to the bundle's origin.
-template <class Bundle>
-HWY_INLINE PartWindows find_quad_windows(const Lanes16 (&v)[3], const Bundle& bundle) {
-    const Seen<16> seen = look_at(v, bundle);
-    PartWindows quad;
+/// ProjectedLanes of the quads of a block; `v` is relative to the bundle's origin.
+template <class Bundle> HWY_INLINE PartBounds find_quad_bounds(const Lanes16 (&v)[3], const Bundle& bundle) {
+    const Projected<16> seen = project(v, bundle);
+    PartBounds quad;
     find_quad_range(seen.x, quad.lower_x, quad.upper_x);
     find_quad_range(seen.y, quad.lower_y, quad.upper_y);
     find_quad_range(seen.depth, quad.depth, quad.far);
-    widen_windows(bundle, quad);
+    widen_bounds(bundle, quad);
     return quad;
 }
 
-/// Windows of eight triangles; `v` (corner, axis) is relative to the bundle's origin.
+/// ProjectedLanes of eight triangles; `v` (corner, axis) is relative to the bundle's origin.
 template <class Bundle>
-HWY_INLINE PartWindows find_triangle_windows(const Lanes8 (&v)[3][3], const Bundle& bundle) {
-    const Seen<8> a = look_at(v[0], bundle), b = look_at(v[1], bundle), c = look_at(v[2], bundle);
-    PartWindows part = {min(min(a.x, b.x), c.x),
-                        max(max(a.x, b.x), c.x),
-                        min(min(a.y, b.y), c.y),
-                        max(max(a.y, b.y), c.y),
-                        min(min(a.depth, b.depth), c.depth),
-                        max(max(a.depth, b.depth), c.depth)};
-    widen_windows(bundle, part);
+HWY_INLINE PartBounds find_triangle_bounds(const Lanes8 (&v)[3][3], const Bundle& bundle) {
+    const Projected<8> a = project(v[0], bundle), b = project(v[1], bundle), c = project(v[2], bundle);
+    PartBounds part = {min(min(a.x, b.x), c.x),
+                       max(max(a.x, b.x), c.x),
+                       min(min(a.y, b.y), c.y),
+                       max(max(a.y, b.y), c.y),
+                       min(min(a.depth, b.depth), c.depth),
+                       max(max(a.depth, b.depth), c.depth)};
+    widen_bounds(bundle, part);
     return part;
 }
 
-/// The window in which points are seen; `v` is relative to the bundle's origin.
+/// Of points; `v` is relative to the bundle's origin.
 template <size_t W, class Bundle>
-HWY_INLINE Window find_window(const Lanes<W> (&v)[3], const Bundle& bundle) {
-    const Seen<W> seen = look_at(v, bundle);
-    Window window = {reduce_min(seen.x), reduce_max(seen.x),     reduce_min(seen.y),
-                     reduce_max(seen.y), reduce_min(seen.depth), reduce_max(seen.depth)};
-    widen_window(bundle, window);
-    return window;
+HWY_INLINE ProjectedBounds find_bounds(const Lanes<W> (&v)[3], const Bundle& bundle) {
+    const Projected<W> seen = project(v, bundle);
+    ProjectedBounds bounds = {reduce_min(seen.x), reduce_max(seen.x),     reduce_min(seen.y),
+                              reduce_max(seen.y), reduce_min(seen.depth), reduce_max(seen.depth)};
+    widen_bounds(bundle, bounds);
+    return bounds;
 }
 
 /// Up to all pairs of a group of rays and eight parts, and what a step left over. With each pair goes what
@@ -117,7 +118,7 @@ template <class Bundle> using PairsOf = PairList<Bundle::kPairValues>;
 /// Appends the pairs of the rays `left` of a group: ray by ray where they are fewer than the parts that
 /// concern them, else quad by part. Returns the rays that have one.
 template <class Bundle, class GroupLanes>
-HWY_INLINE LaneMask append_pairs(const PartWindows& part, const Bundle& bundle, uint32_t group,
+HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, uint32_t group,
                                  const GroupLanes& rays, LaneMask left, PairsOf<Bundle>& pairs) {
     LaneMask parts = find_parts_of_group(part, bundle, group), paired = 0;
     const uint32_t at = group * kGroupSize;
@@ -144,9 +145,9 @@ HWY_INLINE LaneMask append_pairs(const PartWindows& part, const Bundle& bundle, 
 }
 
 /// Calls trace_pairs(list) for the pairs of a bundle's rays with eight parts, until none is left; `all` holds
-/// all windows. Sets the bits of rays that were tested.
+/// all bounds. Sets the bits of rays that were tested.
 template <class Bundle, class TracePairs>
-HWY_INLINE void visit_pairs(const PartWindows& part, const Window& all, const Bundle& bundle,
+HWY_INLINE void visit_pairs(const PartBounds& part, const ProjectedBounds& all, const Bundle& bundle,
                             LaneMask (&tested)[kGroupCount], uint64_t& count, TracePairs trace_pairs) {
     PairsOf<Bundle> pairs;
     for (LaneMask groups = find_groups(all, bundle); groups; groups &= groups - 1) {

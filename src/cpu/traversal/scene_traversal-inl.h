@@ -7,65 +7,26 @@
 #define RELIEF_SCENE_TRAVERSAL_INL_H
 #endif
 
-#include "base/check.h"
-#include "base/timer.h"
 #include "cpu/traversal/patch_traversal-inl.h"
 #include "cpu/traversal/polygon_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// A walk through a wide tree that stops at every primitive and goes on when asked.
-struct TreeCursor {
-    uint32_t size;                           ///< of the stack
-    uint32_t leaf_first = 0, leaf_count = 0; ///< what is left of the leaf
-    uint32_t visited = 0;                    ///< nodes so far
-    StackEntry stack[kStackSize];
+/// One ray in a tree of quantised nodes.
+struct RayWalker {
+    using Entry = StackEntry;
 
-    /// `root` is a child word; 0 is the whole tree.
-    HWY_INLINE TreeCursor(uint32_t root, const RayState& ray) : size(1) { stack[0] = {root, ray.t_min}; }
+    const RayState& ray;
 
-    /// The next primitive of the tree whose box the ray enters before ray.t_max, or kNoIndex.
-    HWY_INLINE uint32_t next(const WideBvh& tree, const RayState& ray) {
-        while (leaf_count == 0) {
-            if (size == 0) return kNoIndex;
-            const StackEntry top = stack[--size];
-            if (top.entry <= ray.t_max * kBoxSlack) descend(tree, top.child, ray);
-        }
-        --leaf_count;
-        return tree.primitive_at(leaf_first++);
-    }
-
-  private:
-    /// To the nearest leaf below `child`; the rest goes on the stack.
-    HWY_INLINE void descend(const WideBvh& tree, uint32_t child, const RayState& ray) {
-        while (!WideNode::is_leaf(child)) {
-            const WideNode& node = tree.nodes[child];
-            Lanes8 entry;
-            ++visited;
-            const LaneMask mask = test_node(node, ray, entry);
-            if (mask == 0) return;
-            child = take_nearest(node, mask, entry, stack, size);
-        }
-        leaf_first = WideNode::leaf_first(child), leaf_count = WideNode::leaf_count(child);
+    HWY_INLINE bool enter(const StackEntry& top) const { return top.entry <= ray.t_max * kBoxSlack; }
+    HWY_INLINE bool open(const WideNode& node, StackEntry& top, StackEntry* stack, uint32_t& size) const {
+        Lanes8 entry;
+        const LaneMask mask = test_node(node, ray, entry);
+        if (mask != 0) top.child = take_nearest(node, mask, entry, stack, size);
+        return mask != 0;
     }
 };
-
-/// Walks the subtree of `root` and calls visit(primitive) until it is true.
-template <class Visit>
-HWY_INLINE bool walk_tree(const WideBvh& tree, cpu::TraceContext& context, uint32_t root, const RayState& ray,
-                          Visit visit) {
-    if (tree.nodes.empty()) return false;
-    TreeCursor cursor(root, ray);
-    bool has_ended = false;
-    while (!has_ended) {
-        const uint32_t primitive = cursor.next(tree, ray);
-        if (primitive == kNoIndex) break;
-        has_ended = visit(primitive);
-    }
-    context.counters.upper_nodes += cursor.visited;
-    return has_ended;
-}
 
 /// An undisplaced quad or triangle: lane 0 is (0, 1, 2), lane 1 is (0, 2, 3).
 template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patch, RayState& ray) {
@@ -95,31 +56,12 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
     return true;
 }
 
-/// A displaced patch, timed where the batch is.
-template <Query kQuery> HWY_INLINE bool visit_patch(const PatchVisit& visit, RayState& ray) {
-    cpu::TraceContext& context = *visit.context;
-    if (!context.is_timed) return trace_patch<kQuery>(visit, ray);
-    const Timer timer;
-    const double built_before = context.counters.bottom_build_s;
-    const bool has_hit = trace_patch<kQuery>(visit, ray);
-    context.counters.sampled_bottom_s += timer.seconds() - (context.counters.bottom_build_s - built_before);
-    return has_hit;
-}
-
-template <Query kQuery>
-HWY_INLINE bool trace_displaced(const cpu::SceneView& scene, cpu::TraceContext& context,
-                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
-    PatchVisit visit = enter_patch(scene, context, ray.instance, patch, world.bias);
-    if (scene.lod == LodRule::ray) choose_ray_level(visit, scene.instances[ray.instance], world);
-    return visit_patch<kQuery>(visit, ray);
-}
-
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
 HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
                                 const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
     const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
-    return surface.has_displacement ? trace_displaced<kQuery>(scene, context, world, patch, ray)
+    return surface.has_displacement ? trace_patch<kQuery>(scene, context, world, patch, ray)
                                     : trace_polygon<kQuery>(surface, patch, ray);
 }
 
@@ -131,11 +73,13 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
     if (!scene.surfaces[surface].has_displacement)
         return trace_polygons<kQuery>(scene.polygon_trees[surface], root, ray);
     const WideBvh& tree = scene.surface_trees[surface];
-    const auto visit = [&](uint32_t patch) {
-        const bool has_hit = trace_displaced<kQuery>(scene, context, world, patch, ray);
-        return kQuery == Query::any && has_hit;
-    };
-    return walk_tree(tree, context, root, ray, visit);
+    RayWalker walker{ray};
+    return walk_primitives(
+        tree, context, walker,
+        {root, ray.t_min}, [&](uint32_t patch, const StackEntry&) __attribute__((always_inline)) {
+            const bool has_hit = trace_patch<kQuery>(scene, context, world, patch, ray);
+            return kQuery == Query::any && has_hit;
+        });
 }
 
 /// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
@@ -143,7 +87,8 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
-    return walk_tree(*scene.instance_tree, context, root, best, [&](uint32_t instance) {
+    RayWalker walker{best};
+    const auto visit = [&](uint32_t instance, const StackEntry&) {
         const Instance& placed = scene.instances[instance];
         if (placed.is_in_place) {
             best.instance = instance;
@@ -156,7 +101,8 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
         best.t_max = ray.t_max;
         best.hit = ray.hit;
         return is_hit;
-    });
+    };
+    return walk_primitives(*scene.instance_tree, context, walker, {root, best.t_min}, visit);
 }
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.

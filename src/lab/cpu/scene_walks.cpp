@@ -262,7 +262,7 @@ void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* r
         if (can_hit(rays[k]))
             RayWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
         hits[k] = best;
-        hits[k].bias = uint8_t(rays[k].bias);
+        hits[k].lod_bias = uint8_t(rays[k].lod_bias);
     });
 }
 

@@ -1,5 +1,5 @@
-// Rays through a lens, and others that go about the same way from places of their own, traced as a shaft: the
-// same hits, bit for bit, as sixteen at a time and one by one.
+// Rays through a lens, and others that go about the same way from places of their own, traced as a parallel
+// beam: the same hits, bit for bit, as sixteen at a time and one by one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,36 +59,36 @@ uint64_t count_upper_nodes(const cpu::Tracer& tracer, const Rays& rays, size_t s
     return after.upper_nodes - before.upper_nodes;
 }
 
-/// As expect_same, and rays did travel as shafts.
-size_t expect_same_as_shaft(const cpu::Tracer& tracer, const Rays& rays, const std::string& what) {
+/// As expect_same, and rays did travel as beams.
+size_t expect_same_as_beam(const cpu::Tracer& tracer, const Rays& rays, const std::string& what) {
     EXPECT_LT(count_upper_nodes(tracer, rays, kBundle), count_upper_nodes(tracer, rays, 16)) << what;
     return expect_same(tracer, rays, what);
 }
 
-TEST(Shaft, finds_what_single_rays_find_at_every_level) {
+TEST(ParallelBeam, finds_what_single_rays_find_at_every_level) {
     for (const Isa isa : machine_isas())
         for (const int level : {0, 1, 2, 3, 4, 5, 6, 7, 8, kAutoLevel}) {
             const cpu::Tracer tracer = make_tracer(rock(), level, isa);
             const Rays rays = make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.2f, 4, 0.04f, 3.9f);
             const std::string what = "isa " + std::to_string(int(isa)) + ", level " + std::to_string(level);
-            EXPECT_GT(expect_same_as_shaft(tracer, rays, what), 1000u);
+            EXPECT_GT(expect_same_as_beam(tracer, rays, what), 1000u);
         }
 }
 
-TEST(Shaft, finds_it_whatever_is_in_focus) {
+TEST(ParallelBeam, finds_it_whatever_is_in_focus) {
     for (const Isa isa : machine_isas()) {
         const cpu::Tracer tracer = make_tracer(rock(), 4, isa);
         for (const float radius : {1e-5f, 1e-3f, 0.02f, 0.2f})
             for (const float focus : {0.5f, 2.7f, 4.0f, 30.0f, 1e6f}) {
                 const Rays rays = make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.15f, 3, radius, focus);
                 const std::string what = std::to_string(radius) + " at " + std::to_string(focus);
-                radius < 0.02f * focus ? expect_same_as_shaft(tracer, rays, what)
+                radius < 0.02f * focus ? expect_same_as_beam(tracer, rays, what)
                                        : expect_same(tracer, rays, what);
             }
     }
 }
 
-TEST(Shaft, visits_fewer_nodes_than_packets) {
+TEST(ParallelBeam, visits_fewer_nodes_than_packets) {
     const cpu::Tracer tracer = make_tracer(rock(), 4, Isa::best);
     for (const Rays& rays : {make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.2f, 4, 0.02f, 3.9f),
                              make_parallel_tiles({0.3f, -0.2f, -1}, 2, 4)}) {
@@ -98,13 +98,13 @@ TEST(Shaft, visits_fewer_nodes_than_packets) {
     }
 }
 
-TEST(Shaft, finds_it_from_inside_and_close_by_and_far_away) {
+TEST(ParallelBeam, finds_it_from_inside_and_close_by_and_far_away) {
     for (const Isa isa : machine_isas()) {
         const cpu::Tracer tracer = make_tracer(rock(), 4, isa);
         const auto count = [&](const Vec3f& from, const Vec3f& to, float spread, float radius, float focus) {
-            return expect_same_as_shaft(tracer, make_lens_tiles(from, to, spread, 4, radius, focus),
-                                        "isa " + std::to_string(int(isa)) + ", from " +
-                                            std::to_string(from.x));
+            return expect_same_as_beam(tracer, make_lens_tiles(from, to, spread, 4, radius, focus),
+                                       "isa " + std::to_string(int(isa)) + ", from " +
+                                           std::to_string(from.x));
         };
         EXPECT_GT(count({0, 0, 0}, {0.3f, 0.2f, 1}, 0.2f, 0.01f, 1.0f), 4000u);
         EXPECT_GT(count({0, 0, 1.3f}, {0.5f, 0.3f, 0}, 0.2f, 0.004f, 0.4f), 500u);
@@ -113,21 +113,20 @@ TEST(Shaft, finds_it_from_inside_and_close_by_and_far_away) {
     }
 }
 
-TEST(Shaft, finds_it_along_parallel_rays_in_every_space) {
+TEST(ParallelBeam, finds_it_along_parallel_rays_in_every_space) {
     const Scene scene = make_many_spaces();
     for (const Isa isa : machine_isas()) {
         const cpu::Tracer tracer = make_tracer(scene, 3, isa);
         const std::string name = "isa " + std::to_string(int(isa));
-        EXPECT_GT(expect_same_as_shaft(tracer, make_parallel_tiles({0.3f, -0.2f, -1}, 5, 6), name), 3000u);
-        EXPECT_GT(expect_same_as_shaft(tracer, make_parallel_tiles({0, -2, 0}, 5, 4), name + ", down"),
-                  1000u);
-        EXPECT_GT(expect_same_as_shaft(tracer, make_lens_tiles({1, 1.5f, 5}, {}, 0.3f, 6, 0.05f, 5),
-                                       name + ", lens"),
+        EXPECT_GT(expect_same_as_beam(tracer, make_parallel_tiles({0.3f, -0.2f, -1}, 5, 6), name), 3000u);
+        EXPECT_GT(expect_same_as_beam(tracer, make_parallel_tiles({0, -2, 0}, 5, 4), name + ", down"), 1000u);
+        EXPECT_GT(expect_same_as_beam(tracer, make_lens_tiles({1, 1.5f, 5}, {}, 0.3f, 6, 0.05f, 5),
+                                      name + ", lens"),
                   3000u);
     }
 }
 
-TEST(Shaft, may_be_any_number_of_rays_with_limits_of_their_own) {
+TEST(ParallelBeam, may_be_any_number_of_rays_with_limits_of_their_own) {
     const cpu::Tracer tracer = make_tracer(rock(), 4, Isa::best);
     Rays rays = make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.1f, 2, 0.03f, 3.5f);
     std::mt19937 random(9);
@@ -147,22 +146,22 @@ TEST(Shaft, may_be_any_number_of_rays_with_limits_of_their_own) {
         const auto first = [&](const Rays& of) { return Rays(of.begin(), of.begin() + long(count)); };
         EXPECT_GT(expect_same(tracer, first(rays), what + ", some from before their origins"), count / 8);
         EXPECT_GT(count < 64 ? expect_same(tracer, first(forward), what)
-                             : expect_same_as_shaft(tracer, first(forward), what),
+                             : expect_same_as_beam(tracer, first(forward), what),
                   count / 8);
     }
 }
 
-TEST(Shaft, is_of_one_bias) {
+TEST(ParallelBeam, is_of_one_lod_bias) {
     const cpu::Tracer tracer = make_tracer(rock(), 5, Isa::best);
     Rays rays = make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.1f, 2, 0.03f, 3.5f);
-    for (cpu::TraceRay& ray : rays) ray.bias = 2;
-    expect_same_as_shaft(tracer, rays, "bias 2");
-    for (size_t k = 100; k < rays.size(); k += 300) rays[k].bias = 1;
-    expect_same_as_shaft(tracer, rays, "two of them");
+    for (cpu::TraceRay& ray : rays) ray.lod_bias = 2;
+    expect_same_as_beam(tracer, rays, "bias 2");
+    for (size_t k = 100; k < rays.size(); k += 300) rays[k].lod_bias = 1;
+    expect_same_as_beam(tracer, rays, "two of them");
 }
 
 /// The rock far from the origin of the world, where places have few digits, and rays that start close to it.
-TEST(Shaft, finds_it_where_coordinates_are_large) {
+TEST(ParallelBeam, finds_it_where_coordinates_are_large) {
     for (const float far : {1e3f, 1e5f, 3e6f}) {
         Scene scene = rock();
         const float size = std::fmax(1.0f, 1e-4f * far);
@@ -181,7 +180,7 @@ TEST(Shaft, finds_it_where_coordinates_are_large) {
     }
 }
 
-TEST(Shaft, is_none_where_rays_begin_before_their_origins) {
+TEST(ParallelBeam, rejects_negative_t_min) {
     const cpu::Tracer tracer = make_tracer(rock(), 4, Isa::best);
     Rays rays = make_parallel_tiles({0.3f, -0.2f, -1}, 2, 4);
     for (cpu::TraceRay& ray : rays)
@@ -192,7 +191,7 @@ TEST(Shaft, is_none_where_rays_begin_before_their_origins) {
     expect_same(tracer, rays, "the last of each tile");
 }
 
-TEST(Shaft, finds_it_whatever_the_length_of_directions) {
+TEST(ParallelBeam, finds_it_whatever_the_length_of_directions) {
     for (const float factor : {1e-20f, 1e-10f, 1e10f, 1e20f, 1e30f}) {
         const cpu::Tracer tracer = make_tracer(make_many_spaces(), 3, Isa::best);
         Rays rays = make_lens_tiles({1, 1.5f, 5}, {}, 0.3f, 6, 0.05f, 5);
@@ -202,7 +201,7 @@ TEST(Shaft, finds_it_whatever_the_length_of_directions) {
 }
 
 /// Rays to a sun from a surface and from another far behind it, and rays that go apart.
-TEST(Shaft, is_none_where_rays_lie_far_apart) {
+TEST(ParallelBeam, rejects_origins_that_lie_far_apart) {
     const cpu::Tracer tracer = make_tracer(rock(), 4, Isa::best);
     Rays scattered = make_parallel_tiles({0.3f, -0.2f, -1}, 2, 2);
     for (size_t k = 0; k < scattered.size(); k += 5)
@@ -215,7 +214,7 @@ TEST(Shaft, is_none_where_rays_lie_far_apart) {
     }
 }
 
-TEST(Shaft, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
+TEST(ParallelBeam, a_ray_with_a_nan_hits_nothing_and_leaves_the_hits_of_others) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Rays rays = make_lens_tiles({1.2f, 1.0f, 3.6f}, {}, 0.05f, 1, 0.02f, 3.5f);
     for (const Isa isa : machine_isas()) {
@@ -226,7 +225,7 @@ TEST(Shaft, a_ray_that_is_no_number_hits_nothing_and_leaves_the_others_theirs) {
                 for (const bool is_direction : {false, true}) {
                     Rays broken = rays;
                     (is_direction ? broken[index].direction.y : broken[index].origin.y) = value;
-                    // One that lies far off makes all of them no shaft.
+                    // One that lies far off makes all of them no beam.
                     if (index > 64 && (is_direction || value != 1e30f))
                         EXPECT_LT(count_upper_nodes(tracer, broken, kBundle),
                                   count_upper_nodes(tracer, broken, 16));

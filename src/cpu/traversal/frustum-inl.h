@@ -1,0 +1,186 @@
+// Rays from one point, in the space of one object: a pinhole camera's. Projected from there everything lies
+// on a plane at distance 1, where each ray is a point.
+#if defined(RELIEF_FRUSTUM_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELIEF_FRUSTUM_INL_H
+#undef RELIEF_FRUSTUM_INL_H
+#else
+#define RELIEF_FRUSTUM_INL_H
+#endif
+
+#include "cpu/traversal/ray_bundle-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relief::HWY_NAMESPACE {
+
+/// Beyond this, on the plane, a point is so far aside that its depth may have lost its sign to rounding.
+inline constexpr float kWidestBounds = 1e4f;
+
+struct RayFrustum : RayBundle {
+    static constexpr int kPairValues = 2;  ///< two shears
+    static constexpr bool kIsWide = false; ///< its groups spread far beside what they meet
+
+    Vec3f plane[4]; ///< normals of the sides of the pyramid that holds all rays, pointing inwards
+
+    /// What the test of a ray against a triangle reads of it.
+    float pair_value(int k, uint32_t ray) const { return shear[k][ray]; }
+    /// What vertices are measured from before rays are sheared.
+    Vec3f vertex_origin() const { return origin; }
+};
+
+/// The farthest depth that a group still asks about, after hits.
+HWY_INLINE float find_farthest(const RayFrustum& frustum, uint32_t group) {
+    const size_t at = group * kGroupSize;
+    return reduce_max(Lanes16::load(frustum.rays->t + at) * Lanes16::load(frustum.dz_dt + at));
+}
+
+/// The sides of the pyramid about all rays, a margin outside of them.
+HWY_INLINE void make_sides(RayFrustum& frustum) {
+    const float left = reduce_min(Lanes16::load(frustum.lower_x)) - 2 * kBoundsMargin;
+    const float right = reduce_max(Lanes16::load(frustum.upper_x)) + 2 * kBoundsMargin;
+    const float bottom = reduce_min(Lanes16::load(frustum.lower_y)) - 2 * kBoundsMargin;
+    const float top = reduce_max(Lanes16::load(frustum.upper_y)) + 2 * kBoundsMargin;
+    frustum.plane[0] = frustum.right - frustum.forward * left;
+    frustum.plane[1] = frustum.forward * right - frustum.right;
+    frustum.plane[2] = frustum.up - frustum.forward * bottom;
+    frustum.plane[3] = frustum.forward * top - frustum.up;
+}
+
+/// Takes the rays into another space. False where they diverge too much there, or have different major axes.
+HWY_INLINE bool enter_space(const Affine& object_from_world, RayFrustum& frustum) {
+    const BundleRays& rays = *frustum.rays;
+    frustum.origin = transform_point(object_from_world, rays.origin);
+    const auto direction = [&](uint32_t k) {
+        return normalize(transform_vector(object_from_world, rays.direction_of(k)));
+    };
+    // Axes along the rows that rays come in.
+    choose_axes(find_forward(object_from_world, rays), direction(HWY_MIN(3u, rays.count - 1)) - direction(0),
+                frustum);
+    if (!choose_major_axis(object_from_world, frustum)) return false;
+    for (uint32_t group = 0; group < kGroupCount; ++group) {
+        Lanes16 d[3], rcp_dz_dt;
+        transform_directions(rays, object_from_world, group * kGroupSize, d);
+        if (!store_directions(d, group * kGroupSize, frustum, rcp_dz_dt)) return false;
+        store_range(dot_lanes(d, frustum.right) * rcp_dz_dt, dot_lanes(d, frustum.up) * rcp_dz_dt, group,
+                    frustum);
+        frustum.group_farthest[group] = find_farthest(frustum, group);
+    }
+    make_sides(frustum);
+    update_farthest(frustum);
+    return true;
+}
+
+/// The boxes that reach into the pyramid, and the least depth of each.
+template <size_t W>
+HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayFrustum& frustum, Lanes<W>& nearest) {
+    const RelativeBoxes<W> box(bound, frustum.origin);
+    const Lanes<W> least = Lanes<W>(0.0f) - box.reach * Lanes<W>(kBoxMargin);
+    nearest = least - find_greatest(box.bound, -frustum.forward);
+    LaneMask mask = less_equal(nearest * Lanes<W>(kDepthSlack), Lanes<W>(frustum.farthest)) &
+                    less_equal(least, find_greatest(box.bound, frustum.forward));
+    for (const Vec3f& side : frustum.plane) mask &= less_equal(least, find_greatest(box.bound, side));
+    return mask;
+}
+
+/// Points relative to the origin.
+template <size_t W> HWY_INLINE Projected<W> project(const Lanes<W> (&v)[3], const RayFrustum& frustum) {
+    const Lanes<W> depth = dot_lanes(v, frustum.forward), inverse = Lanes<W>(1.0f) / depth;
+    return {dot_lanes(v, frustum.right) * inverse, dot_lanes(v, frustum.up) * inverse, depth};
+}
+
+/// Makes room for rounding in bounds of points. What is not in front of the rays, or far aside, may be seen
+/// anywhere.
+HWY_INLINE void widen_bounds(const RayFrustum&, ProjectedBounds& bounds) {
+    const bool is_in_front = bounds.depth > 0 && bounds.lower_x > -kWidestBounds &&
+                             bounds.upper_x < kWidestBounds && bounds.lower_y > -kWidestBounds &&
+                             bounds.upper_y < kWidestBounds;
+    if (!is_in_front) {
+        constexpr float kEnd = std::numeric_limits<float>::infinity();
+        bounds = {-kEnd, kEnd, -kEnd, kEnd, -kEnd, kEnd};
+        return;
+    }
+    const float aside =
+        HWY_MAX(HWY_MAX(-bounds.lower_x, bounds.upper_x), HWY_MAX(-bounds.lower_y, bounds.upper_y));
+    const float margin = kBoundsMargin * HWY_MAX(1.0f, aside);
+    bounds.lower_x -= margin, bounds.upper_x += margin, bounds.lower_y -= margin, bounds.upper_y += margin;
+    bounds.depth *= kDepthSlack - margin;
+}
+
+/// The same for eight parts. All are unbounded where one of them is not in front, or far aside. Parts that
+/// are not numbers are not there; a ray that is tested against one nevertheless misses it.
+HWY_INLINE void widen_bounds(const RayFrustum&, PartBounds& part) {
+    const LaneMask is_there = less_equal(part.depth, part.depth);
+    const LaneMask is_in_front = less(Lanes8(0.0f), part.depth) & less(Lanes8(-kWidestBounds), part.lower_x) &
+                                 less(part.upper_x, Lanes8(kWidestBounds)) &
+                                 less(Lanes8(-kWidestBounds), part.lower_y) &
+                                 less(part.upper_y, Lanes8(kWidestBounds));
+    if (is_there != is_in_front) {
+        constexpr float kEnd = std::numeric_limits<float>::infinity();
+        const Lanes8 least(-kEnd), greatest(kEnd);
+        part = {least, greatest, least, greatest, least, greatest};
+        return;
+    }
+    const Lanes8 zero(0.0f);
+    const Lanes8 aside = max(max(zero - part.lower_x, part.upper_x), max(zero - part.lower_y, part.upper_y));
+    const Lanes8 margin = Lanes8(kBoundsMargin) * max(Lanes8(1.0f), aside);
+    part.lower_x = part.lower_x - margin, part.upper_x = part.upper_x + margin;
+    part.lower_y = part.lower_y - margin, part.upper_y = part.upper_y + margin;
+    part.depth = part.depth * (Lanes8(kDepthSlack) - margin);
+}
+
+/// The groups of rays that may be inside.
+HWY_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const RayFrustum& frustum) {
+    return less_equal(Lanes16(bounds.lower_x), Lanes16::load(frustum.upper_x)) &
+           less_equal(Lanes16::load(frustum.lower_x), Lanes16(bounds.upper_x)) &
+           less_equal(Lanes16(bounds.lower_y), Lanes16::load(frustum.upper_y)) &
+           less_equal(Lanes16::load(frustum.lower_y), Lanes16(bounds.upper_y)) &
+           less_equal(Lanes16(bounds.depth), Lanes16::load(frustum.group_farthest));
+}
+
+/// The parts that any ray of a group may meet.
+HWY_INLINE LaneMask find_parts_of_group(const PartBounds& part, const RayFrustum& frustum, uint32_t group) {
+    return less_equal(part.lower_x, Lanes8(frustum.upper_x[group])) &
+           less_equal(Lanes8(frustum.lower_x[group]), part.upper_x) &
+           less_equal(part.lower_y, Lanes8(frustum.upper_y[group])) &
+           less_equal(Lanes8(frustum.lower_y[group]), part.upper_y) &
+           less_equal(part.depth, Lanes8(frustum.group_farthest[group]));
+}
+
+/// The parts that one ray may meet.
+HWY_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const RayFrustum& frustum, uint32_t ray) {
+    const Lanes8 x(frustum.x[ray]), y(frustum.y[ray]);
+    return less_equal(part.lower_x, x) & less_equal(x, part.upper_x) & less_equal(part.lower_y, y) &
+           less_equal(y, part.upper_y) &
+           less_equal(part.depth, Lanes8(frustum.rays->t[ray] * frustum.dz_dt[ray]));
+}
+
+/// Sixteen rays as the bounds see them.
+struct FrustumLanes {
+    Lanes16 x, y, depth; ///< depth of the nearest hit
+    Lanes16 pair_value[RayFrustum::kPairValues];
+
+    HWY_INLINE FrustumLanes(const RayFrustum& frustum, uint32_t group) {
+        const size_t at = group * kGroupSize;
+        x = Lanes16::load(frustum.x + at), y = Lanes16::load(frustum.y + at);
+        depth = Lanes16::load(frustum.rays->t + at) * Lanes16::load(frustum.dz_dt + at);
+        for (int k = 0; k < RayFrustum::kPairValues; ++k)
+            pair_value[k] = Lanes16::load(frustum.shear[k] + at);
+    }
+    HWY_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
+        return less_equal(Lanes16(bounds.lower_x), x) & less_equal(x, Lanes16(bounds.upper_x)) &
+               less_equal(Lanes16(bounds.lower_y), y) & less_equal(y, Lanes16(bounds.upper_y)) &
+               less_equal(Lanes16(bounds.depth), depth);
+    }
+};
+HWY_INLINE FrustumLanes load_lanes(const RayFrustum& frustum, uint32_t group) { return {frustum, group}; }
+
+/// Corners of sixteen triangles or quads, one of a pair's each, relative to the ray: x and y as the ray sees
+/// them, z along its major axis. `value` is pair_value of the rays; `v` is relative to the frustum's origin.
+HWY_INLINE void shear_corner(const Lanes16 (&value)[RayFrustum::kPairValues], Lanes16 (&v)[3]) {
+    v[0] = v[0] - value[0] * v[2];
+    v[1] = v[1] - value[1] * v[2];
+}
+
+} // namespace relief::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
