@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/devices.h"
+#include "relief/version.h"
 
 namespace relief::bench {
 
@@ -33,7 +34,7 @@ std::string read_processor() {
 } // namespace
 
 Json describe_build() {
-    return {{"version", RELIEF_VERSION}, {"commit", RELIEF_COMMIT}, {"compiler", __VERSION__}};
+    return {{"version", RELIEF_VERSION_STRING}, {"commit", RELIEF_COMMIT}, {"compiler", __VERSION__}};
 }
 
 Json describe_machine() {

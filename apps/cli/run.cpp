@@ -13,6 +13,7 @@
 #include "base/suggest.h"
 #include "commands.h"
 #include "relief/error.h"
+#include "relief/version.h"
 
 namespace relief::cli {
 
@@ -107,7 +108,7 @@ int parse_and_run(int argument_count, const char* const* arguments) {
     CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
     app.formatter(std::make_shared<HelpFormatter>());
     app.get_formatter()->column_width(30);
-    app.set_version_flag("--version", "relief " RELIEF_VERSION);
+    app.set_version_flag("--version", "relief " RELIEF_VERSION_STRING);
     app.allow_extras();
     const std::vector<Verb> verbs = add_verbs(app);
     try {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "relief/version.h"
 namespace relief::cli {
 
 namespace {
@@ -56,7 +57,7 @@ Json make_casts(const Statistics& s) {
 Json make_statistics_json(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
     Json root;
-    root["relief"] = {{"version", RELIEF_VERSION}};
+    root["relief"] = {{"version", RELIEF_VERSION_STRING}};
     root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
     root["image"] = {{"width", settings.width},
                      {"height", settings.height},
