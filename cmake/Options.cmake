@@ -1,8 +1,13 @@
-# Options of the build and flags that every target has.
-option(RELIEF_IO "Build file readers and writers and the relief command" ON)
+# Options of the build and flags that every target of Relief has, and none of those that use the library.
+include(CMakeDependentOption)
+option(RELIEF_IO "Build file readers and writers" ON)
 option(RELIEF_VULKAN "Build the Vulkan engine" ON)
-option(RELIEF_TESTS "Build the tests" ON)
+option(RELIEF_APPS "Build the programs; the relief command needs RELIEF_IO" ${PROJECT_IS_TOP_LEVEL})
+cmake_dependent_option(RELIEF_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL} RELIEF_APPS OFF)
 option(RELIEF_FUZZ "Build the fuzz targets (clang)" OFF)
+option(RELIEF_INSTALL "Make rules that install the library and the command" ${PROJECT_IS_TOP_LEVEL})
+option(RELIEF_WERROR "Treat warnings of Relief's own sources as errors" ${PROJECT_IS_TOP_LEVEL})
+option(BUILD_SHARED_LIBS "Build librelief as a shared library" OFF)
 option(RELIEF_DCHECKS "Check internal contracts at run time" OFF)
 set(RELIEF_SANITIZE "" CACHE STRING "Sanitizers for all targets, e.g. address,undefined")
 option(RELIEF_COVERAGE "Instrument for llvm-cov" OFF)
@@ -10,25 +15,34 @@ option(RELIEF_COVERAGE "Instrument for llvm-cov" OFF)
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
+if(BUILD_SHARED_LIBS)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 endif()
 
-# Above -O2 only compile times grow, apart from the kernels of the engine (see the top CMakeLists.txt).
-set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
-
-find_program(RELIEF_CCACHE ccache)
-if(RELIEF_CCACHE)
-  # What ccache asks for before it takes part where headers are precompiled; nothing here names a date or a time.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${RELIEF_CCACHE})
+# What follows is the business of whoever builds the whole: not of a project that Relief is a part of.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+  endif()
+  # Above -O2 only compile times grow, apart from the kernels of the engine (see the top CMakeLists.txt). Flags that
+  # somebody chose stay.
+  if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")
+    set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+  endif()
+  find_program(RELIEF_CCACHE ccache)
+  if(RELIEF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    # What ccache asks for before it takes part where headers are precompiled; nothing here names a date or a time.
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${RELIEF_CCACHE})
+  endif()
 endif()
 
 add_library(relief_options INTERFACE)
 # Contraction into fused operations would differ between instruction sets and open cracks at shared edges.
 target_compile_options(relief_options INTERFACE
-  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wunused -Werror)
+  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wunused
+  $<$<BOOL:${RELIEF_WERROR}>:-Werror>)
 target_include_directories(relief_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
 find_program(RELIEF_LLD ld.lld)
 if(RELIEF_LLD)

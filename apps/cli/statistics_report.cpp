@@ -1,5 +1,6 @@
 #include "statistics_report.h"
 
+#include "relief/version.h"
 namespace relief::cli {
 
 namespace {
@@ -52,7 +53,7 @@ Value make_casts(const Statistics& s) {
 Value describe_statistics(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
     Value root;
-    root["relief"] = {{"version", RELIEF_VERSION}};
+    root["relief"] = {{"version", RELIEF_VERSION_STRING}};
     root["device"] = {{"engine", s.engine}, {"name", s.device}, {"threads", s.threads}, {"isa", s.isa}};
     root["image"] = {{"width", settings.image.width},
                      {"height", settings.image.height},

@@ -15,6 +15,7 @@
 #include "base/suggest.h"
 #include "common/option_names.h"
 #include "relief/error.h"
+#include "relief/version.h"
 
 namespace relief::cli {
 
@@ -56,7 +57,7 @@ int run_guarded(const std::function<int()>& body) {
 void prepare_parsing(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.get_formatter()->column_width(30);
-    app.set_version_flag("--version", "relief " RELIEF_VERSION);
+    app.set_version_flag("--version", "relief " RELIEF_VERSION_STRING);
     app.allow_extras();
 }
 

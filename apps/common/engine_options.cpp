@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/values.h"
+#include "relief/version.h"
 
 namespace relief::cli {
 
@@ -81,8 +82,8 @@ std::filesystem::path choose_pipeline_cache(int device) {
     std::error_code failure;
     fs::create_directories(folder, failure);
     if (failure) return {};
-    return folder /
-           fmt::format("pipelines-{}-{}", RELIEF_VERSION, device < 0 ? "best" : std::to_string(device));
+    return folder / fmt::format("pipelines-{}-{}", RELIEF_VERSION_STRING,
+                                device < 0 ? "best" : std::to_string(device));
 }
 
 } // namespace relief::cli

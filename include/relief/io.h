@@ -28,9 +28,9 @@ struct MapOptions {
     bool dilate = true, autobump = false; ///< see Displacement
 };
 
-/// The tiles of a map and what they mean. `file` may hold <UDIM>, <UVTILE> or <uvtile>. Values that are not
-/// finite are kept, for inspect_map; a render refuses them. What had to be assumed is added to `warnings`.
-/// Throws Error{bad_input}.
+/// The tiles of a map and what they mean. `file` may hold `<UDIM>`, `<UVTILE>` or `<uvtile>`. Values that are
+/// not finite are kept, for inspect_map; a render refuses them. What had to be assumed is added to
+/// `warnings`. Throws Error{bad_input}.
 Displacement load_map(const std::filesystem::path& file, const MapOptions& options,
                       std::vector<std::string>& warnings);
 
@@ -41,7 +41,7 @@ Displacement make_map_meaning(const MapOptions& options);
 enum class MapSamples { float16, float32, uint16 };
 
 /// Writes the tiles of a map by the extension of the name: .exr (float16 or float32) or .png (uint16, which
-/// keeps [0, 1] only). A map with tiles takes a name with <UDIM>, <UVTILE> or <uvtile>; folders must be
+/// keeps [0, 1] only). A map with tiles takes a name with `<UDIM>`, `<UVTILE>` or `<uvtile>`; folders must be
 /// there. Files appear whole or not at all. Throws Error{usage} for another extension, samples that it does
 /// not hold, or a name with a token too many or too few; Error{bad_input} for values that do not fit.
 void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples);
@@ -51,12 +51,12 @@ void write_map(const Displacement& map, const std::filesystem::path& file, MapSa
 void write_mesh(const Mesh& mesh, const std::filesystem::path& file);
 
 /// For the plain name of a file that is one tile of several that lie in its folder ("head.1001.exr"): the
-/// name with the token that takes them all ("head.<UDIM>.exr"). Else empty.
+/// name with the token that takes them all ("head.`<UDIM>`.exr"). Else empty.
 std::string find_tile_pattern(const std::filesystem::path& file);
 
 /// What a mesh is rendered with that comes without a scene file.
 struct MeshSceneOptions {
-    std::filesystem::path displacement_map; ///< empty: none; may hold <UDIM>
+    std::filesystem::path displacement_map; ///< empty: none; may hold `<UDIM>`
     MapOptions map;
     std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
     std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel]

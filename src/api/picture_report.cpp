@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "relief/version.h"
 namespace relief {
 
 void count_scene(const PreparedScene& scene, Statistics& statistics) {
@@ -32,8 +33,8 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {
-    image.metadata["Software"] = "Relief " RELIEF_VERSION;
-    image.metadata["relief:version"] = RELIEF_VERSION;
+    image.metadata["Software"] = "Relief " RELIEF_VERSION_STRING;
+    image.metadata["relief:version"] = RELIEF_VERSION_STRING;
     image.metadata["relief:seed"] = std::to_string(settings.image.seed);
     image.metadata["relief:samples"] =
         fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + settings.image.spp);

@@ -22,10 +22,12 @@ PACKAGES = {
     # Only `relief bench triangles` needs it.
     "embree": ["libembree-dev"],
     "Python3": ["python3"],
+    # What the tests of an installed Relief look for.
+    "relief": ["pkgconf"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.
     "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],
 }
-TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "python3-matplotlib"]
+TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "doxygen", "python3-matplotlib"]
 
 root = pathlib.Path(sys.argv[1])
 listed = set((root / "tools/packages.txt").read_text().splitlines())
