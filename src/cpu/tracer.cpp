@@ -43,13 +43,26 @@ struct Tracer::Implementation {
     }
 
     /// trace(kernels' view, context), by the kernels' own trees.
-    template <class Trace> void trace_wide(size_t cast, size_t rays, const Trace& trace) const {
+    template <class Trace>
+    void trace_wide(size_t cast, size_t rays, const Trace& trace, uint32_t mask = kVisibleToAll) const {
         const std::shared_ptr<const UpperTrees> current = trees->current();
         SceneView full = view;
         full.surface_trees = current->surfaces.data();
         full.instance_tree = &current->instances;
+        full.visibility_mask = mask;
         trace_batch(cast, rays, [&](TraceContext& context) { trace(full, context); });
         trees->count_rays(rays);
+    }
+
+    /// An only instance is entered without a look at its mask.
+    bool is_hidden(uint32_t mask) const {
+        return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
+    }
+
+    SceneView view_for(uint32_t mask) const {
+        SceneView masked = view;
+        masked.visibility_mask = mask;
+        return masked;
     }
 
     /// `cast` is the place in TraceContext::casts.
@@ -151,17 +164,25 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
     return true;
 }
 
-void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
+void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth,
+                          uint32_t mask) const {
     const Implementation& self = *implementation_;
+    if (self.is_hidden(mask)) {
+        std::fill(hits.begin(), hits.end(), TraceHit{});
+        return;
+    }
     const size_t cast = 2 * size_t(depth);
     if (self.trees)
-        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
-            self.kernels->closest_hits(view, context, rays.data(), hits.data(), rays.size());
-        });
+        self.trace_wide(
+            cast, rays.size(),
+            [&](const SceneView& view, TraceContext& context) {
+                self.kernels->closest_hits(view, context, rays.data(), hits.data(), rays.size());
+            },
+            mask);
     else
         self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
-            self.walk->closest_hits(self.view, self.kernels->primitive, context, rays.data(), hits.data(),
-                                    rays.size());
+            self.walk->closest_hits(self.view_for(mask), self.kernels->primitive, context, rays.data(),
+                                    hits.data(), rays.size());
         });
 }
 
@@ -186,17 +207,25 @@ void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2
     });
 }
 
-void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
+void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth,
+                      uint32_t mask) const {
     const Implementation& self = *implementation_;
+    if (self.is_hidden(mask)) {
+        std::fill(occluded.begin(), occluded.end(), uint8_t(0));
+        return;
+    }
     const size_t cast = 2 * size_t(depth) + 1;
     if (self.trees)
-        self.trace_wide(cast, rays.size(), [&](const SceneView& view, TraceContext& context) {
-            self.kernels->any_hits(view, context, rays.data(), occluded.data(), rays.size());
-        });
+        self.trace_wide(
+            cast, rays.size(),
+            [&](const SceneView& view, TraceContext& context) {
+                self.kernels->any_hits(view, context, rays.data(), occluded.data(), rays.size());
+            },
+            mask);
     else
         self.trace_batch(cast, rays.size(), [&](TraceContext& context) {
-            self.walk->any_hits(self.view, self.kernels->primitive, context, rays.data(), occluded.data(),
-                                rays.size());
+            self.walk->any_hits(self.view_for(mask), self.kernels->primitive, context, rays.data(),
+                                occluded.data(), rays.size());
         });
 }
 

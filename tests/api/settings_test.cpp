@@ -19,7 +19,8 @@ void expect_usage_error(const RenderSettings& settings) {
         EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
         EXPECT_FALSE(error.hint().empty());
     }
-    EXPECT_THROW(Intersector(Scene{}, settings), Error);
+    const IntersectorSettings same{settings.surface, settings.device, settings.experiment};
+    EXPECT_THROW(Intersector(Scene{}, same), Error);
 }
 
 TEST(Settings, of_one_engine_do_not_go_with_the_other) {

@@ -368,6 +368,7 @@ bool trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, Bu
     world.rays = &rays;
     if (!enter_space(Affine{}, world)) return false;
     const auto trace = [&](uint32_t instance) {
+        if (!scene.is_visible(instance)) return;
         if (scene.instances[instance].is_in_place) {
             world.instance = instance;
             return trace_instance(scene, context, world);

@@ -144,6 +144,7 @@ template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
     return walk_tree(*scene.instance_tree, context, root, best, [&](uint32_t instance) {
+        if (!scene.is_visible(instance)) return false;
         const Instance& placed = scene.instances[instance];
         if (placed.is_in_place) {
             best.instance = instance;
