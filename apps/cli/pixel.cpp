@@ -56,8 +56,9 @@ Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
 
 void explain_pixel(const Scene& scene, const RenderSettings& settings, int x, int y) {
     const Ray ray = make_pixel_ray(scene.camera, settings.image.width, settings.image.height, x, y);
-    RayHit hit;
-    Intersector(scene, settings).closest_hits({&ray, 1}, {&hit, 1});
+    const RayHit hit =
+        Intersector(scene, {settings.surface, settings.device, settings.experiment, settings.image.height})
+            .closest_hit(ray);
     RenderSettings one_pixel = settings;
     one_pixel.image.crop = {x, y, x + 1, y + 1};
     const RenderResult result = render(scene, one_pixel);

@@ -9,7 +9,7 @@
 
 int main() {
     try {
-        relief::RenderSettings settings;
+        relief::IntersectorSettings settings;
         settings.surface.level = 6;
         const relief::Intersector intersector(make_displaced_plane(), settings);
         std::vector<relief::Ray> rays;

@@ -128,12 +128,17 @@ struct Material {
     std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
 };
 
+/// Mask of objects and queries that leave nothing out. Pictures show all objects.
+inline constexpr uint32_t kVisibleToAll = 0xffffffff;
+
 struct Object {
     std::string name;
     uint32_t mesh = 0;
     uint32_t displacement = kNoIndex; ///< kNoIndex: plain polygons
     uint32_t material = kNoIndex;     ///< kNoIndex: the default material
     Affine world_from_object;
+    uint32_t visibility_mask =
+        kVisibleToAll; ///< not 0; an Intersector's rays whose mask shares no bit miss it
 };
 
 struct Camera {

@@ -96,21 +96,21 @@ class CpuEngine final : public Engine {
         return footprints_ ? trace_stale_tiles(film, observer) : Engine::refresh(film, observer);
     }
 
-    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override {
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override {
         tracer_.rebuild_if_worthwhile();
         parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
             std::vector<TraceHit> found(batch.size());
-            tracer_.closest_hits(batch, found);
-            for (size_t k = 0; k < found.size(); ++k) hits[begin + k] = make_ray_hit(found[k]);
+            tracer_.closest_hits(batch, found, 0, mask);
+            make_ray_hits(found, hits.subspan(begin, end - begin));
         });
     }
 
-    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override {
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const override {
         tracer_.rebuild_if_worthwhile();
         parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
-            tracer_.any_hits(batch, hits.subspan(begin, end - begin));
+            tracer_.any_hits(batch, hits.subspan(begin, end - begin), 0, mask);
         });
     }
 
@@ -196,15 +196,21 @@ class CpuEngine final : public Engine {
         return batch;
     }
 
-    RayHit make_ray_hit(const TraceHit& found) const {
-        RayHit hit;
-        if (!found.is_hit()) return hit;
-        hit.t = found.t;
-        hit.object = found.instance;
-        hit.patch = found.patch;
-        hit.uv = {found.u, found.v};
-        hit.normal = tracer_.make_surface_point(found).geometric_normal;
-        return hit;
+    /// Normals come from the SIMD kernels, many at once.
+    void make_ray_hits(std::span<const TraceHit> found, std::span<RayHit> hits) const {
+        std::vector<TraceHit> there;
+        for (const TraceHit& hit : found)
+            if (hit.is_hit()) there.push_back(hit);
+        std::vector<SurfacePoint> points(there.size());
+        PointScratch scratch;
+        tracer_.make_surface_points(there, points, scratch);
+        size_t next = 0;
+        for (size_t k = 0; k < found.size(); ++k) {
+            hits[k] = {};
+            if (!found[k].is_hit()) continue;
+            const TraceHit& hit = found[k];
+            hits[k] = {hit.t, hit.instance, hit.patch, {hit.u, hit.v}, points[next++].geometric_normal};
+        }
     }
 
     RenderSettings settings_;

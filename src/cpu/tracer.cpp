@@ -42,6 +42,11 @@ struct Tracer::Implementation {
         trees = std::make_unique<UpperTreeHolder>(scene, *kernels, polygon_trees);
     }
 
+    /// An only instance is entered without a look at its mask.
+    bool is_hidden(uint32_t mask) const {
+        return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
+    }
+
     void add_casts(Statistics& statistics) const {
         const std::vector<CastCounters> casts = cache->sum_casts();
         for (size_t k = 0; k < casts.size(); ++k) {
@@ -63,13 +68,14 @@ struct Tracer::Implementation {
 class Tracer::Batch {
   public:
     /// `cast` is the place in TraceContext::casts.
-    Batch(const Implementation& tracer, size_t cast, size_t rays)
+    Batch(const Implementation& tracer, size_t cast, size_t rays, uint32_t mask = kVisibleToAll)
         : view(tracer.view), context(tracer.cache->acquire()), tracer_(tracer), cast_(cast), rays_(rays) {
         if (tracer.trees) {
             trees_ = tracer.trees->current();
             view.surface_trees = trees_->surfaces.data();
             view.instance_tree = &trees_->instances;
         }
+        view.visibility_mask = mask;
         if (context.casts.size() <= cast) context.casts.resize(cast + 1);
         context.is_timed = context.casts[cast].batches % kTimedBatchInterval == 0;
         before_ = context.counters;
@@ -159,9 +165,14 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
     return true;
 }
 
-void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
+void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth,
+                          uint32_t mask) const {
     const Implementation& self = *implementation_;
-    Batch batch(self, 2 * size_t(depth), rays.size());
+    if (self.is_hidden(mask)) {
+        std::fill(hits.begin(), hits.end(), TraceHit{});
+        return;
+    }
+    Batch batch(self, 2 * size_t(depth), rays.size(), mask);
     if (self.trees)
         self.kernels->closest_hits(batch.view, batch.context, rays.data(), hits.data(), rays.size());
     else
@@ -186,9 +197,14 @@ void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2
     closest_hits(all, hits);
 }
 
-void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth) const {
+void Tracer::any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth,
+                      uint32_t mask) const {
     const Implementation& self = *implementation_;
-    Batch batch(self, 2 * size_t(depth) + 1, rays.size());
+    if (self.is_hidden(mask)) {
+        std::fill(occluded.begin(), occluded.end(), uint8_t(0));
+        return;
+    }
+    Batch batch(self, 2 * size_t(depth) + 1, rays.size(), mask);
     if (self.trees)
         self.kernels->any_hits(batch.view, batch.context, rays.data(), occluded.data(), rays.size());
     else

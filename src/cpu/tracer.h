@@ -98,8 +98,9 @@ class Tracer {
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as
     /// bundles of 256 or packets of 16: give neighbours in such runs. `depth` says where the statistics count
-    /// them: bounces behind the rays.
-    void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0) const;
+    /// them: bounces behind the rays. Instances are met whose visibility mask shares a bit with `mask`.
+    void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0,
+                      uint32_t mask = kVisibleToAll) const;
 
     /// Nearest hits of what a camera without an aperture sees at positions of the picture, in pixels:
     /// closest_hits of the rays that scalar::make_pinhole_ray aims, bit for bit. Give neighbours in runs of
@@ -108,7 +109,8 @@ class Tracer {
                      std::span<TraceRay> rays, std::span<TraceHit> hits) const;
 
     /// occluded[i] = 1 where anything lies in (t_min, t_max], else 0. Counted as shadow rays.
-    void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth = 0) const;
+    void any_hits(std::span<const TraceRay> rays, std::span<uint8_t> occluded, int depth = 0,
+                  uint32_t mask = kVisibleToAll) const;
 
     /// All that shading needs to know of a hit.
     SurfacePoint make_surface_point(const TraceHit& hit) const;

@@ -35,9 +35,9 @@ class Engine {
         return render(film, observer);
     }
 
-    /// Spans of equal length; thread safe.
-    virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const = 0;
-    virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const = 0;
+    /// Spans of equal length; thread safe. Instances are met whose visibility mask shares a bit with `mask`.
+    virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const = 0;
+    virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const = 0;
 
     /// Adds what the engine counted: rays, pairs, bottom trees, stage times, bytes, device and isa. What
     /// render() took to make itself ready moves from render_s to prepare_s.

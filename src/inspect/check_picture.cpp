@@ -158,7 +158,7 @@ Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
     const scalar::CameraFrame camera = make_camera_frame(*prepared);
     const std::vector<Ray> rays = make_rays(camera, plain);
     std::vector<RayHit> hits(rays.size());
-    make_cpu_engine(prepared, plain)->closest_hits(rays, hits);
+    make_cpu_engine(prepared, plain)->closest_hits(rays, hits, kVisibleToAll);
     const float longest = find_longest(*prepared, hits);
     for (size_t k = 0; k < rays.size(); ++k) {
         const int x = int(k % size_t(plain.image.width)), y = int(k / size_t(plain.image.width));

@@ -3,6 +3,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -36,10 +37,21 @@ Instance make_instance(const Object& object, uint32_t surface, uint32_t default_
     instance.surface = surface;
     instance.material = object.material == kNoIndex ? default_material : object.material;
     instance.world_from_object = object.world_from_object;
+    instance.visibility_mask = object.visibility_mask;
     instance.object_from_world = *invert(object.world_from_object);
     instance.is_mirrored = compute_determinant(object.world_from_object) < 0;
     instance.is_in_place = instance.object_from_world == Affine{} && instance.world_from_object == Affine{};
     return instance;
+}
+
+/// So that pictures need not look at masks.
+void check_visibility(const Scene& scene) {
+    for (size_t k = 0; k < scene.objects.size(); ++k)
+        if (scene.objects[k].visibility_mask == 0)
+            throw Error(ErrorKind::bad_input, {"its visibility mask is 0, so that no ray can meet it",
+                                               scene.objects[k].name.empty() ? "object " + std::to_string(k)
+                                                                             : scene.objects[k].name,
+                                               "leave the object out, or set a bit"});
 }
 
 LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& settings) {
@@ -152,6 +164,7 @@ std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t sur
 
 EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings) {
     validate_scene(scene);
+    check_visibility(scene);
     auto prepared = std::make_shared<PreparedScene>();
     EditableScene editable{prepared, {}};
     prepared->warnings = std::move(scene.warnings);

@@ -22,8 +22,9 @@ struct Instance {
     uint32_t surface = 0;  ///< index into PreparedScene::surfaces
     uint32_t material = 0; ///< index into PreparedScene::materials
     Affine world_from_object, object_from_world;
-    bool is_mirrored = false; ///< negative determinant: the winding is turned
-    bool is_in_place = false; ///< object space is world space
+    uint32_t visibility_mask = kVisibleToAll; ///< of the object
+    bool is_mirrored = false;                 ///< negative determinant: the winding is turned
+    bool is_in_place = false;                 ///< object space is world space
     std::shared_ptr<const LevelField> levels;
 };
 

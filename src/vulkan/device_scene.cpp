@@ -213,6 +213,7 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         data.material = instance.material;
         data.root = arrays.surface_roots[instance.surface];
         data.is_mirrored = instance.is_mirrored;
+        data.visibility_mask = instance.visibility_mask;
         data.first_level = kNone;
         if (instance.levels->is_uniform()) {
             data.levels = surface.patch_count() > 0 ? instance.levels->packed_at(0) : 0;

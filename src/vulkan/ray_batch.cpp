@@ -49,7 +49,8 @@ void RayBatch::upload(std::span<const Ray> rays) {
     tracer_.rays().upload(data);
 }
 
-void RayBatch::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) {
+void RayBatch::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) {
+    tracer_.set_visibility_mask(mask);
     tracer_.bindings().bind(scalar::kBindPoints, points_);
     for (size_t first = 0; first < rays.size(); first += capacity_) {
         const uint32_t count = uint32_t(std::min<size_t>(capacity_, rays.size() - first));
@@ -65,7 +66,8 @@ void RayBatch::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) {
     }
 }
 
-void RayBatch::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) {
+void RayBatch::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) {
+    tracer_.set_visibility_mask(mask);
     for (size_t first = 0; first < rays.size(); first += capacity_) {
         const uint32_t count = uint32_t(std::min<size_t>(capacity_, rays.size() - first));
         upload(rays.subspan(first, count));

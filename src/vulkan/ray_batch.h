@@ -14,9 +14,9 @@ class RayBatch {
     /// The tracer must outlive it. Throws Error{out_of_memory}.
     explicit RayBatch(Tracer& tracer);
 
-    /// Spans of equal length, any length.
-    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits);
-    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits);
+    /// Spans of equal length, any length; `mask` as for Engine.
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask);
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask);
 
   private:
     /// Rays of one batch, at most capacity_ of them.

@@ -66,6 +66,7 @@ struct Tracer::Implementation {
         push.pixel_angle = settings.surface.pixel_error * pixel;
         push.is_ray_lod = settings.surface.lod == LodRule::ray;
         push.root = device_scene.root();
+        push.visibility_mask = kVisibleToAll;
         push.patch_count = device_scene.patch_count();
         push.request_limit = kRequestCapacity;
     }
@@ -290,6 +291,8 @@ Tracer::Tracer(const Device& device, const PreparedScene& scene, const DeviceSce
     : implementation_(std::make_unique<Implementation>(device, scene, device_scene, settings, config)) {}
 
 Tracer::~Tracer() = default;
+
+void Tracer::set_visibility_mask(uint32_t mask) { implementation_->push.visibility_mask = mask; }
 
 CastStatistics Tracer::closest_hits(const Buffer& list, uint32_t count) {
     implementation_->push.is_any = 0;

@@ -38,6 +38,9 @@ class Tracer {
     /// Whether anything is in the way: HitData::instance is kNone where nothing is.
     CastStatistics any_hits(const Buffer& list, uint32_t count);
 
+    /// Of all rays from now on: instances are met whose mask shares a bit. Everything to begin with.
+    void set_visibility_mask(uint32_t mask);
+
     BindingTable& bindings();
     Commands& commands();
     const Device& device() const;

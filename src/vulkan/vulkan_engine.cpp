@@ -38,8 +38,8 @@ class VulkanEngine final : public Engine {
     /// Texels and trees lie on the device, as they were uploaded.
     bool apply_changes(std::span<const SurfaceChange>) override { return false; }
     bool render(Film& film, RenderObserver* observer) override;
-    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const override;
-    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const override;
+    void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override;
+    void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const override;
     void add_statistics(Statistics& statistics) const override;
 
   private:
@@ -144,14 +144,14 @@ Station<RayBatch>& VulkanEngine::batches() const {
     return batches_;
 }
 
-void VulkanEngine::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits) const {
+void VulkanEngine::closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const {
     const std::lock_guard lock(mutex_);
-    batches().run([&](RayBatch& worker) { worker.closest_hits(rays, hits); });
+    batches().run([&](RayBatch& worker) { worker.closest_hits(rays, hits, mask); });
 }
 
-void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits) const {
+void VulkanEngine::any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const {
     const std::lock_guard lock(mutex_);
-    batches().run([&](RayBatch& worker) { worker.any_hits(rays, hits); });
+    batches().run([&](RayBatch& worker) { worker.any_hits(rays, hits, mask); });
 }
 
 void VulkanEngine::add_statistics(Statistics& statistics) const {

@@ -19,7 +19,7 @@ Scene make_scene() {
 }
 
 TEST(Intersector, answers_closest_and_any_for_rays_of_any_length) {
-    const Intersector intersector(make_scene(), RenderSettings{});
+    const Intersector intersector(make_scene(), {});
     std::vector<Ray> rays;
     for (int k = 0; k < 3000; ++k) {
         Ray ray;
@@ -51,7 +51,7 @@ TEST(Intersector, answers_closest_and_any_for_rays_of_any_length) {
 }
 
 TEST(Intersector, respects_the_interval_of_a_ray) {
-    const Intersector intersector(make_scene(), RenderSettings{});
+    const Intersector intersector(make_scene(), {});
     Ray ray;
     ray.origin = {4, 0.1f, 0.2f};
     ray.direction = {-1, 0, 0};
@@ -69,10 +69,10 @@ TEST(Intersector, respects_the_interval_of_a_ray) {
 }
 
 TEST(Intersector, refuses_settings_out_of_range_and_unequal_spans) {
-    RenderSettings settings;
+    IntersectorSettings settings;
     settings.surface.level = 40;
     EXPECT_THROW(Intersector(make_scene(), settings), Error);
-    const Intersector intersector(make_scene(), RenderSettings{});
+    const Intersector intersector(make_scene(), {});
     const std::vector<Ray> rays(3);
     std::vector<RayHit> hits(2);
     EXPECT_THROW(intersector.closest_hits(rays, hits), Error);

@@ -28,7 +28,7 @@ void expect_refused(const std::function<void(RenderSettings&)>& change, const st
         }
     };
     expect([&] { render(Scene{}, settings); });
-    expect([&] { Intersector(Scene{}, settings); });
+    expect([&] { Intersector(Scene{}, {settings.surface, settings.device, settings.experiment}); });
 }
 
 void choose_vulkan(RenderSettings& s) { s.device.engine = EngineKind::vulkan; }

@@ -103,15 +103,15 @@ TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {
     std::vector<RayHit> expected(rays.size());
     std::vector<uint8_t> expected_any(rays.size());
     const std::unique_ptr<Engine> cpu = make_cpu_engine(prepared_, settings_);
-    cpu->closest_hits(rays, expected);
-    cpu->any_hits(rays, expected_any);
+    cpu->closest_hits(rays, expected, kVisibleToAll);
+    cpu->any_hits(rays, expected_any, kVisibleToAll);
     std::vector<std::vector<RayHit>> hits(3, std::vector<RayHit>(rays.size()));
     std::vector<std::vector<uint8_t>> any(3, std::vector<uint8_t>(rays.size()));
     std::vector<std::thread> threads;
     for (size_t k = 0; k < hits.size(); ++k)
         threads.emplace_back([&, k] {
-            engine_->closest_hits(rays, hits[k]);
-            engine_->any_hits(rays, any[k]);
+            engine_->closest_hits(rays, hits[k], kVisibleToAll);
+            engine_->any_hits(rays, any[k], kVisibleToAll);
         });
     for (std::thread& thread : threads) thread.join();
     for (size_t k = 0; k < hits.size(); ++k) {
@@ -132,7 +132,7 @@ TEST_F(EngineTest, rays_that_are_no_numbers_hit_nothing_and_leave_the_others_the
     for (const cpu::TraceRay& ray : make_rays(600, 5))
         rays.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max});
     std::vector<RayHit> whole(rays.size()), hits(rays.size());
-    engine_->closest_hits(rays, whole);
+    engine_->closest_hits(rays, whole, kVisibleToAll);
     for (size_t k = 0; k < rays.size(); k += 7) {
         Ray& ray = rays[k];
         float* const places[] = {&ray.origin.x, &ray.direction.y, &ray.direction.z, &ray.t_min};
@@ -140,8 +140,8 @@ TEST_F(EngineTest, rays_that_are_no_numbers_hit_nothing_and_leave_the_others_the
         whole[k] = {};
     }
     std::vector<uint8_t> any(rays.size());
-    engine_->closest_hits(rays, hits);
-    engine_->any_hits(rays, any);
+    engine_->closest_hits(rays, hits, kVisibleToAll);
+    engine_->any_hits(rays, any, kVisibleToAll);
     for (size_t k = 0; k < rays.size(); ++k) {
         ASSERT_EQ(hits[k].t, whole[k].t) << k;
         ASSERT_EQ(hits[k].object, whole[k].object) << k;

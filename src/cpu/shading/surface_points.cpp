@@ -85,6 +85,12 @@ TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patc
     return hit;
 }
 
+std::array<Vec3f, 3> find_corners(const PreparedScene& scene, const TraceHit& hit,
+                                  const PatchSamples* samples) {
+    const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
+    return make_corners(surface, samples, unpack_levels(hit.levels), hit);
+}
+
 std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit) {
     const Surface& surface = scene.surfaces[scene.instances[hit.instance].surface];
     return surface.has_displacement ? std::optional<PatchSamples>(std::in_place, surface, hit.patch)

@@ -1,6 +1,7 @@
 // From hits to points of the surface: one by one, which is the definition, or many at once by SIMD kernels.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -24,6 +25,11 @@ TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patc
 
 /// Nothing on a surface without displacement.
 std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit);
+
+/// Corners of a hit's micro-triangle, object space: those of its cell at 00, 10, 11, or 00, 11, 01; of a
+/// polygon's own triangle where `samples` is null.
+std::array<Vec3f, 3> find_corners(const PreparedScene& scene, const TraceHit& hit,
+                                  const PatchSamples* samples);
 
 /// Position, geometric normal and area; `samples` is null on a surface without displacement.
 SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples);

@@ -292,6 +292,7 @@ template <class Bundle>
 void trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, Bundle& world) {
     BundleWalker walker{scene.instance_tree->nodes, world};
     walk_primitives(*scene.instance_tree, context, walker, {}, [&](uint32_t instance, const BundleEntry&) {
+        if (!scene.is_visible(instance)) return false;
         if (scene.instances[instance].is_in_place) {
             world.instance = instance;
             trace_instance(scene, context, world);

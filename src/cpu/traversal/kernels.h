@@ -24,6 +24,11 @@ struct SceneView {
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;
     float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
+    uint32_t visibility_mask = kVisibleToAll; ///< of the rays; an only instance has it tested beforehand
+
+    bool is_visible(uint32_t instance) const {
+        return (instances[instance].visibility_mask & visibility_mask) != 0;
+    }
 };
 
 /// One primitive of an instance: a polygon or a displaced patch. closest: a hit nearer than `best` takes its

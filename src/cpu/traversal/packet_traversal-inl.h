@@ -187,6 +187,7 @@ HWY_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& co
 template <Query kQuery>
 void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance, Packet& world,
                     LaneMask mask) {
+    if (!scene.is_visible(instance)) return;
     const Instance& placed = scene.instances[instance];
     if (placed.is_in_place) {
         for (RayState& ray : world.ray) ray.instance = instance;

@@ -89,6 +89,7 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
                  uint32_t root, RayState& best) {
     RayWalker walker{best};
     const auto visit = [&](uint32_t instance, const StackEntry&) {
+        if (!scene.is_visible(instance)) return false;
         const Instance& placed = scene.instances[instance];
         if (placed.is_in_place) {
             best.instance = instance;

@@ -212,6 +212,7 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
         while (waiting_count_ > 0) {
             const uint32_t index = primitive_ids()[waiting_first_];
             ++waiting_first_, --waiting_count_;
+            if (!view_.scene.is_visible(index)) continue;
             if (!is_to_be_entered(index, instances_)) continue;
             enter_instance(index);
             return true;

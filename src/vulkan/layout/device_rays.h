@@ -83,9 +83,10 @@ struct CastPush {
     uint patch_count;    ///< trees below are patches, from there on tiles
     uint directory_mask; ///< entries of the hash table - 1
     uint request_limit;
-    uint is_ray_lod;    ///< levels by the ray's own distance
-    float pixel_angle;  ///< of a cell at distance 1
-    uint builds_stride; ///< places of each bin
+    uint is_ray_lod;      ///< levels by the ray's own distance
+    float pixel_angle;    ///< of a cell at distance 1
+    uint builds_stride;   ///< places of each bin
+    uint visibility_mask; ///< instances are entered that share a bit
 };
 
 /// A bottom tree: what rays want of it in this round, and where in the pool it is.

@@ -17,6 +17,7 @@ struct InstanceData {
     uint first_level; ///< index into levels; kNone: all patches have `levels`
     uint levels;      ///< packed
     uint is_mirrored; ///< winding turned
+    uint visibility_mask;
 };
 
 /// First entries in the texel buffers; kNone where the surface has no such data.

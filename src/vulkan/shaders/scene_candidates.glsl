@@ -161,6 +161,11 @@ bool is_wanted(BoxInterval interval, float entry) {
     return entry <= find_limit() && is_wanted_at_all(interval, entry);
 }
 
+/// Neither empty nor hidden from these rays.
+bool is_instance_seen(uint index) {
+    return instances[index].root != kNone && (instances[index].visibility_mask & push.visibility_mask) != 0u;
+}
+
 void enter_instance(uint index) {
     instance_index = index;
     instance = instances[index];

@@ -31,7 +31,7 @@ bool walk() {
         if (kind == kNodeInner)
             enter_inner(first, entry);
         else if (kind == kNodeInstance) {
-            if (instances[first].root == kNone) continue;
+            if (!is_instance_seen(first)) continue;
             world_size = stack_size;
             enter_instance(first);
             push_node(instance.root, entry);

@@ -106,7 +106,8 @@ TEST_P(Samples, answer_the_rays_of_other_programs_alike) {
     std::map<EngineKind, std::vector<uint8_t>> any;
     for (const EngineKind engine : {EngineKind::cpu, EngineKind::vulkan}) {
         settings.device.engine = engine;
-        const Intersector intersector(scene(), settings);
+        const Intersector intersector(
+            scene(), {settings.surface, settings.device, settings.experiment, settings.image.height});
         hits[engine].resize(rays.size()), any[engine].resize(rays.size());
         intersector.closest_hits(rays, hits[engine]);
         intersector.any_hits(rays, any[engine]);

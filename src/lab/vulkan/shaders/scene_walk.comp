@@ -143,7 +143,7 @@ bool enter_next_instance() {
         ++waiting_first;
         --waiting_count;
         float entry = enter_primitive(index, waiting_entry);
-        is_entered = instances[index].root != kNone && is_within_limit(entry);
+        is_entered = is_instance_seen(index) && is_within_limit(entry);
         if (is_entered) {
             enter_instance(index);
             instance_entry = entry;
