@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test dev asan tsan fuzz coverage format clean packages release asan-slice gpu-bundle
+.PHONY: help render test quick dev asan tsan fuzz coverage format clean packages release asan-slice fuzz-slice gpu-bundle
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -10,7 +10,8 @@ SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.cpp' '*.h
 
 help:
 	@echo 'make render    build, and render the sample scene "pumpkin" to out/pumpkin.png'
-	@echo 'make test      build, and run all tests, with short sanitizer and fuzz slices'
+	@echo 'make test      build, and run all tests'
+	@echo 'make quick     build, and run the tests that take seconds: for each step of a change'
 	@echo 'make dev       optimised build with internal checks, all tests'
 	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
 	@echo 'make tsan      all tests under the thread sanitizer'
@@ -25,29 +26,40 @@ help:
 packages:
 	@tools/install_packages.sh
 
-# configure_and_build(PRESET, TARGETS)
+# configure_and_build(PRESET, TARGETS, OPTIONS)
 define configure_and_build
-	cmake --preset $(1)
+	cmake --preset $(1) $(3)
 	cmake --build --preset $(1) -j $(JOBS) $(if $(2),--target $(2))
 endef
 
+# A new build folder begins with the instruction set of this machine alone; `make test` adds the others.
 render: packages
-	$(call configure_and_build,release,relief)
+	$(call configure_and_build,release,relief,$(if $(wildcard build/release/CMakeCache.txt),,-DRELIEF_ISAS=native))
 	@mkdir -p out
 	@test -f out/pumpkin/scene.json || $(RELIEF) scene pumpkin -o out/pumpkin
 	$(RELIEF) render out/pumpkin/scene.json -o out/pumpkin.png
 	@echo "The picture is $(abspath out/pumpkin.png)"
 
 release: packages
-	$(call configure_and_build,release)
+	$(call configure_and_build,release,,-DRELIEF_ISAS=all)
 
-# The modules that hold the arithmetic, without file readers, so that `make test` can afford it.
+test: release
+	ctest --preset release -j $(JOBS)
+
+quick: packages
+	$(call configure_and_build,release,relief relief-bench quick_tests)
+	ctest --preset quick -j $(JOBS)
+
+# The modules that hold the arithmetic, without file readers: what continuous integration can afford.
 asan-slice: packages
 	$(call configure_and_build,asan-slice,core_tests)
 	ctest --preset asan-slice -j $(JOBS)
 
-test: release asan-slice
-	ctest --preset release -j $(JOBS)
+# Three seconds of each fuzzer, without sanitizers.
+fuzz-slice: packages
+	$(call configure_and_build,release,fuzzers,-DRELIEF_FUZZ=ON)
+	ctest --preset release -R '^fuzz' -j $(JOBS)
+	cmake --preset release -DRELIEF_FUZZ=OFF
 
 dev: packages
 	$(call configure_and_build,dev)
