@@ -17,7 +17,7 @@ enum class SurfaceMode { direct, tessellated };
 enum class LeafKind { exact, box };
 enum class LodRule { field, ray };
 enum class EngineKind { cpu, vulkan };
-/// How the Vulkan engine builds and walks bottom trees: one kernel that keeps groups resident and takes jobs
+/// How the Vulkan engine builds and walks patch trees: one kernel that keeps groups resident and takes jobs
 /// from a queue (Harada 2015), or a build kernel and then one invocation per pair of patch and ray.
 enum class BottomForm { automatic, fused, split };
 /// What of a device finds hits (GRAPP 2019, section 3.3): compute kernels; fragment shaders over the
@@ -40,7 +40,7 @@ struct SurfaceSettings {
     float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, (0, 1e6]
     LodRule lod = LodRule::field;
     LeafKind leaf = LeafKind::exact;
-    size_t cache_bytes = size_t(176) << 20; ///< cap of the bottom-level tree cache; 0 turns it off
+    size_t cache_bytes = size_t(176) << 20; ///< cap of the patch tree cache; 0 turns it off
 };
 
 /// What computes, and with how much of the machine.

@@ -11,7 +11,7 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
-#include "cpu/patch_trees/bottom_cache.h"
+#include "cpu/patch_trees/patch_tree_cache.h"
 #include "cpu/path_tracer.h"
 #include "cpu/picture_footprints.h"
 #include "cpu/tiles.h"

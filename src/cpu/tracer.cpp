@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/timer.h"
-#include "cpu/patch_trees/upper_trees.h"
+#include "cpu/scene_trees.h"
 #include "cpu/shading/surface_points.h"
 #include "cpu/traversal/kernels.h"
 #include "cpu/traversal/scene_walk.h"
@@ -31,15 +31,15 @@ struct Tracer::Implementation {
     const ShadingKernels* shading = nullptr;
     std::unique_ptr<const SceneWalk> walk; ///< of a traversal chosen by name; null: the wide trees
     std::vector<PolygonTree> polygon_trees;
-    std::unique_ptr<BottomCache> cache;
-    SceneView view;                         ///< but for the upper trees
-    std::unique_ptr<UpperTreeHolder> trees; ///< null: those of a walk asked for by name
+    std::unique_ptr<PatchTreeCache> cache;
+    SceneView view;                         ///< but for the scene trees
+    std::unique_ptr<SceneTreeHolder> trees; ///< null: those of a walk asked for by name
 
     void make_trees(const PreparedScene& scene) {
         if (walk) return;
         for (const Surface& surface : scene.surfaces)
             polygon_trees.push_back(surface.has_displacement ? PolygonTree{} : build_polygon_tree(surface));
-        trees = std::make_unique<UpperTreeHolder>(scene, *kernels, polygon_trees);
+        trees = std::make_unique<SceneTreeHolder>(scene, *kernels, polygon_trees);
     }
 
     /// An only instance is entered without a look at its mask.
@@ -98,7 +98,7 @@ class Tracer::Batch {
 
   private:
     const Implementation& tracer_;
-    std::shared_ptr<const UpperTrees> trees_;
+    std::shared_ptr<const SceneTrees> trees_;
     size_t cast_, rays_;
     TraceCounters before_;
     Timer timer_;
@@ -118,7 +118,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);
-    self.cache = std::make_unique<BottomCache>(settings.surface.cache_bytes, self.kernels->build_tree);
+    self.cache = std::make_unique<PatchTreeCache>(settings.surface.cache_bytes, self.kernels->build_tree);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view.instances = scene_->instances.data();
@@ -145,7 +145,7 @@ Box Tracer::displaced_bounds() const {
     const Implementation& self = *implementation_;
     Box bounds;
     if (!self.trees) return bounds;
-    const std::shared_ptr<const UpperTrees> trees = self.trees->current();
+    const std::shared_ptr<const SceneTrees> trees = self.trees->current();
     for (const Instance& instance : scene_->instances)
         if (scene_->surfaces[instance.surface].has_displacement)
             bounds.extend(

@@ -61,7 +61,7 @@ struct PointScratch {
     std::vector<uint32_t> order;
 };
 
-/// Immutable after construction apart from the bottom-tree cache and the upper trees, which take care of
+/// Immutable after construction apart from the bottom-tree cache and the scene trees, which take care of
 /// themselves, and from `apply_changes`. Thread safe but for that.
 class Tracer {
   public:
@@ -78,9 +78,9 @@ class Tracer {
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 
-    /// While this lives, rays end with StopRequest (cpu/patch_trees/bottom_cache.h) before the next tree that
-    /// they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes its
-    /// time. Any worker asks. To be made and ended while nothing is traced.
+    /// While this lives, rays end with StopRequest (cpu/patch_trees/patch_tree_cache.h) before the next tree
+    /// that they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes
+    /// its time. Any worker asks. To be made and ended while nothing is traced.
     class StopScope {
       public:
         StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);

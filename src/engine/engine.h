@@ -39,7 +39,7 @@ class Engine {
     virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const = 0;
     virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const = 0;
 
-    /// Adds what the engine counted: rays, pairs, bottom trees, stage times, bytes, device and isa. What
+    /// Adds what the engine counted: rays, pairs, patch trees, stage times, bytes, device and isa. What
     /// render() took to make itself ready moves from render_s to prepare_s.
     virtual void add_statistics(Statistics& statistics) const = 0;
 };

@@ -360,7 +360,7 @@ ProbeCounts TracerProbe::count() const {
         const uint64_t built = statistics.bottom_levels[level];
         counts.trees_built += built;
         counts.built_quads += built << (2 * level);
-        counts.built_bytes += built * cpu::BottomTree::size_bytes(int(level));
+        counts.built_bytes += built * cpu::PatchTree::size_bytes(int(level));
     }
     counts.cache_bytes = statistics.bottom_cache_bytes;
     return counts;

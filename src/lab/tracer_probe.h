@@ -46,7 +46,7 @@ struct ProbePoint {
 /// Seconds from a scene in memory to the readiness for rays.
 struct ProbePreparation {
     double surfaces_s = 0; ///< patches, bounds of the maps, levels
-    double trees_s = 0;    ///< upper trees
+    double trees_s = 0;    ///< scene trees
     double seconds() const { return surfaces_s + trees_s; }
 };
 
@@ -56,7 +56,7 @@ struct ProbeCounts {
     uint64_t triangles = 0;   ///< of what is not displaced
     uint64_t geometry_bytes = 0, structures_bytes = 0;
     uint64_t plain_bytes = 0; ///< of these, what serves surfaces that are not displaced
-    uint64_t trees_built = 0; ///< bottom trees since the cache was emptied last
+    uint64_t trees_built = 0; ///< patch trees since the cache was emptied last
     uint64_t built_quads = 0; ///< micro-quads in them
     uint64_t built_bytes = 0; ///< bytes of them, whether kept or not
     uint64_t cache_bytes = 0; ///< the most that the cache has held, its table included
@@ -73,9 +73,9 @@ class TracerProbe {
     TracerProbe& operator=(TracerProbe&&) noexcept;
 
     const ProbePreparation& preparation() const;
-    /// Builds the upper trees once more and forgets them; seconds.
+    /// Builds the scene trees once more and forgets them; seconds.
     double measure_build() const;
-    /// Starts anew with an empty cache of bottom trees.
+    /// Starts anew with an empty cache of patch trees.
     void empty_cache();
 
     /// Rays through the middles of the picture's pixels in the order of packets: squares of 4 x 4 within

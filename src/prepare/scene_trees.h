@@ -1,4 +1,4 @@
-// The two upper trees, over the patches of a surface and over the instances, as engines walk them by default.
+// The two scene trees, over the patches of a surface and over the instances, as engines walk them by default.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 #include "vulkan/cast_kernels.h"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "vulkan/layout/bindings.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 namespace relief::vulkan {
 
 struct CastKernels {
-    /// `stack_size`: entries for upper trees and tiles.
+    /// `stack_size`: entries for scene trees and tiles.
     CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
                 const TracerConfig& config, uint32_t stack_size);
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "bvh/tree_links.h"
-#include "formulas/bottom_tree.h"
 #include "formulas/levels.h"
 #include "formulas/mips.h"
+#include "formulas/patch_tree.h"
 #include "prepare/scene_trees.h"
 #include "surface/map/mip_chain.h"
 #include "vulkan/device/shader_table.h"

@@ -1,4 +1,4 @@
-// The prepared scene in device memory: tables, geometry, upper trees and texels, in the layout of
+// The prepared scene in device memory: tables, geometry, scene trees and texels, in the layout of
 // vulkan/layout/device_scene.h.
 #pragma once
 
@@ -31,7 +31,7 @@ class DeviceScene {
     /// Number of the first patch of a surface among all; trees of tiles are numbered from patch_count() on.
     uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
     uint32_t patch_count() const { return patch_count_; }
-    /// The kernel that walks the upper trees, and the entries that its stack needs for them.
+    /// The kernel that walks the scene trees, and the entries that its stack needs for them.
     const TraversalKernel& traversal_kernel() const { return traversal_kernel_; }
     uint32_t stack_size() const { return stack_size_; }
     /// Bit k: patches, or tiles of finer ones, have level k.

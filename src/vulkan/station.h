@@ -32,7 +32,7 @@ template <class Worker> class Station {
     /// False before it is made and after run() has thrown for lack of memory.
     explicit operator bool() const { return worker_ != nullptr; }
 
-    /// Runs work(Worker&). When memory runs out on the way (bottom trees, tiles), it is run again on a
+    /// Runs work(Worker&). When memory runs out on the way (patch trees, tiles), it is run again on a
     /// station made afresh, which has forgotten what filled the memory, or, where that does not help, on half
     /// of one.
     template <class Work> void run(const Work& work) {

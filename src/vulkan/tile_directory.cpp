@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_rays.h"
 #include "vulkan/layout/device_scene.h"

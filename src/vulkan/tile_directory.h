@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/device_scene.h"
 #include "vulkan/layout/device_rays.h"
@@ -29,7 +29,7 @@ class TileDirectories {
     uint32_t directory_mask() const { return uint32_t(table_.size()) - 1; }
     /// True when a patch may have tiles at all.
     bool is_needed() const { return finest_level_ > int(scalar::kTreeLevels); }
-    /// Entries that a ray's stack needs beyond those of the upper trees.
+    /// Entries that a ray's stack needs beyond those of the scene trees.
     uint32_t stack_size() const {
         return is_needed() ? 2 * (uint32_t(finest_level_) - scalar::kTreeLevels) + 2 : 0;
     }

@@ -10,13 +10,13 @@
 
 #include <fmt/format.h>
 
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "relief/error.h"
-#include "vulkan/bottom_cache.h"
 #include "vulkan/cast_buffers.h"
 #include "vulkan/cast_kernels.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_rays.h"
+#include "vulkan/patch_tree_cache.h"
 #include "vulkan/radix_sort.h"
 #include "vulkan/tile_directory.h"
 
@@ -95,7 +95,7 @@ struct Tracer::Implementation {
     BindingTable bindings;
     Commands commands;
     TileDirectories directories;
-    BottomCache cache;
+    PatchTreeCache cache;
     RadixSort sort;
     CastBuffers buffers;
     CastKernels kernels;

@@ -1,4 +1,4 @@
-// Rays against the scene on the device: rounds of upper traversal, sort, bottom trees and bottom traversal
+// Rays against the scene on the device: rounds of upper traversal, sort, patch trees and bottom traversal
 // until no ray has anything left in front of its hit. The counterpart of cpu/tracer.h.
 #pragma once
 

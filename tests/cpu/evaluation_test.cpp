@@ -36,25 +36,25 @@ std::shared_ptr<Texture> to_halves(const Texture& source) {
 void expect_tree_of_definition(const Surface& surface, uint32_t patch, const PatchLevels& levels,
                                const cpu::Kernels& kernels) {
     const std::unique_ptr<void, Free> memory(
-        std::aligned_alloc(64, cpu::BottomTree::size_bytes(cpu::kTileLevel)));
+        std::aligned_alloc(64, cpu::PatchTree::size_bytes(cpu::kTileLevel)));
     const int depth = std::max(0, int(levels.patch) - cpu::kTileLevel);
     for (uint32_t tile : {0u, (1u << 2 * depth) - 1}) {
-        auto* tree = new (memory.get()) cpu::BottomTree;
+        auto* tree = new (memory.get()) cpu::PatchTree;
         tree->key.patch = patch;
         tree->level = uint32_t(levels.patch - depth);
         tree->cell_x = (tile & ((1u << depth) - 1)) << cpu::kTileLevel;
         tree->cell_y = (tile >> depth) << cpu::kTileLevel;
         kernels.build_tree(surface, levels, *tree);
         const uint32_t side = 1u << tree->level;
-        for (uint32_t b = 0; b < cpu::BottomTree::block_count(int(tree->level)); ++b) {
+        for (uint32_t b = 0; b < cpu::PatchTree::block_count(int(tree->level)); ++b) {
             uint32_t column = 0, row = 0;
-            cpu::BottomTree::block_cell(int(tree->level), b, column, row);
+            cpu::PatchTree::block_cell(int(tree->level), b, column, row);
             for (uint32_t v = 0; v < 15; ++v) {
                 const uint32_t i = tree->cell_x + std::min(column + v % 5, side),
                                j = tree->cell_y + std::min(row + v / 5, side);
                 const Vec3f expected = evaluate_vertex(surface, patch, levels, i, j);
-                const uint32_t number = cpu::BottomTree::find_first_vertex(int(tree->level), b) +
-                                        v / 5 * cpu::BottomTree::column_count(int(tree->level)) + v % 5;
+                const uint32_t number = cpu::PatchTree::find_first_vertex(int(tree->level), b) +
+                                        v / 5 * cpu::PatchTree::column_count(int(tree->level)) + v % 5;
                 const Vec3f found{tree->vertices(0)[number], tree->vertices(1)[number],
                                   tree->vertices(2)[number]};
                 ASSERT_EQ(found, expected)

@@ -65,7 +65,7 @@ struct Forest {
     }
 
   private:
-    /// Leaves of the upper tree name their instance, others their first triangle.
+    /// Leaves of the scene tree name their instance, others their first triangle.
     static uint enter(const std::vector<uint32_t>& ids, uint first, uint first_entry, uint kind) {
         return kind == 0 ? first + first_entry : ids[first];
     }

@@ -1,4 +1,4 @@
-// Every structure and traversal that a device can walk the upper trees by finds the hits of the CPU engine.
+// Every structure and traversal that a device can walk the scene trees by finds the hits of the CPU engine.
 #include "cast_fixture.h"
 #include "support/choices.h"
 

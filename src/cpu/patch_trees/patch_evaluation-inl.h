@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "cpu/patch_trees/bottom_tree.h"
+#include "cpu/patch_trees/patch_tree.h"
 #include "formulas/mips.h"
 #include "surface/patch/patch_samples.h"
 #include "surface/patch/sample_lanes-inl.h"

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "cpu/patch_trees/bottom_tree.h"
+#include "cpu/patch_trees/patch_tree.h"
 
 namespace relief::cpu {
 

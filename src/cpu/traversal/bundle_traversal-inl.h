@@ -26,9 +26,9 @@ struct QuadPlaces {
     HitPlaces places;
     int32_t first; ///< cell of the block
 
-    HWY_INLINE QuadPlaces(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block) {
+    HWY_INLINE QuadPlaces(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block) {
         uint32_t column = 0, row = 0;
-        cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+        cpu::PatchTree::block_cell(int(tree.level), block, column, row);
         first = int32_t((tree.cell_x + column) | (tree.cell_y + row) << 16);
         places.patch = LaneIndices(int32_t(visit.patch)), places.levels = visit.levels;
         places.cell_size = visit.cell_size();
@@ -103,7 +103,7 @@ template <class Bundle> struct BundleProbe {
     void count_pairs(LaneMask) const { visit.count_pairs(count_rays(tested), count_rays(hit)); }
 
     /// The triangles of a block, for each ray that may meet one.
-    HWY_NOINLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask) {
+    HWY_NOINLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask) {
         const BlockPlace place(tree, level, block);
         const Lanes16 vertex[3] = {place.load(0), place.load(1), place.load(2)};
         Lanes16 seen_from[3], v[3];

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bvh/wide_bvh.h"
-#include "cpu/patch_trees/bottom_cache.h"
+#include "cpu/patch_trees/patch_tree_cache.h"
 #include "cpu/patch_trees/polygon_tree.h"
 #include "cpu/tracer.h"
 #include "formulas/camera.h"
@@ -17,10 +17,10 @@ struct SceneView {
     const Instance* instances = nullptr;
     const Surface* surfaces = nullptr;
     uint32_t instance_count = 0;
-    const WideBvh* surface_trees = nullptr; ///< these three are those of UpperTrees
+    const WideBvh* surface_trees = nullptr; ///< these three are those of SceneTrees
     const WideBvh* instance_tree = nullptr;
     const PolygonTree* polygon_trees = nullptr; ///< one a surface; empty with displacement
-    BottomCache* cache = nullptr;
+    PatchTreeCache* cache = nullptr;
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;
     float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only

@@ -94,7 +94,7 @@ template <Query kQuery> struct PacketProbe {
         return false;
     }
 
-    HWY_INLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask rays) {
+    HWY_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask rays) {
         if (!(rays &= packet.active)) return false;
         // Put together once for all rays; box leaves do not look at them.
         const BlockPlace place(tree, level, block);

@@ -35,10 +35,10 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, cons
 
 /// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
 /// corners.
-HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
                                 uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;
-    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    cpu::PatchTree::block_cell(int(tree.level), block, column, row);
     const float cell_size = visit.cell_size();
     hit.patch = visit.patch;
     hit.levels = visit.levels;
@@ -55,10 +55,10 @@ struct BlockPlace {
     uint32_t column_count, axis_step; ///< from row to row and from axis to axis
 
     /// `level` is that of the tree: where the caller knows it, most of this is known, too.
-    HWY_INLINE BlockPlace(const cpu::BottomTree& tree, int level, uint32_t block)
-        : first(tree.grid(level) + cpu::BottomTree::find_first_vertex(level, block)),
-          column_count(cpu::BottomTree::column_count(level)),
-          axis_step(cpu::BottomTree::vertex_count(level)) {}
+    HWY_INLINE BlockPlace(const cpu::PatchTree& tree, int level, uint32_t block)
+        : first(tree.grid(level) + cpu::PatchTree::find_first_vertex(level, block)),
+          column_count(cpu::PatchTree::column_count(level)),
+          axis_step(cpu::PatchTree::vertex_count(level)) {}
     HWY_INLINE Lanes16 load(int axis) const {
         return load_block(first + uint32_t(axis) * axis_step, column_count);
     }
@@ -66,7 +66,7 @@ struct BlockPlace {
 
 /// Exact leaf: sixteen triangles at once. load(axis) gives a coordinate of the vertices of the block.
 template <Query kQuery, class Load>
-HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
                                     Load load, RayState& ray) {
     Lanes16 x, y, z, cx[3], cy[3], cz[3];
     shear_vertices(load, ray, x, y, z);
@@ -87,7 +87,7 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::BottomTr
 /// Paper 1's leaf (Harada 2015, section 1.4): a micro-quad counts as hit where the ray enters its box. A ray
 /// that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
 template <Query kQuery>
-HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
                                   RayState& ray) {
     const BlockPlace at(tree, int(tree.level), block);
     alignas(64) float bounds[6][8];
@@ -102,7 +102,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
     Lanes8 entry;
     LaneMask mask = test_node(bounds, ray, entry) & less(Lanes8(ray.t_min), entry);
     uint32_t column = 0, row = 0;
-    cpu::BottomTree::block_cell(int(tree.level), block, column, row);
+    cpu::PatchTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
     const float cell_size = visit.cell_size();
     alignas(32) float distance[8];
@@ -128,7 +128,7 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::BottomTree
 }
 
 template <Query kQuery, class Load>
-HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::BottomTree& tree, uint32_t block,
+HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
                                 Load load, RayState& ray) {
     ++visit.context->counters.blocks;
     return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, load, ray)
@@ -145,7 +145,7 @@ template <Query kQuery> struct RayProbe {
 
     void count_pairs(LaneMask) const { visit.count_pairs(1, has_hit); }
 
-    HWY_INLINE bool test_block(const cpu::BottomTree& tree, int level, uint32_t block, LaneMask) {
+    HWY_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask) {
         const BlockPlace at(tree, level, block);
         const auto load = [&](int axis) { return at.load(axis); };
         const bool is_hit = intersect_block<kQuery>(visit, tree, block, load, ray);

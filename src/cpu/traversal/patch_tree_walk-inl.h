@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "base/timer.h"
-#include "cpu/patch_trees/bottom_build-inl.h"
+#include "cpu/patch_trees/patch_tree_build-inl.h"
 #include "cpu/traversal/entry_list-inl.h"
 #include "cpu/traversal/kernels.h"
 #include "formulas/levels.h"
@@ -36,7 +36,7 @@ struct PatchVisit {
     /// In (u, v).
     HWY_INLINE float cell_size() const { return 1.0f / float(1u << level()); }
 
-    HWY_INLINE const cpu::BottomTree& find_tree(uint32_t tile) const {
+    HWY_INLINE const cpu::PatchTree& find_tree(uint32_t tile) const {
         return scene->cache->find_or_build_tree(*context, scene->surfaces[surface],
                                                 {surface, patch, tile, levels});
     }
@@ -52,7 +52,7 @@ struct PatchVisit {
 
 /// What goes through a patch. Which of its rays enter a box is a mask: the lanes of a packet, else 1.
 template <class Probe>
-concept PatchProbe = requires(Probe& probe, const cpu::BottomTree& tree, uint32_t block, LaneMask rays,
+concept PatchProbe = requires(Probe& probe, const cpu::PatchTree& tree, uint32_t block, LaneMask rays,
                               const float (&boxes8)[6][8], const float (&boxes16)[6][16],
                               bool (&visit)(uint32_t child, LaneMask rays)) {
     { probe.visit } -> std::convertible_to<const PatchVisit&>;
@@ -69,7 +69,7 @@ concept PatchProbe = requires(Probe& probe, const cpu::BottomTree& tree, uint32_
 
 /// The boxes of a tree, a step or two.
 template <int kLevel, PatchProbe Probe>
-HWY_INLINE bool visit_nodes(const cpu::BottomTree& tree, Probe& probe, LaneMask rays) {
+HWY_INLINE bool visit_nodes(const cpu::PatchTree& tree, Probe& probe, LaneMask rays) {
     using Shape = cpu::TreeShape<kLevel>;
     const auto visit_leaf = [&](uint32_t leaf, LaneMask entered) __attribute__((always_inline)) {
         for (uint32_t block = leaf * Shape::kLeafBlocks; block < (leaf + 1) * Shape::kLeafBlocks; ++block)
@@ -100,12 +100,12 @@ HWY_INLINE bool visit_nodes(const cpu::BottomTree& tree, Probe& probe, LaneMask 
 }
 
 /// Everything of a tile; true where nothing more is asked.
-template <PatchProbe Probe> bool visit_patch_tree(const cpu::BottomTree& tree, Probe& probe, LaneMask rays) {
+template <PatchProbe Probe> bool visit_patch_tree(const cpu::PatchTree& tree, Probe& probe, LaneMask rays) {
     if (tree.level == 6) return visit_nodes<6>(tree, probe, rays);
     if (tree.level == 5) return visit_nodes<5>(tree, probe, rays);
     if (tree.level == 4) return visit_nodes<4>(tree, probe, rays);
     if (tree.level == 3) return visit_nodes<3>(tree, probe, rays);
-    for (uint32_t block = 0; block < cpu::BottomTree::block_count(int(tree.level)); ++block)
+    for (uint32_t block = 0; block < cpu::PatchTree::block_count(int(tree.level)); ++block)
         if (probe.test_block(tree, int(tree.level), block, rays)) return true;
     return false;
 }

@@ -1,5 +1,5 @@
 // One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest
-// first, for any-hit too: unordered, the cache of bottom trees would thrash.
+// first, for any-hit too: unordered, the cache of patch trees would thrash.
 #if defined(RELIEF_SCENE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_SCENE_TRAVERSAL_INL_H
 #undef RELIEF_SCENE_TRAVERSAL_INL_H

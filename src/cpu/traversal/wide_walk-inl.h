@@ -10,7 +10,7 @@
 
 #include "base/check.h"
 #include "bvh/wide_bvh.h"
-#include "cpu/patch_trees/bottom_cache.h"
+#include "cpu/patch_trees/patch_tree_cache.h"
 #include "formulas/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,4 +1,4 @@
-// The two upper trees in the structure and form that a traversal chosen by name walks: for either engine.
+// The two scene trees in the structure and form that a traversal chosen by name walks: for either engine.
 // What an engine walks by default has forms of its own (scene_trees.h).
 #pragma once
 

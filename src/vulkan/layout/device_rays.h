@@ -89,7 +89,7 @@ struct CastPush {
     uint visibility_mask; ///< instances are entered that share a bit
 };
 
-/// A bottom tree: what rays want of it in this round, and where in the pool it is.
+/// A patch tree: what rays want of it in this round, and where in the pool it is.
 struct TreeRecord {
     uint begin, end; ///< its pairs, sorted
     uint need;       ///< make_need of all of them; zero between rounds

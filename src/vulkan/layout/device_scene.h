@@ -71,7 +71,7 @@ struct TileRecord {
     uint cell_x, cell_y; ///< first cell on the patch
 };
 
-/// An upper tree of a traversal chosen by name. Its nodes lie among the nodes, all else as words among the
+/// An scene tree of a traversal chosen by name. Its nodes lie among the nodes, all else as words among the
 /// ids of primitives, at the beginning of which are these records: first that of the tree of instances, then
 /// one a surface.
 struct WalkTreeData {
@@ -86,7 +86,7 @@ struct WalkTreeData {
 };
 const uint kWalkTreeWords = 14u;
 
-// Nodes of every upper tree take two texels: (lower x y z, first), (upper x y z, kind_and_count), floats as
+// Nodes of every scene tree take two texels: (lower x y z, first), (upper x y z, kind_and_count), floats as
 // their bits.
 const uint kNodeInner = 0u;    ///< first: node of the left child, the right one follows
 const uint kNodeInstance = 1u; ///< first: instance

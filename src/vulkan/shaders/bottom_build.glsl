@@ -1,4 +1,4 @@
-// Builds the bottom tree of one job with several lanes of a work group: vertices, bounds, leaves, then one level
+// Builds the patch tree of one job with several lanes of a work group: vertices, bounds, leaves, then one level
 // after another upwards (Harada 2015, listing 1.2). Every lane of the group must call these functions, also those
 // without a job, because there are barriers between the levels.
 //
@@ -10,7 +10,7 @@
 #include "vulkan/shaders/patch_evaluation.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/quantise.h"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 
 layout(constant_id = 1) const uint kLanes = 8; ///< that work on one tree
 layout(constant_id = 2) const uint kDeepest = 5; ///< level of the trees built here, at most

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 

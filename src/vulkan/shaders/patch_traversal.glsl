@@ -1,4 +1,4 @@
-// One ray in the bottom tree of one patch or tile: nodes in the order of their Morton numbers, turned so that the
+// One ray in the patch tree of one patch or tile: nodes in the order of their Morton numbers, turned so that the
 // ray meets near ones first; no stack and no links, since the tree is complete (Harada 2015, listing 1.1, whose
 // table of links follows from the numbers). A ray that sees the patch at a lower level stops early.
 #ifndef RELIEF_PATCH_TRAVERSAL_GLSL
@@ -6,7 +6,7 @@
 
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/quantise.h"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 
 #ifndef POOL_DECLARED
 layout(scalar, set = 0, binding = kBindPool) readonly buffer Pool { uint pool[]; };

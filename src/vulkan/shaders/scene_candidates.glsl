@@ -5,7 +5,7 @@
 #define RELIEF_SCENE_CANDIDATES_GLSL
 
 #include "vulkan/shaders/rays.glsl"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "formulas/lod.h"
 
 layout(scalar, push_constant) uniform Push { CastPush push; };

@@ -1,7 +1,7 @@
 // All that the cases of these tests call or read.
 #include "vulkan/shaders/ggx_table.glsl"
 #include "formulas/basis.h"
-#include "formulas/bottom_tree.h"
+#include "formulas/patch_tree.h"
 #include "formulas/bsdf.h"
 #include "formulas/camera.h"
 #include "formulas/cell_place.h"

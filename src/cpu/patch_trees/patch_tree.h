@@ -2,7 +2,7 @@
 // blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
 // stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
-// A bottom tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
+// A patch tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
 // the same sixteen-wide nodes over the boxes of its tiles' quarters, so that only the tiles that rays enter
 // are ever evaluated.
 #pragma once
@@ -62,7 +62,7 @@ template <int kLevel> struct TreeShape {
 /// - level 4: root, 32 blocks; child g covers 4 x 4 cells: blocks 2 g and 2 g + 1;
 /// - level 3: one Node8, 8 blocks;
 /// - levels 2, 1, 0: no boxes; 2, 1, 1 blocks.
-struct BottomTree : CachedTree {
+struct PatchTree : CachedTree {
     uint32_t level = 0;
     uint32_t cell_x = 0, cell_y = 0; ///< first cell of the tile on the patch
 
@@ -100,7 +100,7 @@ struct BottomTree : CachedTree {
     }
     template <int kLevel> auto& node(uint32_t g) {
         return const_cast<typename TreeShape<kLevel>::Node&>(
-            const_cast<const BottomTree*>(this)->node<kLevel>(g));
+            const_cast<const PatchTree*>(this)->node<kLevel>(g));
     }
     /// x of all vertices, row by row, then y, then z. `own_level` is the tree's.
     const float* grid(int own_level) const {
@@ -111,7 +111,7 @@ struct BottomTree : CachedTree {
         return grid(int(level)) + uint32_t(axis) * vertex_count(int(level));
     }
     float* vertices(int axis) {
-        return const_cast<float*>(const_cast<const BottomTree*>(this)->vertices(axis));
+        return const_cast<float*>(const_cast<const PatchTree*>(this)->vertices(axis));
     }
     /// Number of a block's first vertex: of its lowest row and column.
     static uint32_t find_first_vertex(int level, uint32_t block) {
@@ -139,15 +139,13 @@ struct BottomTree : CachedTree {
     }
 };
 
-constexpr size_t BottomTree::size_bytes(int level) {
-    return (sizeof(BottomTree) + 63) / 64 * 64 + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
+constexpr size_t PatchTree::size_bytes(int level) {
+    return (sizeof(PatchTree) + 63) / 64 * 64 + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
 }
-inline const char* BottomTree::data() const {
-    return reinterpret_cast<const char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
+inline const char* PatchTree::data() const {
+    return reinterpret_cast<const char*>(this) + (sizeof(PatchTree) + 63) / 64 * 64;
 }
-inline char* BottomTree::data() {
-    return reinterpret_cast<char*>(this) + (sizeof(BottomTree) + 63) / 64 * 64;
-}
+inline char* PatchTree::data() { return reinterpret_cast<char*>(this) + (sizeof(PatchTree) + 63) / 64 * 64; }
 
 /// Tree over the quarters of the tiles of a patch above kTileLevel, 2^depth of them a side: their boxes come
 /// from the map, and those of whole tiles would be a good deal larger. Step s has step_side(s)^2 nodes, row
@@ -189,7 +187,7 @@ struct TileDirectory : CachedTree {
 };
 
 /// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
-using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, BottomTree& tree);
+using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, PatchTree& tree);
 
 /// Builds `directory`, whose key and depth are set, from conservative boxes.
 void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory);

@@ -4,8 +4,8 @@
 #include <set>
 #include <vector>
 
-#include "formulas/bottom_tree.h"
 #include "formulas/levels.h"
+#include "formulas/patch_tree.h"
 
 namespace relief {
 

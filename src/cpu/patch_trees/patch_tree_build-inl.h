@@ -1,4 +1,4 @@
-// From the vertices of a tile to its bottom tree: the grid without padding, then boxes upward.
+// From the vertices of a tile to its patch tree: the grid without padding, then boxes upward.
 #if defined(RELIEF_BOTTOM_BUILD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_BOTTOM_BUILD_INL_H
 #undef RELIEF_BOTTOM_BUILD_INL_H
@@ -15,11 +15,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// The grid without its padding; see BottomTree::column_count.
-HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::BottomTree& tree) {
+/// The grid without its padding; see PatchTree::column_count.
+HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::PatchTree& tree) {
     const int level = int(tree.level);
-    const uint32_t cells = 1u << level, columns = cpu::BottomTree::column_count(level),
-                   rows = cpu::BottomTree::row_count(level);
+    const uint32_t cells = 1u << level, columns = cpu::PatchTree::column_count(level),
+                   rows = cpu::PatchTree::row_count(level);
     for (int axis = 0; axis < 3; ++axis) {
         float* target = tree.vertices(axis);
         for (uint32_t r = 0; r < rows; ++r, target += columns) {
@@ -33,9 +33,9 @@ HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::BottomTree& tree) {
 
 /// Box of five columns of vertices, into one slot of a node.
 template <size_t W>
-HWY_INLINE void store_box(const cpu::BottomTree& tree, uint32_t first, uint32_t rows, float (&bounds)[6][W],
+HWY_INLINE void store_box(const cpu::PatchTree& tree, uint32_t first, uint32_t rows, float (&bounds)[6][W],
                           uint32_t slot) {
-    const uint32_t columns = cpu::BottomTree::column_count(int(tree.level));
+    const uint32_t columns = cpu::PatchTree::column_count(int(tree.level));
     for (int axis = 0; axis < 3; ++axis) {
         const float* v = tree.vertices(axis) + first;
         // To four lanes at once, the rest by lanes: short chains instead of a shuffle for every halving.
@@ -57,20 +57,20 @@ HWY_INLINE void store_union(const float (&boxes)[6][W], cpu::Node16& above, uint
     }
 }
 
-template <int kLevel> HWY_INLINE void build_nodes(cpu::BottomTree& tree) {
+template <int kLevel> HWY_INLINE void build_nodes(cpu::PatchTree& tree) {
     using Shape = cpu::TreeShape<kLevel>;
     for (uint32_t g = 0; g < (Shape::kHasGroups ? 16 : 1); ++g) {
         auto& node = tree.node<kLevel>(g);
         for (uint32_t k = 0; k < Shape::kWidth; ++k) {
             const uint32_t block = (g * Shape::kWidth + k) * Shape::kLeafBlocks;
-            store_box(tree, cpu::BottomTree::find_first_vertex(kLevel, block), 2 * Shape::kLeafBlocks + 1,
+            store_box(tree, cpu::PatchTree::find_first_vertex(kLevel, block), 2 * Shape::kLeafBlocks + 1,
                       node.bounds, k);
         }
         if constexpr (Shape::kHasGroups) store_union(node.bounds, tree.root(), g);
     }
 }
 
-HWY_INLINE void build_boxes(cpu::BottomTree& tree) {
+HWY_INLINE void build_boxes(cpu::PatchTree& tree) {
     if (tree.level == 6) build_nodes<6>(tree);
     if (tree.level == 5) build_nodes<5>(tree);
     if (tree.level == 4) build_nodes<4>(tree);
@@ -108,7 +108,7 @@ Box find_box(const Surface& surface, uint32_t patch, uint32_t level) {
     return box;
 }
 
-void build_tree(const Surface& surface, const PatchLevels& levels, cpu::BottomTree& tree) {
+void build_tree(const Surface& surface, const PatchLevels& levels, cpu::PatchTree& tree) {
     VertexGrid grid;
     evaluate_tile(surface, {tree.key.patch, levels, tree.cell_x, tree.cell_y, 1u << tree.level}, grid);
     fill_vertices(grid, tree);

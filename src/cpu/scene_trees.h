@@ -1,4 +1,4 @@
-// The two upper trees as rays of the CPU engine walk them. They are made twice: soon, from the bounds of
+// The two scene trees as rays of the CPU engine walk them. They are made twice: soon, from the bounds of
 // maps, and again, from the vertices, when so many rays have come that smaller boxes are worth it.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace relief::cpu {
 
-struct UpperTrees {
+struct SceneTrees {
     BoxSource source = BoxSource::bounds; ///< of the boxes of displaced patches
     std::vector<WideBvh> surfaces;        ///< one a surface, over its patches; empty without displacement
     WideBvh instances;
@@ -22,14 +22,14 @@ struct UpperTrees {
     size_t byte_count() const;
 };
 
-class UpperTreeHolder {
+class SceneTreeHolder {
   public:
     /// All of what is given outlives this. `polygon_trees`: one a surface, empty with displacement.
-    UpperTreeHolder(const PreparedScene& scene, const Kernels& kernels,
+    SceneTreeHolder(const PreparedScene& scene, const Kernels& kernels,
                     std::span<const PolygonTree> polygon_trees);
 
     /// To be walked while the result lives. Thread safe.
-    std::shared_ptr<const UpperTrees> current() const;
+    std::shared_ptr<const SceneTrees> current() const;
 
     /// After rays have been traced. Thread safe.
     void count_rays(size_t rays) { rays_to_come_.fetch_sub(int64_t(rays), std::memory_order_relaxed); }
@@ -43,7 +43,7 @@ class UpperTreeHolder {
     void apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
   private:
-    std::shared_ptr<UpperTrees> make_trees(BoxSource source) const;
+    std::shared_ptr<SceneTrees> make_trees(BoxSource source) const;
     WideBvh make_instance_tree(std::span<const WideBvh> surfaces) const;
     void add_places(const SurfaceChange& change, const WideBvh& tree, std::vector<Box>& places) const;
 
@@ -53,7 +53,7 @@ class UpperTreeHolder {
     std::atomic<int64_t> rays_to_come_; ///< until it pays; 0 or less: it does
     std::atomic<bool> is_improved_;     ///< or there is nothing to be made smaller
     mutable std::mutex mutex_;          ///< of the pointer
-    std::shared_ptr<UpperTrees> trees_;
+    std::shared_ptr<SceneTrees> trees_;
 };
 
 } // namespace relief::cpu

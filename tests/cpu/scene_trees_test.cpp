@@ -1,5 +1,5 @@
-// Upper trees made twice: boxes of vertices are the smallest that hold them, and no hit changes with them.
-#include "cpu/patch_trees/upper_trees.h"
+// Scene trees made twice: boxes of vertices are the smallest that hold them, and no hit changes with them.
+#include "cpu/scene_trees.h"
 
 #include <algorithm>
 #include <utility>
@@ -115,14 +115,14 @@ TEST(PatchBoxes, are_those_of_the_map_where_patches_are_finer) {
         expect_equal(boxes.find(0, patch), compute_patch_box(scene->surfaces[0], patch), patch);
 }
 
-TEST(UpperTreeHolder, makes_smaller_trees_once_rays_enough_have_come) {
+TEST(SceneTreeHolder, makes_smaller_trees_once_rays_enough_have_come) {
     const auto scene = prepare_with_level(3);
     const Kernels& kernels = *find_kernels(Isa::best);
     std::vector<PolygonTree> polygon_trees;
     for (const Surface& surface : scene->surfaces)
         polygon_trees.push_back(surface.has_displacement ? PolygonTree{} : build_polygon_tree(surface));
-    UpperTreeHolder holder(*scene, kernels, polygon_trees);
-    const std::shared_ptr<const UpperTrees> first = holder.current();
+    SceneTreeHolder holder(*scene, kernels, polygon_trees);
+    const std::shared_ptr<const SceneTrees> first = holder.current();
     EXPECT_EQ(first->source, BoxSource::bounds);
     holder.count_rays(1);
     holder.rebuild_if_worthwhile();
@@ -130,7 +130,7 @@ TEST(UpperTreeHolder, makes_smaller_trees_once_rays_enough_have_come) {
     holder.count_rays(1000000);
     EXPECT_EQ(holder.current(), first) << "not while rays are traced";
     holder.rebuild_if_worthwhile();
-    const std::shared_ptr<const UpperTrees> second = holder.current();
+    const std::shared_ptr<const SceneTrees> second = holder.current();
     EXPECT_EQ(second->source, BoxSource::vertices);
     EXPECT_FALSE(first->surfaces[0].nodes.empty()) << "still walked by others";
     const Box &wide = first->surfaces[0].bounds, &narrow = second->surfaces[0].bounds;
@@ -159,7 +159,7 @@ uint64_t count_pairs(const Tracer& tracer) {
     return statistics.pairs_emitted;
 }
 
-TEST(UpperTreeHolder, hits_are_the_same_after_the_change) {
+TEST(SceneTreeHolder, hits_are_the_same_after_the_change) {
     RenderSettings settings;
     settings.surface.level = 3;
     const auto scene = prepare_with_level(settings.surface.level);

@@ -1,4 +1,4 @@
-#include "cpu/patch_trees/upper_trees.h"
+#include "cpu/scene_trees.h"
 
 #include <new>
 
@@ -15,13 +15,13 @@ constexpr int64_t kRaysPerVertex = 2;
 
 } // namespace
 
-size_t UpperTrees::byte_count() const {
+size_t SceneTrees::byte_count() const {
     size_t count = instances.byte_count();
     for (const WideBvh& tree : surfaces) count += tree.byte_count();
     return count;
 }
 
-UpperTreeHolder::UpperTreeHolder(const PreparedScene& scene, const Kernels& kernels,
+SceneTreeHolder::SceneTreeHolder(const PreparedScene& scene, const Kernels& kernels,
                                  std::span<const PolygonTree> polygon_trees)
     : scene_(scene),
       kernels_(kernels),
@@ -31,14 +31,14 @@ UpperTreeHolder::UpperTreeHolder(const PreparedScene& scene, const Kernels& kern
       is_improved_(rays_to_come_ == 0),
       trees_(make_trees(BoxSource::bounds)) {}
 
-std::shared_ptr<const UpperTrees> UpperTreeHolder::current() const {
+std::shared_ptr<const SceneTrees> SceneTreeHolder::current() const {
     const std::lock_guard lock(mutex_);
     return trees_;
 }
 
-void UpperTreeHolder::rebuild_if_worthwhile() {
+void SceneTreeHolder::rebuild_if_worthwhile() {
     if (rays_to_come_.load(std::memory_order_relaxed) > 0 || is_improved_.exchange(true)) return;
-    std::shared_ptr<UpperTrees> trees;
+    std::shared_ptr<SceneTrees> trees;
     try {
         trees = make_trees(BoxSource::vertices);
     } catch (const std::bad_alloc&) {
@@ -48,7 +48,7 @@ void UpperTreeHolder::rebuild_if_worthwhile() {
     trees_.swap(trees);
 }
 
-void UpperTreeHolder::apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+void SceneTreeHolder::apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     const PatchBoxes boxes(scene_, kernels_, trees_->source);
     for (const SurfaceChange& change : changes) {
         WideBvh& tree = trees_->surfaces[change.surface];
@@ -60,8 +60,8 @@ void UpperTreeHolder::apply_changes(std::span<const SurfaceChange> changes, std:
     trees_->instances = make_instance_tree(trees_->surfaces);
 }
 
-std::shared_ptr<UpperTrees> UpperTreeHolder::make_trees(BoxSource source) const {
-    auto trees = std::make_shared<UpperTrees>();
+std::shared_ptr<SceneTrees> SceneTreeHolder::make_trees(BoxSource source) const {
+    auto trees = std::make_shared<SceneTrees>();
     trees->source = source;
     const PatchBoxes boxes(scene_, kernels_, source);
     for (uint32_t k = 0; k < scene_.surfaces.size(); ++k) {
@@ -74,7 +74,7 @@ std::shared_ptr<UpperTrees> UpperTreeHolder::make_trees(BoxSource source) const 
     return trees;
 }
 
-WideBvh UpperTreeHolder::make_instance_tree(std::span<const WideBvh> surfaces) const {
+WideBvh SceneTreeHolder::make_instance_tree(std::span<const WideBvh> surfaces) const {
     std::vector<Box> boxes;
     for (size_t k = 0; k < scene_.surfaces.size(); ++k)
         boxes.push_back(scene_.surfaces[k].has_displacement ? surfaces[k].bounds : polygon_trees_[k].bounds);
@@ -82,7 +82,7 @@ WideBvh UpperTreeHolder::make_instance_tree(std::span<const WideBvh> surfaces) c
 }
 
 /// Boxes of what looks different, in all its instances.
-void UpperTreeHolder::add_places(const SurfaceChange& change, const WideBvh& tree,
+void SceneTreeHolder::add_places(const SurfaceChange& change, const WideBvh& tree,
                                  std::vector<Box>& places) const {
     for (const WideNode& node : tree.nodes)
         for (int k = 0; k < node.child_count; ++k) {

@@ -1,4 +1,4 @@
-// Bottom trees kept between rays, batches, samples and bounces, under a byte cap.
+// Patch trees kept between rays, batches, samples and bounces, under a byte cap.
 //
 // No lock is taken inside a traversal: a look-up reads a few slots of a fixed table; a miss builds privately
 // and offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and
@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-#include "cpu/patch_trees/bottom_tree.h"
+#include "cpu/patch_trees/patch_tree.h"
 #include "relief/render.h"
 
 namespace relief::cpu {
@@ -58,7 +58,8 @@ struct RecentTrees {
     }
 };
 
-/// What one worker needs while it traces a batch. Taken with BottomCache::acquire, given back with release.
+/// What one worker needs while it traces a batch. Taken with PatchTreeCache::acquire, given back with
+/// release.
 struct TraceContext {
     std::atomic<uint64_t> epoch{0}; ///< 0: holds no tree
     std::atomic<bool> is_taken{false};
@@ -85,13 +86,13 @@ struct StopRequest : std::exception {
     const char* what() const noexcept override { return "render cancelled"; }
 };
 
-class BottomCache {
+class PatchTreeCache {
   public:
     /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept. `build_tree` makes the trees.
-    BottomCache(size_t cap_bytes, BuildTreeFunction build_tree);
-    ~BottomCache();
-    BottomCache(const BottomCache&) = delete;
-    BottomCache& operator=(const BottomCache&) = delete;
+    PatchTreeCache(size_t cap_bytes, BuildTreeFunction build_tree);
+    ~PatchTreeCache();
+    PatchTreeCache(const PatchTreeCache&) = delete;
+    PatchTreeCache& operator=(const PatchTreeCache&) = delete;
 
     TraceContext& acquire();
     void release(TraceContext& context);
@@ -114,8 +115,8 @@ class BottomCache {
 
     /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
     /// call.
-    const BottomTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
-        return static_cast<const BottomTree&>(find_or_build(context, surface, key));
+    const PatchTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
+        return static_cast<const PatchTree&>(find_or_build(context, surface, key));
     }
     const TileDirectory& find_or_build_directory(TraceContext& context, const Surface& surface,
                                                  const TreeKey& key) {
@@ -144,7 +145,7 @@ class BottomCache {
     }
     const CachedTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                               const TreeKey& key);
-    BottomTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
+    PatchTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
     TileDirectory* make_directory(TraceContext& context, const Surface& surface, const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
     static void remember(TraceContext& context, const CachedTree& tree);

@@ -1,5 +1,5 @@
-#include "vulkan/bottom_cache.h"
-#include "formulas/bottom_tree.h"
+#include "vulkan/patch_tree_cache.h"
+#include "formulas/patch_tree.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_rays.h"
 
@@ -17,24 +17,24 @@ constexpr uint32_t kBudgetShare = 4;                   ///< a wave may fill one 
 
 } // namespace
 
-BottomCache::BottomCache(const Device& device, uint64_t cap_bytes, uint32_t last_head)
+PatchTreeCache::PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head)
     : is_kept_(cap_bytes > 0), last_head_(last_head) {
     const uint64_t wanted = std::max(is_kept_ ? cap_bytes : kWorkingBytes, kLeastBytes);
     const uint64_t bytes =
         std::max(kLeastBytes, std::min({wanted, device.max_buffer_bytes(), device.available_bytes() / 4}));
     capacity_ = uint32_t(bytes / kUnitBytes);
-    pool_ = Buffer(device, {"bottom trees", capacity_ * kUnitBytes, Purpose::bottom_cache});
+    pool_ = Buffer(device, {"patch trees", capacity_ * kUnitBytes, Purpose::bottom_cache});
 }
 
-void BottomCache::bind(BindingTable& bindings) const { bindings.bind(scalar::kBindPool, pool_); }
+void PatchTreeCache::bind(BindingTable& bindings) const { bindings.bind(scalar::kBindPool, pool_); }
 
-void BottomCache::begin_chunk(const Buffer& trees, Commands& commands) {
+void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands) {
     if (head_ < last_head_) return;
     head_ = 0;
     commands.fill(trees, 0, trees.byte_count(), 0);
 }
 
-void BottomCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {
+void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {
     ++wave_;
     if (!is_kept_) head_ = 0;
     commands.fill(counters, offsetof(scalar::CounterData, pool_head), sizeof(uint32_t), head_);
@@ -45,7 +45,7 @@ void BottomCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Com
     push.is_cached = is_kept_;
 }
 
-void BottomCache::end_wave(const scalar::CounterData& counters) {
+void PatchTreeCache::end_wave(const scalar::CounterData& counters) {
     // What was refused at the end of the wave moved the head all the same.
     const uint32_t limit = head_ + (is_kept_ ? capacity_ / kBudgetShare : capacity_);
     head_ = std::min(counters.pool_head, limit);

@@ -1,5 +1,5 @@
-// The pool of bottom trees: a ring that is filled on and on. Places are numbered for ever; what lies more
-// than the pool's size behind is gone. The counterpart of cpu/patch_trees/bottom_cache.h; its look-up is
+// The pool of patch trees: a ring that is filled on and on. Places are numbered for ever; what lies more
+// than the pool's size behind is gone. The counterpart of cpu/patch_trees/patch_tree_cache.h; its look-up is
 // shaders/bottom_cache.comp.
 #pragma once
 
@@ -11,12 +11,12 @@
 namespace relief::vulkan {
 
 /// One thread at a time.
-class BottomCache {
+class PatchTreeCache {
   public:
     /// `cap_bytes` 0: trees serve one wave of jobs only, and the pool is working memory. Throws
     /// Error{out_of_memory}.
     /// `last_head`: units after which places are numbered afresh and all trees are forgotten.
-    BottomCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
+    PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
 
     void bind(BindingTable& bindings) const;
 

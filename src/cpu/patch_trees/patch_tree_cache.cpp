@@ -1,4 +1,4 @@
-#include "cpu/patch_trees/bottom_cache.h"
+#include "cpu/patch_trees/patch_tree_cache.h"
 
 #include <algorithm>
 #include <bit>
@@ -51,7 +51,7 @@ void CastCounters::add(const CastCounters& other) {
     sampled_trace_s += other.sampled_trace_s, sampled_bottom_s += other.sampled_bottom_s;
 }
 
-BottomCache::BottomCache(size_t cap_bytes, BuildTreeFunction build_tree)
+PatchTreeCache::PatchTreeCache(size_t cap_bytes, BuildTreeFunction build_tree)
     : cap_bytes_(cap_bytes), build_tree_(build_tree) {
     if (cap_bytes == 0) return;
     slot_count_ = std::bit_ceil(std::clamp<size_t>(cap_bytes / kMeanTreeBytes, 64, size_t(1) << 20));
@@ -59,7 +59,7 @@ BottomCache::BottomCache(size_t cap_bytes, BuildTreeFunction build_tree)
     cap_bytes_ -= std::min(cap_bytes_, table_bytes());
 }
 
-BottomCache::~BottomCache() {
+PatchTreeCache::~PatchTreeCache() {
     for (size_t slot = 0; slot < slot_count_; ++slot)
         if (CachedTree* tree = slots_[slot].load()) free_tree(tree);
     for (TraceContext* context = contexts_.load(); context;) {
@@ -68,14 +68,14 @@ BottomCache::~BottomCache() {
     }
 }
 
-TraceContext& BottomCache::acquire() {
+TraceContext& PatchTreeCache::acquire() {
     TraceContext* context = contexts_.load();
     for (; context; context = context->next)
         if (!context->is_taken.load() && !context->is_taken.exchange(true)) break;
     if (!context) {
         context = new TraceContext;
         context->is_taken.store(true);
-        context->tree_scratch.reset(allocate_aligned(BottomTree::size_bytes(kTileLevel)));
+        context->tree_scratch.reset(allocate_aligned(PatchTree::size_bytes(kTileLevel)));
         context->next = contexts_.load();
         while (!contexts_.compare_exchange_weak(context->next, context)) {
         }
@@ -84,12 +84,12 @@ TraceContext& BottomCache::acquire() {
     return *context;
 }
 
-void BottomCache::release(TraceContext& context) {
+void PatchTreeCache::release(TraceContext& context) {
     context.epoch.store(0);
     context.is_taken.store(false);
 }
 
-void BottomCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
+void PatchTreeCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
     for (size_t slot = 0; slot < slot_count_; ++slot) {
         CachedTree* tree = slots_[slot].load();
         if (!tree || !is_stale(tree->key)) continue;
@@ -100,7 +100,7 @@ void BottomCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
     epoch_.fetch_add(1);
 }
 
-CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
+CachedTree* PatchTreeCache::find(TraceContext& context, const TreeKey& key) const {
     if (slot_count_ == 0) return nullptr;
     const size_t home = hash_key(key);
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
@@ -116,12 +116,12 @@ CachedTree* BottomCache::find(TraceContext& context, const TreeKey& key) const {
     return nullptr;
 }
 
-void BottomCache::remember(TraceContext& context, const CachedTree& tree) {
+void PatchTreeCache::remember(TraceContext& context, const CachedTree& tree) {
     context.recent.place(tree.key) = {tree.key, &tree, context.epoch.load(std::memory_order_relaxed)};
 }
 
-const CachedTree& BottomCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
-                                                       const TreeKey& key) {
+const CachedTree& PatchTreeCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
+                                                          const TreeKey& key) {
     if (const CachedTree* found = find(context, key)) return *found;
     throw_if_stopped();
     const Timer timer;
@@ -136,13 +136,13 @@ const CachedTree& BottomCache::find_or_build_elsewhere(TraceContext& context, co
     return *tree;
 }
 
-BottomTree* BottomCache::make_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
+PatchTree* PatchTreeCache::make_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
     const PatchLevels levels = unpack_levels(key.levels);
     const int depth = std::max(0, int(levels.patch) - kTileLevel);
     const int level = levels.patch - depth;
-    const size_t bytes = BottomTree::size_bytes(level);
+    const size_t bytes = PatchTree::size_bytes(level);
     void* memory = allocate(context, bytes);
-    BottomTree* tree = new (memory ? memory : context.tree_scratch.get()) BottomTree;
+    PatchTree* tree = new (memory ? memory : context.tree_scratch.get()) PatchTree;
     tree->key = key;
     tree->byte_count = uint32_t(bytes);
     tree->level = uint32_t(level);
@@ -154,8 +154,8 @@ BottomTree* BottomCache::make_tree(TraceContext& context, const Surface& surface
     return tree;
 }
 
-TileDirectory* BottomCache::make_directory(TraceContext& context, const Surface& surface,
-                                           const TreeKey& key) {
+TileDirectory* PatchTreeCache::make_directory(TraceContext& context, const Surface& surface,
+                                              const TreeKey& key) {
     const PatchLevels levels = unpack_levels(key.levels);
     const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
     const size_t bytes = TileDirectory::size_bytes(depth);
@@ -172,11 +172,11 @@ TileDirectory* BottomCache::make_directory(TraceContext& context, const Surface&
     return directory;
 }
 
-void BottomCache::throw_if_stopped() const {
+void PatchTreeCache::throw_if_stopped() const {
     if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
 }
 
-void* BottomCache::allocate(TraceContext& context, size_t bytes) {
+void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
     if (slot_count_ == 0) return nullptr;
     const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
     if (!has_room()) {
@@ -198,7 +198,7 @@ void* BottomCache::allocate(TraceContext& context, size_t bytes) {
     return memory;
 }
 
-void BottomCache::offer(TraceContext& context, CachedTree* tree) {
+void PatchTreeCache::offer(TraceContext& context, CachedTree* tree) {
     const size_t home = hash_key(tree->key);
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
         CachedTree* expected = nullptr;
@@ -208,12 +208,12 @@ void BottomCache::offer(TraceContext& context, CachedTree* tree) {
     if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(tree)) retire(context, previous);
 }
 
-void BottomCache::retire(TraceContext& context, CachedTree* tree) {
+void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
     retired_.fetch_add(tree->byte_count);
     context.retired.push_back({tree, epoch_.fetch_add(1)});
 }
 
-void BottomCache::evict(TraceContext& context, size_t bytes) {
+void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
     // A little more than asked for, so that the next builds find room without a search; and no endless
     // search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
@@ -230,7 +230,7 @@ void BottomCache::evict(TraceContext& context, size_t bytes) {
     }
 }
 
-void BottomCache::free_retired(TraceContext& context) {
+void PatchTreeCache::free_retired(TraceContext& context) {
     uint64_t oldest = epoch_.load();
     for (const TraceContext* other = contexts_.load(); other; other = other->next)
         if (const uint64_t epoch = other->epoch.load()) oldest = std::min(oldest, epoch);
@@ -243,7 +243,7 @@ void BottomCache::free_retired(TraceContext& context) {
     }
 }
 
-void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
+void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
     const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
     for (const TraceContext::Retired& retired : context.retired) {
         if (!is_free(retired)) continue;
@@ -253,19 +253,19 @@ void BottomCache::free_older(TraceContext& context, uint64_t epoch) {
     std::erase_if(context.retired, is_free);
 }
 
-void BottomCache::free_tree(CachedTree* tree) {
+void PatchTreeCache::free_tree(CachedTree* tree) {
     allocated_.fetch_sub(tree->byte_count);
     std::free(static_cast<void*>(tree));
 }
 
-TraceCounters BottomCache::sum_counters() const {
+TraceCounters PatchTreeCache::sum_counters() const {
     TraceCounters sum;
     for (const TraceContext* context = contexts_.load(); context; context = context->next)
         sum.add(context->counters);
     return sum;
 }
 
-std::vector<CastCounters> BottomCache::sum_casts() const {
+std::vector<CastCounters> PatchTreeCache::sum_casts() const {
     std::vector<CastCounters> sums;
     for (const TraceContext* context = contexts_.load(); context; context = context->next) {
         sums.resize(std::max(sums.size(), context->casts.size()));

@@ -1,8 +1,8 @@
 // Complete quad tree over the cells of a patch or tile: no links, because the way to the next node follows
 // from the number of this one (Harada 2015 keeps a table of them). Nodes stand level by level, in Morton
 // order within one; a node is three words, one an axis: lower code, upper code. Vertices follow, row by row.
-#ifndef RELIEF_BOTTOM_TREE_H
-#define RELIEF_BOTTOM_TREE_H
+#ifndef RELIEF_PATCH_TREE_H
+#define RELIEF_PATCH_TREE_H
 #include "formulas/exact.h"
 #include "formulas/levels.h"
 

@@ -58,9 +58,9 @@ size_t count_differences(const cpu::Tracer& tracer, const std::vector<cpu::Trace
     return differences;
 }
 
-class BottomCache : public testing::TestWithParam<size_t> {};
+class PatchTreeCache : public testing::TestWithParam<size_t> {};
 
-TEST_P(BottomCache, gives_the_same_hits_to_many_threads_that_evict_each_others_trees) {
+TEST_P(PatchTreeCache, gives_the_same_hits_to_many_threads_that_evict_each_others_trees) {
     RenderSettings settings;
     const auto prepared = prepare_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_mixed_rays(20 * kBatch);
@@ -85,7 +85,8 @@ TEST_P(BottomCache, gives_the_same_hits_to_many_threads_that_evict_each_others_t
     EXPECT_GT(statistics.bottom_built, 54u * (4 + 4));
 }
 
-INSTANTIATE_TEST_SUITE_P(Caps, BottomCache, testing::Values(size_t(60000), size_t(250000), size_t(1000000)));
+INSTANTIATE_TEST_SUITE_P(Caps, PatchTreeCache,
+                         testing::Values(size_t(60000), size_t(250000), size_t(1000000)));
 
 } // namespace
 
