@@ -1,6 +1,6 @@
-// Which instruction sets a source is compiled for: to be included before Highway's foreach_target. RELIEF_TARGET:
-// that one alone. Else every target that the compiler can reach, the one without SIMD included; those left out
-// are close to a neighbour.
+// Which instruction sets a source is compiled for: to be included before Highway's foreach_target.
+// RELIEF_TARGET: that one alone. Else every target that the compiler can reach, the one without SIMD
+// included; those left out are close to a neighbour.
 #pragma once
 
 #define HWY_COMPILE_ALL_ATTAINABLE

@@ -73,8 +73,8 @@ struct DisplacementMap {
 /// edge have the same bits in both of its patches.
 using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
-/// Read from any thread. Only the texels and bounds behind `map`, and `mips`, ever change, through the scene's
-/// editor (prepare/scene_edit.h) and while nobody reads.
+/// Read from any thread. Only the texels and bounds behind `map`, and `mips`, ever change, through the
+/// scene's editor (prepare/scene_edit.h) and while nobody reads.
 struct Surface {
     std::string name;                ///< of the mesh, for messages
     std::vector<Vec3f> positions;    ///< one a dominant vertex; the others have theirs

@@ -35,7 +35,7 @@ TEST(LackingFeature, is_named_in_the_list_and_in_the_error) {
         EXPECT_EQ(error.kind(), ErrorKind::device_missing);
         expect_text(error, "shaderBufferInt64Atomics");
         expect_text(error, devices[0].name);
-        expect_text(error, "--engine cpu");
+        expect_text(error, "device.engine = cpu");
     }
 }
 
@@ -75,7 +75,7 @@ TEST(LostDevice, is_an_error_that_names_what_ran) {
     expect_text(error, "lost");
     expect_text(error, "sort_count");
     expect_text(error, device.description().name);
-    expect_text(error, "--engine cpu");
+    expect_text(error, "device.engine = cpu");
     EXPECT_TRUE(device.validation_messages().empty());
 }
 
@@ -84,7 +84,7 @@ TEST(NoDriver, is_an_empty_list_and_an_error) {
     const Error error = catch_error([] { const Device device({}); });
     EXPECT_EQ(error.kind(), ErrorKind::device_missing);
     expect_text(error, "driver");
-    expect_text(error, "--engine cpu");
+    expect_text(error, "device.engine = cpu");
 }
 
 } // namespace

@@ -48,7 +48,7 @@ struct AllStructs {
     FIELD3(s.object_from_world.x) FIELD3(s.object_from_world.y) FIELD3(s.object_from_world.z) \
     FIELD3(s.object_from_world.t) FIELD3(s.world_from_object.x) FIELD3(s.world_from_object.y) \
     FIELD3(s.world_from_object.z) FIELD3(s.world_from_object.t) FIELD(s.surface) FIELD(s.material) \
-    FIELD(s.root) FIELD(s.first_level) FIELD(s.levels) FIELD(s.is_mirrored)
+    FIELD(s.root) FIELD(s.first_level) FIELD(s.levels) FIELD(s.is_mirrored) FIELD(s.visibility_mask)
 #define FIELDS_SURFACE(s) \
     FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
     FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
@@ -89,7 +89,7 @@ struct AllStructs {
     FIELD(s.first) FIELD(s.count) FIELD(s.round) FIELD(s.slots) FIELD(s.is_any) FIELD(s.is_repeated) FIELD(s.wave) FIELD(s.pool_start) \
     FIELD(s.pool_budget) FIELD(s.pool_capacity) FIELD(s.is_cached) FIELD(s.root) FIELD(s.patch_count) \
     FIELD(s.directory_mask) FIELD(s.request_limit) FIELD(s.is_ray_lod) FIELD(s.pixel_angle) \
-    FIELD(s.builds_stride)
+    FIELD(s.builds_stride) FIELD(s.visibility_mask)
 #define FIELDS_ARGUMENTS_PUSH(s) \
     FIELD(s.group_size) FIELD(s.builds_per_group[0]) FIELD(s.builds_per_group[1]) \
     FIELD(s.builds_per_group[2])
