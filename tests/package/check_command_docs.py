@@ -23,7 +23,7 @@ if "render" not in verbs:
 page = (source / "docs/man/relief.1").read_text()
 faults += [f"relief.1 lacks the verb {verb}" for verb in verbs if f".It Cm {verb} " not in page and f".It Cm {verb}\n" not in page]
 codes = re.findall(r"\w+ = (\d+)", (source / "include/relief/error.h").read_text())
-codes += re.findall(r"= (\d+)", (source / "apps/cli/exit_codes.h").read_text())
+codes += re.findall(r"= (\d+)", (source / "apps/common/exit_codes.h").read_text())
 status = page.partition(".Sh EXIT STATUS")[2]
 faults += [f"relief.1 lacks the exit status {code}" for code in codes if not re.search(rf"^\.It .*\b{code}\b", status, re.M)]
 
