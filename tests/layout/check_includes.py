@@ -103,17 +103,46 @@ def check_library_include(root, file, name):
     return None
 
 
+def find_cycle(graph):
+    """Folders that include one another in a ring, or None."""
+    done = set()
+
+    def visit(folder, way):
+        if folder in way:
+            return way[way.index(folder):] + [folder]
+        if folder in done:
+            return None
+        for other in sorted(graph.get(folder, {})):
+            cycle = visit(other, way + [folder])
+            if cycle:
+                return cycle
+        done.add(folder)
+        return None
+
+    return next(filter(None, (visit(folder, []) for folder in sorted(graph))), None)
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     reachable = close(ALLOWED)
     faults = []
     includes = 0
+    graph = {}
     for file in list_code(root):
         for bracket, name in INCLUDE.findall(file.read_text()):
             includes += 1
+            place, folder = file.relative_to(root).parts, name.split("/")[0]
+            if place[0] == "src" and bracket == '"' and folder in ALLOWED and folder != place[1]:
+                edges = graph.setdefault(place[1], {})
+                edges[folder] = edges.get(folder, 0) + 1
             fault = check_library_include(root, file, name) if bracket == "<" else check_own_include(root, file, name, reachable)
             if fault:
                 faults.append(f"{file.relative_to(root)} includes {name}: {fault}")
+    for folder, edges in sorted(graph.items()):
+        print(folder, "->", " ".join(f"{other}[{count}]" for other, count in sorted(edges.items())))
+    cycle = find_cycle(graph)
+    if cycle:
+        faults.append("folders include one another: " + " -> ".join(cycle))
     if includes == 0:
         faults.append("no includes found: is the root right?")
     finish(faults)
