@@ -1,4 +1,4 @@
-// Plain values that cross the public door: small vectors and affine transforms.
+// Plain values of the public calls: small vectors and affine transforms.
 // Arithmetic on them lives in src/math; a user of the library needs the members only.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Parallel loops with names. The only door to oneTBB; results never depend on the number of threads.
+// Parallel loops with names. The only place with oneTBB; results never depend on the number of threads.
 #pragma once
 
 #include <cstddef>

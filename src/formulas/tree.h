@@ -2,9 +2,10 @@
 //
 // traverse_*.h are no formulas but loops: GLSL includes them after the hooks below are declared, C++ includes
 // them in the body of a class that has the hooks as members (lab/walks/walk_members-inl.h). Hence they are
-// not in all.h. Each has a state of a few words, in a global variable or member: start_x(root) makes it,
-// walk_x() goes on from it. They move the state on before they visit a leaf; so a leaf that is an instance
-// saves the state and puts that of another tree in its place, and resume_walk() brings the old one back.
+// not among the formulas. Each has a state of a few words, in a global variable or member: start_x(root)
+// makes it, walk_x() goes on from it. They move the state on before they visit a leaf; so a leaf that is an
+// instance saves the state and puts that of another tree in its place, and resume_walk() brings the old one
+// back.
 //
 // Hooks of all walks:
 // - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the walk.

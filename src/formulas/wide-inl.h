@@ -1,6 +1,6 @@
-// Sixteen-lane C++ door to the formulas in src/shared: vectors, comparisons and selections over the lanes of
-// lanes-inl.h. Every lane goes through the operations of the one-lane door in their order, hence the same
-// bits. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
+// Formulas over sixteen lanes: vectors, comparisons and selections over the lanes of lanes-inl.h. Every lane
+// goes through the operations of the one-lane formulas (scalar.h) in their order, hence the same bits.
+// Compiled once per target by Highway; use inside HWY_NAMESPACE only.
 #if defined(RELIEF_MATH_WIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_WIDE_INL_H
 #undef RELIEF_MATH_WIDE_INL_H
@@ -94,7 +94,7 @@ HWY_INLINE Float copy_sign(const Float& size, const Float& sign) {
     return r;
 }
 
-// As in the one-lane door: the first operand where neither is less, nan included.
+// As in scalar.h: the first operand where neither is less, nan included.
 HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a); }
 HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
 HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) { return min(max(a, low), high); }

@@ -1,4 +1,4 @@
-// Trees over one mesh by way of the public door: every builder and walk finds the hits of all triangles one
+// Trees over one mesh by way of lab/trees.h: every builder and walk finds the hits of all triangles one
 // by one.
 #include "lab/trees.h"
 

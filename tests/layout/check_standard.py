@@ -111,7 +111,7 @@ def describe(place, name, headers):
 
 def is_part(file):
     """Of whoever includes it: inside a namespace, or several times, after what it needs."""
-    return "/shared/" in str(file) or file.name.endswith("-inl.h")
+    return "/formulas/" in str(file) or "/vulkan/layout/" in str(file) or "/lab/walks/" in str(file) or file.name.endswith("-inl.h")
 
 
 @functools.lru_cache(maxsize=None)

@@ -1,4 +1,4 @@
-// The door to the SIMD kernels of shading: one table of functions for each instruction set that they were
+// The SIMD kernels of shading: one dispatch table for each instruction set that they were
 // compiled for.
 #pragma once
 

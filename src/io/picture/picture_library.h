@@ -1,4 +1,4 @@
-// The door to relief_pictures: OpenImageIO, for the kinds of pictures that Relief has no reader of its own
+// Loads relief_pictures: OpenImageIO, for the kinds of pictures that Relief has no reader of its own
 // for. It brings some 250 shared libraries, so it is a module that is loaded when the first such picture is
 // opened.
 #pragma once

@@ -22,7 +22,7 @@ DeviceMesh upload_mesh(const Device& device, std::span<const Vec3f> positions,
 
 enum class TreeForm { linked, dense_heap, succinct_heap, kd };
 
-/// Any tree of src/structures. All buffers are there, though some hold nothing.
+/// Any tree of src/lab/trees. All buffers are there, though some hold nothing.
 struct DeviceTree {
     TreeForm form = TreeForm::linked;
     uint32_t node_count = 0; ///< of heaps: slots; 0: no primitives

@@ -1,4 +1,4 @@
-// Rays through one tree over one triangle mesh, by any traversal of shared/traverse_*.h.
+// Rays through one tree over one triangle mesh, by any traversal of lab/walks/traverse_*.h.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// The walks of shared/traverse_*.h as members of one class, and which of them `kTraversal` stands for: only
-// what that one uses is ever made. Included in the body of a class that has, besides, the hooks of
+// The walks of lab/walks/traverse_*.h as members of one class, and which of them `kTraversal` stands for:
+// only what that one uses is ever made. Included in the body of a class that has, besides, the hooks of
 // formulas/tree.h, `Key`, and for kd-trees
 // - KdRay make_own_kd_ray() const: the part of the ray inside the root's cell.
 

@@ -1,5 +1,5 @@
 // Polygons as OpenSubdiv sees them: refined topology, and the limit surface of each face (Catmull and Clark
-// 1978; semi-sharp creases after DeRose, Kass and Truong 1998). The only door to OpenSubdiv.
+// 1978; semi-sharp creases after DeRose, Kass and Truong 1998). The only place with OpenSubdiv.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Sample scenes by both engines through the public door, every instance validated. `relief-gpu parity`
+// Sample scenes by both engines through the public calls, every instance validated. `relief-gpu parity`
 // compares more, at a size that takes longer.
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-// Every formula of src/shared with a value that a device can get wrong, run on one set of numbers. For GLSL
+// Every formula of src/formulas with a value that a device can get wrong, run on one set of numbers. For GLSL
 // and for C++ inside relief::scalar, like the formulas.
 
 struct FormulaInput {

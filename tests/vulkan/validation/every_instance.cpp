@@ -1,4 +1,4 @@
-// Part of test programs that reach Vulkan by the public door or by the command: validates every instance of
+// Part of test programs that reach Vulkan by the public calls or by the command: validates every instance of
 // the process and of its children. tests/vulkan/validation/every_instance_test.cpp proves it.
 #include <cstdlib>
 
