@@ -38,7 +38,6 @@ LIBRARIES = {
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/": ["src/io/picture/module"],
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
-    r"tiny_obj_loader\.h": ["src/io"],
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],

@@ -15,7 +15,6 @@ PACKAGES = {
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
     "ZLIB": ["zlib1g-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
-    "tinyobjloader": ["libtinyobjloader-dev"],
     "assimp": ["libassimp-dev"],
     "CLI11": ["libcli11-dev"],
     "GTest": ["libgtest-dev"],
