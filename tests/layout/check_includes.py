@@ -35,6 +35,7 @@ APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["b
 LIBRARIES = {
     r"(oneapi/)?tbb/": ["src/base"],
     r"opensubdiv/": ["src/surface"],
+    r"xxhash\.h": ["src/base"],
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/": ["src/io/picture/module"],
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
