@@ -1,13 +1,14 @@
 #include "prepare/scene_edit.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/content_hash.h"
 #include "prepare/editable_scene.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
@@ -38,15 +39,12 @@ void check_rectangle(const MapEdit& edit, const Texture& map) {
 }
 
 uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
-    const auto add = [&](uint64_t word) { // FNV-1a (Fowler, Noll, Vo 1991), a word a step
-        hash = (hash ^ word) * 0x100000001b3ull;
-        hash ^= hash >> 29;
-    };
-    for (const char letter : edit.displacement) add(uint8_t(letter));
-    add(uint64_t(uint32_t(edit.udim))), add(edit.x), add(edit.y), add(edit.texels.width);
-    for (const float value : edit.texels.floats) add(std::bit_cast<uint32_t>(value));
-    for (const uint16_t value : edit.texels.halves) add(value);
-    return hash;
+    ContentHash sum(hash);
+    sum.add(edit.displacement);
+    sum.add(std::array{uint32_t(edit.udim), uint32_t(edit.x), uint32_t(edit.y), uint32_t(edit.texels.width),
+                       uint32_t(edit.texels.height)});
+    sum.add(edit.texels.floats), sum.add(edit.texels.halves);
+    return sum.value();
 }
 
 void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {

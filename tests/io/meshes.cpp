@@ -56,6 +56,22 @@ TEST_F(MeshFiles, obj_numbers_that_are_none_are_named_with_their_line) {
     }
 }
 
+TEST_F(MeshFiles, obj_lines_go_on_after_a_backslash) {
+    const std::string points =
+        "# C:\\\nv 0 0\\\r\n 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nvt 0.5\nvt 0 1\nvt 1 1 0\n";
+    const Mesh mesh = parse_obj(points + "f -3/1 \\\n-2/-2 # 9\\\n", "m.obj");
+    EXPECT_EQ(mesh.positions.size(), 3u);
+    EXPECT_TRUE(mesh.face_sizes.empty());
+    EXPECT_EQ(parse_obj(points + "f -3/1 -2/-2 \\\n\\\n -1/3", "m.obj").uv_indices,
+              (std::vector<uint32_t>{0, 1, 2}));
+    EXPECT_HAS(message_of([&] { parse_obj(points + "f 1 2 \\\n 3\nv x\n", "m.obj"); }),
+               "m.obj, line 11: 'x'");
+    EXPECT_HAS(message_of([&] { parse_obj(points + "f 1 2 3,\n", "m.obj"); }),
+               "m.obj, line 9, face 1: index '3,'");
+    EXPECT_HAS(message_of([&] { parse_obj(points + "f 1 2 1/1/1/1\n", "m.obj"); }),
+               "more than three indices");
+}
+
 TEST_F(MeshFiles, obj_uvs_on_some_faces_only_are_refused) {
     EXPECT_HAS(
         message_of([] { parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\nf 1 2 3\n", "m.obj"); }),

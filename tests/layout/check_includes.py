@@ -35,10 +35,10 @@ APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["b
 LIBRARIES = {
     r"(oneapi/)?tbb/": ["src/base"],
     r"opensubdiv/": ["src/surface"],
+    r"xxhash\.h": ["src/base"],
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/": ["src/io/picture/module"],
     r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
-    r"tiny_obj_loader\.h": ["src/io"],
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],

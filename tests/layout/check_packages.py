@@ -9,13 +9,14 @@ PACKAGES = {
     "TBB": ["libtbb-dev"],
     "fmt": ["libfmt-dev"],
     "hwy": ["libhwy-dev"],
+    "XXHASH_INCLUDE": ["libxxhash-dev"],
     "OPENSUBDIV_LIBRARY": ["libosd-dev"],
+    "OPENSUBDIV_FOLDER": ["libosd-dev"],
     # Its CMake file names the tools, and the headers those of Imath.
     "OpenImageIO": ["libopenimageio-dev", "openimageio-tools", "libimath-dev"],
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
     "ZLIB": ["zlib1g-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
-    "tinyobjloader": ["libtinyobjloader-dev"],
     "assimp": ["libassimp-dev"],
     "CLI11": ["libcli11-dev"],
     "GTest": ["libgtest-dev"],
@@ -35,7 +36,7 @@ needed = {tool: "the presets and the Makefile" for tool in TOOLS}
 faults = []
 for file in list_files(root):
     if file.name == "CMakeLists.txt" or file.suffix == ".cmake":
-        for name in re.findall(r"find_(?:package|library)\(\s*(\w+)", file.read_text()):
+        for name in re.findall(r"find_(?:package|library|path)\(\s*(\w+)", file.read_text()):
             if name not in PACKAGES:
                 faults.append(f"{file}: tests/layout/check_packages.py does not know the Debian package of {name}")
             needed.update({package: file for package in PACKAGES.get(name, [])})

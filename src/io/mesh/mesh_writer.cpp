@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/file_system.h"
-#include "io/mesh/obj_tags.h"
+#include "io/mesh/mesh_obj.h"
 #include "relief/error.h"
 #include "relief/io.h"
 

@@ -8,10 +8,10 @@
 
 #include "formulas/bsdf.h"
 #include "formulas/environment.h"
-#include "io/content_hash.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/frame_object.h"
+#include "io/scene/scene_content.h"
 #include "io/scene/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
-#include "io/content_hash.h"
 #include "io/file_system.h"
 #include "io/scene/json_node.h"
+#include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/subdivision_json.h"

@@ -1,4 +1,4 @@
-#include "io/content_hash.h"
+#include "io/scene/scene_content.h"
 
 #include <array>
 #include <set>
