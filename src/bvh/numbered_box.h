@@ -13,7 +13,7 @@ using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int32_t __attribute__((vector_size(16)));
 
 inline Float4 make_float4(const Vec3f& v) { return Float4{v.x, v.y, v.z, 0}; }
-/// Where one is no number, the second.
+/// Where one is NaN, the second.
 inline Float4 get_lesser(Float4 a, Float4 b) { return a < b ? a : b; }
 inline Float4 get_greater(Float4 a, Float4 b) { return a > b ? a : b; }
 

@@ -30,7 +30,7 @@ class BinMap {
         }
     }
     bool is_flat(int axis) const { return scale_[axis] == 0; }
-    /// Always in [0, bin count): a centroid that is no number goes to bin 0.
+    /// Always in [0, bin count): a NaN centroid goes to bin 0.
     Int4 compute_bins(Float4 centroid) const {
         const Float4 bin = get_greater((centroid - lower_) * scale_, Float4{});
         return __builtin_convertvector(get_lesser(bin, last_), Int4);

@@ -99,7 +99,7 @@ void Footprint::add_ray(const Vec3f& origin, const Vec3f& direction, float t_end
     mark_line({next, delta, stride, voxel, end});
 }
 
-/// No branch but the end of the line: which axis is next cannot be foreseen.
+/// No branch but the end of the line: which axis is next is unpredictable.
 void Footprint::mark_line(const Line& line) {
     float next_x = line.next[0], next_y = line.next[1], next_z = line.next[2];
     const float delta_x = line.delta[0], delta_y = line.delta[1], delta_z = line.delta[2];

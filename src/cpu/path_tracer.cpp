@@ -196,13 +196,13 @@ void TileTracer::shade_paths() {
     counters_.shade_s += timer.seconds();
 }
 
-/// Light of rays that leave the scene, and of lamps that are met on the way.
+/// Light of rays that leave the scene, and of analytic lights that are met on the way.
 void TileTracer::add_backgrounds() {
     missed_.resize(active_.size()), directions_.resize(active_.size());
     size_t count = 0;
     for (uint32_t k = 0; k < active_.size(); ++k) {
         missed_[count] = k, directions_[count] = rays_[k].direction;
-        count += hits_[k].is_hit() ? 0 : 1; // no branch: it could not be foreseen
+        count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
     lights_.look_up_environment(directions_, backgrounds_);
@@ -211,7 +211,8 @@ void TileTracer::add_backgrounds() {
         paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
 }
 
-/// What misses looks at places of the image far apart, hits at none; both meet lamps, which few scenes have.
+/// What misses looks at places of the image far apart, hits at none; both meet analytic lights, which few
+/// scenes have.
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];

@@ -51,7 +51,7 @@ FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
 }
 
 /// Cell of `count` along one axis that holds a position in [0, 1], as a whole number; the first one for what
-/// is no number.
+/// is NaN.
 FN Float locate_environment_cell(Float position, Float count) {
     Float cell = floor(position * count);
     return select(cell > Float(0.0f), min(cell, count - Float(1.0f)), Float(0.0f));

@@ -16,8 +16,8 @@ std::vector<Box> compute_patch_boxes(const Surface& surface);
 /// empty, there is nothing to be seen, and a point stands for the instance.
 std::vector<Box> compute_instance_boxes(const PreparedScene& scene, std::span<const Box> surface_boxes);
 
-/// Over the patches of one surface, whose boxes are given, in parallel. Displaced patches are dear to enter,
-/// so each has a leaf of its own; polygons share leaves.
+/// Over the patches of one surface, whose boxes are given, in parallel. Displaced patches are expensive to
+/// intersect, so each has a leaf of its own; polygons share leaves.
 Bvh build_surface_bvh(const Surface& surface, std::span<const Box> boxes);
 
 /// Over the instances, one a leaf; `surface_boxes` as above.

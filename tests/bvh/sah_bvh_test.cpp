@@ -168,7 +168,7 @@ TEST(SahSplit, binning_stays_inside_the_bins_whatever_the_centroids_are) {
     std::vector<Box> boxes;
     for (const float x : {-kInfinity, -3e38f, -1.0f, 0.0f, 1.0f, 3e38f, kInfinity})
         boxes.push_back({{x, 0, 0}, {x, 1, 1}});
-    boxes.push_back({{-kInfinity, 0, 0}, {kInfinity, 1, 1}}); // its centroid is no number
+    boxes.push_back({{-kInfinity, 0, 0}, {kInfinity, 1, 1}}); // its centroid is NaN
     std::vector<NumberedBox> members;
     for (const Box& box : boxes) members.push_back(make_numbered_box(box, uint32_t(members.size())));
     const SplitInput input{members, {{-1, 0, 0, 0}, {1, 1, 1, 0}}};

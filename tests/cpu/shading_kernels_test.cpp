@@ -201,7 +201,7 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
             std::array<cpu::TraceRay, 16> rays;
             std::array<Vec2f, 16> picks, pairs;
             cpu::VertexLanes lanes;
-            std::memset(&lanes, 0xff, sizeof lanes); // no numbers in the lanes beyond
+            std::memset(&lanes, 0xff, sizeof lanes); // NaN in the lanes beyond
             for (size_t lane = 0; lane < count; ++lane) {
                 const Case& c = cases[first + lane];
                 points[lane] = c.point, rays[lane] = c.ray, picks[lane] = c.pick, pairs[lane] = c.u;

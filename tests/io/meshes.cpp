@@ -42,13 +42,13 @@ TEST_F(MeshFiles, obj_numbers_that_are_none_are_named_with_their_line) {
         write("n.obj", "# made by hand\r\nv 0 0 0\r\n" + line + "\nv 1 1 0\nf 1 2 3\n");
         return message_of([&] { load_mesh(folder_ / "n.obj"); }, ErrorKind::bad_input);
     };
-    EXPECT_HAS(error_of("v nan 1 0"), "n.obj, line 3: 'nan' is no number");
-    EXPECT_HAS(error_of("v 1 inf 0"), "'inf' is no number");
-    EXPECT_HAS(error_of("v 1,5 2,5 0,25"), "line 3: '1,5' is no number");
+    EXPECT_HAS(error_of("v nan 1 0"), "n.obj, line 3: 'nan' is not a number");
+    EXPECT_HAS(error_of("v 1 inf 0"), "'inf' is not a number");
+    EXPECT_HAS(error_of("v 1,5 2,5 0,25"), "line 3: '1,5' is not a number");
     EXPECT_HAS(error_of("v 1 0"), "line 3: 'v' has 2 of 3 numbers");
-    EXPECT_HAS(error_of("vt abc 0"), "'abc' is no number");
+    EXPECT_HAS(error_of("vt abc 0"), "'abc' is not a number");
     EXPECT_HAS(error_of("vn 0 0"), "'vn' has 2 of 3 numbers");
-    EXPECT_HAS(error_of("  v\t1 0 0x"), "'0x' is no number");
+    EXPECT_HAS(error_of("  v\t1 0 0x"), "'0x' is not a number");
     for (const char* line :
          {"v 1 0 0", "v +1 -.5e-3 1. 1 # a corner", " v\t1 0 0 0.5 0.25 1", "v 1 0 1e-60"}) {
         write("n.obj", std::string("v 0 0 0\r") + line + "\rvt 0.5\rv 1 1 0\rf 1 2 3\r");

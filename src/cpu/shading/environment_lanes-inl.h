@@ -74,7 +74,7 @@ struct ImagePlaces {
         (at.x - x).store(fx), (at.y - y).store(fy);
         const auto store = [](const Float& value, uint32_t count, uint32_t factor, uint32_t* target)
                                HWY_ATTR {
-                                   // What is no number lies nowhere: any texel.
+                                   // NaN lies nowhere: any texel.
                                    (min(Uint(value), Uint(count - 1)) * Uint(factor)).store(target);
                                };
         store(select(x < zero, x + width, x), texture.width, 1, left);

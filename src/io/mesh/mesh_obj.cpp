@@ -126,7 +126,7 @@ class ObjReader {
             double value = 0;
             const std::errc code = read_number(word.substr(word.starts_with('+') ? 1 : 0), value);
             if (code == std::errc::invalid_argument || !std::isfinite(value))
-                fail(fmt::format("'{}' is no number", word.substr(0, 40)), kHint);
+                fail(fmt::format("'{}' is not a number", word.substr(0, 40)), kHint);
             // Too small is 0. Too large stays so, and is refused with all that is too large for a scene.
             if (code == std::errc::result_out_of_range && word.find("e-") == word.npos &&
                 word.find("E-") == word.npos)
@@ -211,7 +211,7 @@ class ObjReader {
             // Each number takes a space and a digit.
             if (used == word.size() || read_number(word.substr(0, used), count) != std::errc() ||
                 count > text_.size_left() / 2)
-                fail("the counts of a tag are no numbers or more than its line holds", kTagHint);
+                fail("the counts of a tag are not numbers, or more than its line holds", kTagHint);
             word.remove_prefix(used + 1);
         }
         return {counts[0], counts[1]};

@@ -31,7 +31,7 @@ struct Interval {
 };
 
 Interval operator+(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
-/// Without a branch: the signs of frames cannot be foreseen.
+/// Without a branch: the signs of frames are unpredictable.
 Interval operator*(const Interval& a, double b) {
     const double from_low = a.low * b, from_high = a.high * b;
     return {std::min(from_low, from_high), std::max(from_low, from_high)};
