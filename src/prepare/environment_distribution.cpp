@@ -24,7 +24,7 @@ Vec3f read_color(const Texture& texture, uint32_t x, uint32_t y) {
 }
 
 /// Turns weights that start at values[1] into cumulative probabilities; returns their sum. What is dim beside
-/// a small source gets a share that floats can still tell from nothing: in the shadow of the brightest it is
+/// a bright one gets a share that floats can still tell from nothing: in the shadow of the brightest it is
 /// all the light there is.
 double accumulate(std::span<float> values) {
     constexpr double kLeastShare = 0.01; // of the mean weight
