@@ -42,7 +42,7 @@ set(relief_packages relief_library)
 
 if(RELIEF_IO)
   relief_package(relief_io_library relief_io MODULES relief_io
-                 LIBRARIES fmt::fmt OpenEXR::OpenEXR ZLIB::ZLIB assimp::assimp
+                 LIBRARIES fmt::fmt OpenEXR::OpenEXR PNG::PNG assimp::assimp
                            ${CMAKE_DL_LIBS})
   target_link_libraries(relief_io_library PUBLIC relief_library)
   add_dependencies(relief_io_library relief_pictures)

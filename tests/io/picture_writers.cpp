@@ -1,10 +1,16 @@
 // What the writers of pictures do where something is wrong with the picture or the machine.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <new>
+#include <stdexcept>
 
 #include "formulas/tonemap.h"
+#include "io/picture/image_coders.h"
 #include "io/picture/image_output.h"
 #include "io/test_files.h"
 #include "relief/io.h"
@@ -104,6 +110,62 @@ TEST_F(PictureWriters, png_of_several_chunks_is_whole) {
         ASSERT_NEAR(read.pixels[i + 1], scalar::encode_srgb(shown.y), 0.6f / 255);
         ASSERT_NEAR(read.pixels[i + 2], scalar::encode_srgb(shown.z), 0.6f / 255);
     }
+}
+
+/// The chunks of a PNG before its pixels: each kind with its content.
+std::map<std::string, std::string> read_png_tags(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::map<std::string, std::string> tags;
+    for (size_t at = 8; at + 12 <= bytes.size() && bytes.compare(at + 4, 4, "IDAT") != 0;) {
+        size_t size = 0;
+        for (size_t k = 0; k < 4; ++k) size = size << 8 | uint8_t(bytes[at + k]);
+        tags[bytes.substr(at + 4, 4)] = bytes.substr(at + 8, size);
+        at += 12 + size;
+    }
+    return tags;
+}
+
+TEST_F(PictureWriters, png_is_tagged_as_srgb_and_data_is_not) {
+    const auto fill_row = [](int y, std::vector<uint8_t>& row) {
+        for (size_t k = 0; k < row.size(); ++k) row[k] = uint8_t(size_t(y) * 16 + k);
+    };
+    write_checked(folder_ / "shown.png", [&](CheckedFile& file) { encode_png(2, 3, fill_row, file); });
+    const auto tags = read_png_tags(folder_ / "shown.png");
+    ASSERT_EQ(tags.size(), 3u);
+    EXPECT_EQ(tags.at("IHDR"), std::string("\0\0\0\2\0\0\0\3\10\2\0\0\0", 13));
+    EXPECT_EQ(tags.at("sRGB"), std::string(1, '\0'));
+    EXPECT_EQ(tags.at("gAMA"), std::string("\x00\x00\xb1\x8f", 4));
+    write_checked(folder_ / "data.png",
+                  [&](CheckedFile& file) { encode_png_of_16_bits(2, 3, fill_row, file); });
+    const auto data_tags = read_png_tags(folder_ / "data.png");
+    ASSERT_EQ(data_tags.size(), 1u);
+    EXPECT_EQ(data_tags.at("IHDR"), std::string("\0\0\0\2\0\0\0\3\20\2\0\0\0", 13));
+    const Texture data = read_texture(folder_ / "data.png");
+    ASSERT_EQ(data.floats.size(), size_t(2) * 3 * 4);
+    EXPECT_FLOAT_EQ(data.floats[2 * 4 + 1], float((16 + 2) * 256 + 16 + 3) / 65535);
+}
+
+TEST_F(PictureWriters, png_may_be_wider_than_the_default_limit_of_libpng) {
+    const auto fill_row = [](int, std::vector<uint8_t>& row) { std::fill(row.begin(), row.end(), 7); };
+    write_checked(folder_ / "a.png", [&](CheckedFile& file) { encode_png(1000001, 1, fill_row, file); });
+    EXPECT_EQ(read_png_tags(folder_ / "a.png").at("IHDR").substr(0, 4), std::string("\x00\x0f\x42\x41", 4));
+}
+
+TEST_F(PictureWriters, a_png_that_fails_on_the_way_is_an_error_and_leaves_nothing) {
+    const auto write_png = [&](int width, int rows_that_work) {
+        write_checked(folder_ / "a.png", [&](CheckedFile& file) {
+            const auto fill_row = [&](int y, std::vector<uint8_t>&) {
+                if (y >= rows_that_work) throw std::runtime_error("no more rows");
+            };
+            encode_png(width, 8, fill_row, file);
+        });
+    };
+    EXPECT_HAS(message_of([&] { write_png(0, 8); }, ErrorKind::failed), "a.png: cannot be written: ");
+    EXPECT_HAS(message_of([&] { write_png(4, 5); }, ErrorKind::failed), "no more rows");
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    write_png(4, 8);
+    EXPECT_EQ(read_image(folder_ / "a.png").height, 8);
 }
 
 TEST_F(PictureWriters, hdr_rows_of_any_runs_are_whole) {

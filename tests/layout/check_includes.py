@@ -38,7 +38,7 @@ LIBRARIES = {
     r"xxhash\.h": ["src/base"],
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/": ["src/io/picture/module"],
-    r"Imath/|OpenEXR/|zlib\.h": ["src/io"],
+    r"Imath/|OpenEXR/|png\.h": ["src/io"],
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],

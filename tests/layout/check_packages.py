@@ -15,7 +15,7 @@ PACKAGES = {
     # Its CMake file names the tools, and the headers those of Imath.
     "OpenImageIO": ["libopenimageio-dev", "openimageio-tools", "libimath-dev"],
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
-    "ZLIB": ["zlib1g-dev"],
+    "PNG": ["libpng-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
     "assimp": ["libassimp-dev"],
     "CLI11": ["libcli11-dev"],

@@ -27,7 +27,7 @@ DECLARED = {
     "csignal": "signal",
     "cstddef": "byte ptrdiff_t",
     "cstdio": "fclose fflush fopen fprintf fputs fseek ftell fwrite printf snprintf",
-    "cstdlib": "abort abs aligned_alloc atoi exit free getenv strtol strtoull",
+    "cstdlib": "abort abs aligned_alloc atoi exit free getenv malloc strtol strtoull",
     "cstring": "memcmp memcpy memset strcmp strerror strlen",
     "deque": "deque",
     "exception": "current_exception exception exception_ptr rethrow_exception",

@@ -20,7 +20,7 @@ void encode_exr(const Texture& texture, CheckedFile& file);
 /// whole.
 template <class Value> using FillRow = std::function<void(int y, std::vector<Value>& row)>;
 
-/// Three bytes a pixel, sRGB.
+/// Three bytes a pixel, with the tags of sRGB.
 void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
 /// Six bytes a pixel, the high one of each value first; without a tag of colour, as data.
 void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);

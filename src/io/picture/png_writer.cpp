@@ -1,12 +1,12 @@
-// PNG, W3C recommendation of 2003: all rows with one filter.
+// PNG by libpng.
 #include <array>
+#include <csetjmp>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
-#include <span>
 #include <stdexcept>
-#include <string_view>
 
-#include <zlib.h>
+#include <png.h>
 
 #include "io/picture/image_coders.h"
 
@@ -14,119 +14,102 @@ namespace relief {
 
 namespace {
 
-void append_uint32(std::vector<uint8_t>& bytes, uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(uint8_t(value >> shift));
-}
-
-/// Length, kind and content, and the checksum over the last two.
-void write_chunk(CheckedFile& file, std::string_view kind, std::span<const uint8_t> content) {
-    std::vector<uint8_t> bytes;
-    append_uint32(bytes, uint32_t(content.size()));
-    bytes.insert(bytes.end(), kind.begin(), kind.end());
-    bytes.insert(bytes.end(), content.begin(), content.end());
-    append_uint32(bytes, uint32_t(crc32_z(0, bytes.data() + 4, bytes.size() - 4)));
-    file.write(bytes.data(), bytes.size());
-}
-
-/// Packs bytes into IDAT chunks.
-class DataStream {
+/// libpng's writer. Its errors are long jumps, which `run` turns into exceptions.
+class PngStream {
   public:
-    explicit DataStream(CheckedFile& file) : file_(file), packed_(kChunkBytes) {
-        const int status = deflateInit(&stream_, Z_DEFAULT_COMPRESSION);
-        if (status == Z_MEM_ERROR) throw std::bad_alloc();
-        if (status != Z_OK) throw std::runtime_error("zlib failed");
-        stream_.next_out = packed_.data(), stream_.avail_out = kChunkBytes;
-    }
-    ~DataStream() { deflateEnd(&stream_); }
-    DataStream(const DataStream&) = delete;
-    DataStream& operator=(const DataStream&) = delete;
-
-    void add(std::vector<uint8_t>& bytes) {
-        stream_.next_in = bytes.data(), stream_.avail_in = uInt(bytes.size());
-        while (stream_.avail_in > 0) run(Z_NO_FLUSH);
-    }
-    void finish() {
-        while (run(Z_FINISH) != Z_STREAM_END) {
+    explicit PngStream(CheckedFile& file)
+        : png_(png_create_write_struct_2(PNG_LIBPNG_VER_STRING, this, on_error, on_warning, this, allocate,
+                                         release)),
+          info_(png_ ? png_create_info_struct(png_) : nullptr) {
+        if (!info_) {
+            png_destroy_write_struct(&png_, nullptr);
+            throw std::bad_alloc();
         }
-        flush();
+        png_set_write_fn(png_, &file, on_write, on_flush);
+    }
+    ~PngStream() { png_destroy_write_struct(&png_, &info_); }
+    PngStream(const PngStream&) = delete;
+    PngStream& operator=(const PngStream&) = delete;
+
+    png_struct* png() { return png_; }
+    png_info* info() { return info_; }
+
+    /// `call` uses libpng and makes no object with a destructor: a jump would pass it by.
+    template <class Call> void run(const Call& call) {
+        if (setjmp(png_jmpbuf(png_)) == 0) {
+            call();
+            return;
+        }
+        if (is_out_of_memory_) throw std::bad_alloc();
+        throw std::runtime_error(message_.data());
     }
 
   private:
-    static constexpr uInt kChunkBytes = 1u << 16;
-
-    int run(int mode) {
-        if (stream_.avail_out == 0) flush();
-        const int status = deflate(&stream_, mode);
-        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
-            throw std::runtime_error("zlib failed");
-        return status;
+    static void on_error(png_struct* png, const char* message) {
+        auto& stream = *static_cast<PngStream*>(png_get_error_ptr(png));
+        std::snprintf(stream.message_.data(), stream.message_.size(), "%s", message);
+        png_longjmp(png, 1);
     }
-    void flush() {
-        write_chunk(file_, "IDAT", std::span(packed_).first(kChunkBytes - stream_.avail_out));
-        stream_.next_out = packed_.data(), stream_.avail_out = kChunkBytes;
+    static void on_warning(png_struct*, const char*) {}
+    static void on_write(png_struct* png, uint8_t* bytes, size_t count) {
+        static_cast<CheckedFile*>(png_get_io_ptr(png))->write(bytes, count);
     }
+    static void on_flush(png_struct*) {}
+    static void* allocate(png_struct* png, png_alloc_size_t size) {
+        void* memory = std::malloc(size);
+        if (!memory) static_cast<PngStream*>(png_get_mem_ptr(png))->is_out_of_memory_ = true;
+        return memory;
+    }
+    static void release(png_struct*, void* memory) { std::free(memory); }
 
-    CheckedFile& file_;
-    std::vector<uint8_t> packed_;
-    z_stream stream_{};
+    bool is_out_of_memory_ = false; // set while the next members are made
+    std::array<char, 128> message_{};
+    png_struct* png_;
+    png_info* info_;
 };
 
-int predict_paeth(int left, int up, int up_left) {
-    const int guess = left + up - up_left;
-    const int to_left = std::abs(guess - left), to_up = std::abs(guess - up);
-    const int to_up_left = std::abs(guess - up_left);
-    if (to_left <= to_up && to_left <= to_up_left) return left;
-    return to_up <= to_up_left ? up : up_left;
+void set_header(PngStream& stream, int width, int height, int bits) {
+    constexpr size_t kChunkBytes = 1u << 16;
+    png_struct* png = stream.png();
+    // By default no more than a million each.
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), bits, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_compression_buffer_size(png, kChunkBytes);
 }
 
-/// Type 4, Paeth: rendered pictures change little from pixel to pixel.
-void filter_row(const std::vector<uint8_t>& row, const std::vector<uint8_t>& row_above, size_t pixel_bytes,
-                std::vector<uint8_t>& filtered) {
-    filtered = {4};
-    for (size_t x = 0; x < row.size(); ++x) {
-        const int left = x >= pixel_bytes ? row[x - pixel_bytes] : 0;
-        const int up_left = x >= pixel_bytes ? row_above[x - pixel_bytes] : 0;
-        filtered.push_back(uint8_t(row[x] - predict_paeth(left, row_above[x], up_left)));
-    }
+/// The chunk gAMA is for programs that do not know sRGB.
+void tag_as_srgb(PngStream& stream) {
+    constexpr png_fixed_point kGamma = 45455; // 1 / 2.2
+    png_set_sRGB(stream.png(), stream.info(), PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_gAMA_fixed(stream.png(), stream.info(), kGamma);
 }
 
-void write_start(CheckedFile& file, int width, int height, uint8_t bits) {
-    constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-    file.write(kSignature.data(), kSignature.size());
-    std::vector<uint8_t> header;
-    append_uint32(header, uint32_t(width));
-    append_uint32(header, uint32_t(height));
-    const std::array<uint8_t, 5> kind = {bits, 2, 0, 0, 0}; // colours
-    header.insert(header.end(), kind.begin(), kind.end());
-    write_chunk(file, "IHDR", header);
-}
-
-void write_rows(CheckedFile& file, const Vec2<int>& size, size_t pixel_bytes,
-                const FillRow<uint8_t>& fill_row) {
-    DataStream data(file);
-    std::vector<uint8_t> row(size_t(size.x) * pixel_bytes), row_above(row.size()), filtered;
-    for (int y = 0; y < size.y; ++y) {
+void write_rows(PngStream& stream, int height, const FillRow<uint8_t>& fill_row) {
+    stream.run([&] { png_write_info(stream.png(), stream.info()); });
+    std::vector<uint8_t> row(png_get_rowbytes(stream.png(), stream.info()));
+    for (int y = 0; y < height; ++y) {
         fill_row(y, row);
-        filter_row(row, row_above, pixel_bytes, filtered);
-        data.add(filtered);
-        row.swap(row_above);
+        stream.run([&] { png_write_row(stream.png(), row.data()); });
     }
-    data.finish();
-    write_chunk(file, "IEND", {});
+    stream.run([&] { png_write_end(stream.png(), nullptr); });
 }
 
 } // namespace
 
 void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
-    constexpr std::array<uint8_t, 1> kPerceptual = {0};
-    write_start(file, width, height, 8);
-    write_chunk(file, "sRGB", kPerceptual);
-    write_rows(file, {width, height}, 3, fill_row);
+    PngStream stream(file);
+    stream.run([&] {
+        set_header(stream, width, height, 8);
+        tag_as_srgb(stream);
+    });
+    write_rows(stream, height, fill_row);
 }
 
 void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
-    write_start(file, width, height, 16);
-    write_rows(file, {width, height}, 6, fill_row);
+    PngStream stream(file);
+    stream.run([&] { set_header(stream, width, height, 16); });
+    write_rows(stream, height, fill_row);
 }
 
 } // namespace relief
