@@ -4,15 +4,15 @@
 #include "formulas/begin.h"
 
 /// Level of a patch or edge for rays with this LOD bias.
-FN uint lower_level(uint level, uint bias) { return level > bias ? level - bias : 0u; }
+FN uint lower_level(uint level, uint lod_bias) { return level > lod_bias ? level - lod_bias : 0u; }
 
 /// Packed levels: 5 x 4 bits, the patch's own, then those of its edges.
 FN uint packed_patch_level(uint packed) { return packed & 15u; }
 FN uint packed_edge_level(uint packed, uint edge) { return (packed >> (4u + 4u * edge)) & 15u; }
 
-FN uint lower_packed_levels(uint packed, uint bias) {
+FN uint lower_packed_levels(uint packed, uint lod_bias) {
     uint result = 0u;
-    for (uint k = 0u; k < 20u; k += 4u) result |= lower_level((packed >> k) & 15u, bias) << k;
+    for (uint k = 0u; k < 20u; k += 4u) result |= lower_level((packed >> k) & 15u, lod_bias) << k;
     return result;
 }
 

@@ -11,7 +11,7 @@ struct RayData {
     float t_min;
     Vec3 direction;
     float t_max;
-    uint bias; ///< surface M_bias is seen
+    uint lod_bias; ///< number of levels by which patches are coarser
 };
 
 /// Nearest hit so far. Any-hit rays only set `instance`: kNone if unoccluded, else 0.

@@ -27,7 +27,7 @@ bool continue_path(uint path_index, HitData hit) {
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
-    RayData next = {origin, 0.0, direction, make_infinity(), ray.bias};
+    RayData next = {origin, 0.0, direction, make_infinity(), ray.lod_bias};
     rays[path_index] = next;
     return true;
 }

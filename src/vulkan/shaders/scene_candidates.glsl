@@ -75,7 +75,7 @@ void offer_candidate(uint tree, uint levels, float entry) {
 
 /// Levels that this ray sees a patch at, packed.
 uint choose_levels(uint patch_index) {
-    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.bias);
+    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.lod_bias);
     if (push.is_ray_lod == 0u) return levels;
     SurfaceData s = surfaces[instance.surface];
     uvec4 quad = load_quad(s, patch_index);

@@ -49,9 +49,9 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
     return point;
 }
 
-/// Point (u, v) of a patch on surface M_bias.
-CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint bias) {
-    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), bias);
+/// Point (u, v) of a patch as rays with this LOD bias see it.
+CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint lod_bias) {
+    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), lod_bias);
     PatchCorners corners = load_corners(surfaces[instance.surface], patch_index);
     uint side = 1u << packed_patch_level(packed_levels);
     CellPlace place = locate_cell(is_triangle(corners.quad), side, uv.x, uv.y);
