@@ -1,4 +1,4 @@
-// The next ray of each path, or its end.
+// Samples the next ray of each path, or terminates it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -7,7 +7,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// Sets the next ray; false where the path ends.
+/// Sets the next ray; false if the path terminates.
 bool continue_path(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];

@@ -1,5 +1,4 @@
-// Light at a vertex: what the surface gives off by itself, and next-event estimation, whose shadow ray is traced
-// later.
+// Light at a vertex: emission of the surface, and next-event estimation, whose shadow ray is traced later.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -10,7 +9,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// A light drawn for one vertex.
+/// A light sampled for one vertex.
 struct DrawnLight {
     LightDraw light;
     bool is_surface;
@@ -20,7 +19,7 @@ struct DrawnLight {
 DrawnLight draw_from_environment(vec3 normal, vec2 u) {
     EnvironmentDraw drawn = draw_environment_direction(push.environment, u);
     DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0)};
-    // Half of the directions lead into the surface: the image is not read for them.
+    // Early out without reading the image: half of the directions point into the surface.
     if (!(drawn.pdf > 0.0) || dot(drawn.direction, normal) <= 0.0) return result;
     result.light.weight = environment_radiance_at(push.environment, drawn.position) * (1.0 / drawn.pdf);
     result.light.pdf = drawn.pdf;
@@ -51,7 +50,8 @@ DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint lod_bias,
     return result;
 }
 
-/// Draws one light by its estimated irradiance, then a direction towards it; density 0: nothing.
+/// Selects one light in proportion to its estimated irradiance, then samples a direction towards it; density 0: no
+/// sample.
 DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
     float total = total_irradiance(push.source_count, at.position);
     float target = pick_and_emitter.x * total;
@@ -67,7 +67,7 @@ DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter,
     return drawn;
 }
 
-/// Density with which draw_light from the vertex before would have found this point.
+/// Density with which draw_light at the previous vertex would have sampled this point.
 float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
     if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
     uint first = find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x;
@@ -95,8 +95,8 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
     return ray;
 }
 
-/// Sets the shadow ray and what it brings; false where it would bring nothing. The last vertex has no bounce ray
-/// that could find the light as well: full weight there.
+/// Sets the shadow ray and its contribution; false if that is zero. The last vertex has no bounce ray that could also
+/// hit the light, so the MIS weight is 1 there.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
@@ -116,7 +116,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, Materi
     return true;
 }
 
-/// True where there is a shadow ray.
+/// True if there is a shadow ray.
 bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
