@@ -1,4 +1,4 @@
-// What `relief bench` was asked for.
+// Options of `relief bench`.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ namespace relief::bench {
 
 struct BenchOptions {
     std::string suite = "paper1";
-    std::filesystem::path folder; ///< for the results; empty: the name of the suite
+    std::filesystem::path folder; ///< output folder; empty: the name of the suite
     cli::EngineOptions engine;
-    RenderSettings settings; ///< of the engine; the size is below
+    RenderSettings settings; ///< engine settings; the size is below
     std::optional<std::pair<int, int>> size;
     std::vector<std::string> scenes; ///< none: all of the suite
     std::vector<std::string> meshes, scene_files;
@@ -30,10 +30,10 @@ struct BenchOptions {
     bool is_quick = false, is_quiet = false;
 };
 
-/// Adds all options; `options` must outlive the parsing.
+/// Adds all options; `options` must outlive parsing.
 void add_bench_options(CLI::App& app, BenchOptions& options);
 
-/// Options given on this command line that not every suite has.
+/// Given options that only some suites support.
 std::vector<std::string_view> list_given(const BenchOptions& options);
 
 } // namespace relief::bench

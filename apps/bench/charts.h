@@ -1,4 +1,4 @@
-// Charts of a result, drawn by the script that lies beside the program.
+// Charts of a result, drawn by a script beside the program.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 namespace relief::bench {
 
 struct DrawnCharts {
-    std::vector<std::string> lines; ///< what the script said
-    std::string failure; ///< why there are none, with the command that draws them; empty: there are
+    std::vector<std::string> lines; ///< output of the script
+    std::string failure; ///< why charts are missing, with the command that draws them; empty: success
 };
 
-/// Runs the script over the JSON file of a suite; the charts lie beside it. Where the script or what it needs
-/// is missing, that is told in the result: measurements are worth keeping without.
+/// Runs the script on the JSON file of a suite; charts are written beside it. A missing script or dependency
+/// is reported in the result, not an error: the measurements are useful without charts.
 DrawnCharts draw_charts(const std::filesystem::path& result);
 
 } // namespace relief::bench

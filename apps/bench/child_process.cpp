@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
     throw Error(ErrorKind::failed, {what + ": " + std::strerror(code), program, ""});
 }
 
-/// A pipe that children do not inherit; what is open at the end is closed.
+/// A pipe that children do not inherit; closes open ends on destruction.
 class Pipe {
   public:
     explicit Pipe(const std::string& program) {
@@ -68,7 +68,7 @@ pid_t start_child(const std::vector<std::string>& words, int output) {
     return child;
 }
 
-/// Until the other end is closed.
+/// Reads until the other end is closed.
 std::vector<LogLine> read_lines(int input, Clock::time_point start) {
     std::vector<LogLine> lines;
     std::string open_line;

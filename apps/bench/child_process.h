@@ -1,4 +1,4 @@
-// Other programs: found as a shell finds them, run to their end, with the time at which each line arrived.
+// Child processes: found as a shell finds them, run to completion, output lines with their arrival times.
 #pragma once
 
 #include <filesystem>
@@ -9,20 +9,20 @@
 namespace relief::bench {
 
 struct LogLine {
-    double seconds = 0; ///< since the program was started
-    std::string text;   ///< without its end of line
+    double seconds = 0; ///< since the start of the program
+    std::string text;   ///< without newline
 };
 
 struct ChildResult {
-    int exit_code = 0; ///< 128 + signal where a signal ended it
+    int exit_code = 0; ///< 128 + signal if terminated by a signal
     std::vector<LogLine> lines;
 };
 
-/// The program of that name in one of the folders of PATH, if there is one.
+/// Finds a program in PATH.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// Runs `words[0]`, a path, with the other words as arguments; both its outputs are read, none is shown.
-/// Throws Error{failed} where it cannot be started.
+/// Runs `words[0]`, a path, with the other words as arguments; captures stdout and stderr. Throws
+/// Error{failed} if it cannot be started.
 ChildResult run_child(const std::vector<std::string>& words);
 
 } // namespace relief::bench

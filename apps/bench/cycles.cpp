@@ -20,15 +20,15 @@ namespace relief::bench {
 
 namespace {
 
-/// Texels across: Blender's own choice, 4096, is finer than the sky's image and takes seconds to make.
+/// Width in texels: Blender's default, 4096, is finer than the sky image and takes seconds to build.
 constexpr int kImportanceMap = 512;
-constexpr int kDefaultImportanceMap = 0; ///< the script's word for Blender's own choice
+constexpr int kDefaultImportanceMap = 0; ///< the script's value for Blender's default
 constexpr int kBounces = 4;
 
 constexpr double kFirstSampleGoal = 10, kRenderGoal = 3, kMemoryGoal = 1.0 / 5;
 
-/// Pictures are of the same thing where the masks differ in no more of the pixels hit, and brightness by no
-/// more.
+/// Tolerances for equivalent pictures: fraction of hit pixels whose masks differ, and difference in
+/// brightness.
 constexpr double kMaskTolerance = 0.02, kBrightnessTolerance = 0.1;
 
 constexpr const char* kAboutTimes =
@@ -51,7 +51,7 @@ struct Case {
     int samples = 1, bounces = 0, importance_map = kImportanceMap;
 };
 
-/// What one render of one program said, by measure.
+/// Measures of one render of one program.
 using Measures = std::map<std::string, double>;
 
 struct CaseRuns {
@@ -159,7 +159,7 @@ class CyclesSuite {
         result_["scenes"].push_back(std::move(entry));
     }
 
-    /// Also warms both up.
+    /// Also serves as warm-up.
     Value compare(const std::string& name) {
         report_(name + ": comparing the pictures");
         const std::filesystem::path relief = options_.folder / (name + "_relief.exr");
@@ -178,7 +178,7 @@ class CyclesSuite {
         return agreement;
     }
 
-    /// `picture`: where to write it; empty: nowhere.
+    /// `picture`: output file; empty: none.
     Measures render_with_cycles(const std::string& name, const Case& what,
                                 const std::filesystem::path& picture) {
         std::vector<std::string> words = {blender_,

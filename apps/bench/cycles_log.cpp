@@ -21,7 +21,7 @@ bool has(const LogLine& line, std::string_view words) { return line.text.find(wo
 
 bool starts_with(const LogLine& line, std::string_view words) { return line.text.rfind(words, 0) == 0; }
 
-/// The number behind the last `words` of a line.
+/// The number after the last `words` of a line.
 template <class T> std::optional<T> read_number(std::string_view text, std::string_view words) {
     const size_t place = text.rfind(words);
     if (place == std::string_view::npos) return {};
@@ -31,7 +31,7 @@ template <class T> std::optional<T> read_number(std::string_view text, std::stri
     return code == std::errc() && end != begin ? std::optional<T>(value) : std::nullopt;
 }
 
-/// Every line of the state of a render ends what the line before speaks of.
+/// Every status line ends the activity named in the previous one.
 class Reader {
   public:
     explicit Reader(std::span<const LogLine> lines) : lines_(lines) {}
@@ -79,7 +79,7 @@ class Reader {
     std::span<const LogLine> lines_;
     CyclesTimes times_;
     std::optional<double> start_, sampling_, sample_, end_;
-    std::optional<double> image_; ///< since when one is being read
+    std::optional<double> image_; ///< start of reading the current image
 };
 
 } // namespace

@@ -1,4 +1,4 @@
-// What Cycles and Relief both render, and whether they did.
+// Scenes that Cycles and Relief both support, and comparison of their pictures.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace relief::bench {
 
 namespace {
 
-/// White, rough, without a coat: Lambert's surface.
+/// White, rough, without a coat: Lambertian.
 Material make_white() {
     Material white;
     white.name = "white", white.roughness = 1, white.ior = 1;
@@ -53,7 +53,7 @@ Value compare_with_cycles(const Image& relief, const Image& cycles) {
         for (int x = 0; x < relief.width; ++x) {
             const float a = relief.at(x, y, alpha), b = cycles.at(x, y, alpha_of_cycles);
             hits += a > 0.5f || b > 0.5f;
-            differences += std::fabs(a - b) > 0.75f; // more than where a silhouette cuts the pixel
+            differences += std::fabs(a - b) > 0.75f; // more than a silhouette through the pixel explains
             if (a < 1 || b < 1) continue;
             for (const char* channel : {"R", "G", "B"}) {
                 sum += relief.at(x, y, find_channel(relief, channel));

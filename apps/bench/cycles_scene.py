@@ -26,12 +26,12 @@ def parse_arguments():
 
 
 def tell(line):
-    """A line for the program that reads the log; it takes the time when the line arrives."""
+    """Prints a line for the log reader, which timestamps it on arrival."""
     print("relief:", line, flush=True)
 
 
 def read_obj(file):
-    """Positions, faces and the uv of each corner. Only what Relief writes: no negative indices."""
+    """Positions, faces and the uv of each corner. Supports only OBJ as Relief writes it: no negative indices."""
     positions, uvs, faces, corner_uvs = [], [], [], []
     with open(file, encoding="ascii") as stream:
         for line in stream:
@@ -121,7 +121,7 @@ def make_material(scene, item, folder):
 
 
 def dice(thing):
-    """Adaptive subdivision. Blender evaluates the modifier at its own level first: that must be none."""
+    """Adaptive subdivision. Blender first evaluates the modifier at its own level, which must be 0."""
     modifier = thing.modifiers.new("dice", "SUBSURF")
     modifier.subdivision_type = "SIMPLE"
     modifier.levels = modifier.render_levels = 0

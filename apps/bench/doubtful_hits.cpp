@@ -8,16 +8,16 @@ namespace relief::bench {
 
 namespace {
 
-/// For the rounding of the intervals here, and for that of a hit's distance: less than what the walks' own
-/// box tests allow (kBoxSlack), so that no miss of theirs is overlooked.
+/// Tolerance for rounding of the intervals here and of hit distances; smaller than the slack of the
+/// traversals' own box tests (kBoxSlack), so that none of their misses is overlooked.
 constexpr double kSlack = 1 + 1e-12, kHitSlack = 1 + 1e-6;
 
-/// Part of a ray.
+/// Interval of a ray.
 struct Interval {
     double begin, end;
 };
 
-/// Cuts off what lies outside of one slab.
+/// Clips the interval to one slab.
 void cut(Interval& part, double lower, double upper, double origin, double speed) {
     if (speed == 0) {
         if (origin < lower || origin > upper) part.end = -1;

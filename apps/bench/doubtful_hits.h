@@ -1,5 +1,5 @@
-// Hits that two trees may disagree on. Rounding lets the test of a triangle find one whose box the ray misses
-// by a few units in the last place; whether a walk comes to it depends on the boxes around it.
+// Hits on which two trees may disagree: by rounding, a ray may hit a triangle whose box it misses by a few
+// ulp; whether a traversal reaches the triangle depends on the enclosing boxes.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace relief::bench {
 
 class DoubtfulHits {
   public:
-    /// The mesh has to live as long.
+    /// The mesh must outlive this object.
     explicit DoubtfulHits(const Mesh& mesh);
 
     /// Whether the ray misses the box of the triangle that it hit, in double precision.
@@ -21,7 +21,7 @@ class DoubtfulHits {
 
   private:
     const Mesh& mesh_;
-    std::vector<std::array<uint32_t, 3>> triangles_; ///< corners, faces cut into fans in their order
+    std::vector<std::array<uint32_t, 3>> triangles_; ///< corners; faces as triangle fans in order
 };
 
 } // namespace relief::bench

@@ -26,7 +26,7 @@ double get_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Every texel `times` squared times, so that the map has the size asked for.
+/// Replicates every texel `times` squared times to reach the requested map size.
 std::shared_ptr<const Texture> enlarge(const Texture& map, uint32_t times) {
     auto large = std::make_shared<Texture>(map);
     large->width = map.width * times, large->height = map.height * times;
@@ -70,7 +70,7 @@ std::vector<MapEdit> make_edits(const Displacement& map, uint32_t edge) {
     return edits;
 }
 
-/// One kind of picture.
+/// One configuration of the picture.
 struct Kind {
     const char* name;
     int samples, bounces;

@@ -1,4 +1,4 @@
-// A painted rectangle of a map until the next picture, beside the same scene loaded afresh, in one process.
+// Time from an edit of a map rectangle to the next picture, against loading the scene again, in one process.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 namespace relief::bench {
 
 struct EditsOptions {
-    std::filesystem::path folder; ///< for the scene that is loaded; left behind
-    RenderSettings settings;      ///< size, threads and instruction set; all else is the suite's
-    int runs = 5;                 ///< fresh loads that count, of each kind of picture; >= 1
-    int enlargement = 2;          ///< of the sample's map, which is 2048 x 2048
-    uint32_t edge = 256;          ///< of a rectangle, texels
+    std::filesystem::path folder; ///< for the loaded scene; not deleted
+    RenderSettings settings;      ///< size, threads and instruction set; the suite sets the rest
+    int runs = 5;                 ///< measured fresh loads per configuration, >= 1
+    int enlargement = 2;          ///< factor on the sample's map of 2048 x 2048
+    uint32_t edge = 256;          ///< side of a rectangle, texels
 };
 
-/// Options of a run that only shows that everything works.
+/// Options of a smoke test.
 EditsOptions make_quick_options(EditsOptions options);
 
-/// Sixteen rectangles spread over the map, each painted over in turn. Throws Error{failed} where the picture
-/// after all of them is not, bit for bit, that of a session which began with them.
+/// Edits sixteen rectangles spread over the map, one after another. Throws Error{failed} unless the final
+/// picture is bit-identical to that of a session started with all edits.
 Value run_edits(const EditsOptions& options, const Report& report);
 
 } // namespace relief::bench

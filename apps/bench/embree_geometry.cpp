@@ -23,7 +23,7 @@ T* make_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_
     return static_cast<T*>(buffer);
 }
 
-/// First vertex and first cell of every patch, one entry more than patches.
+/// First vertex and first cell of every patch; one entry more than patches.
 struct Offsets {
     std::vector<uint64_t> vertex{0}, cell{0};
 };
@@ -45,7 +45,7 @@ std::span<Vec3f> get_patch_vertices(Vec3f* vertices, const Offsets& offsets, siz
     return {vertices + offsets.vertex[patch], vertices + offsets.vertex[patch + 1]};
 }
 
-/// The diagonal from 00 to 11, as Relief has it.
+/// The diagonal from 00 to 11, as in Relief.
 void write_cells(uint32_t first_vertex, uint32_t side, uint32_t* index) {
     for (uint32_t j = 0; j < side; ++j)
         for (uint32_t i = 0; i < side; ++i) {
@@ -54,7 +54,7 @@ void write_cells(uint32_t first_vertex, uint32_t side, uint32_t* index) {
         }
 }
 
-/// The vertices of the patch seen last; Embree asks for those of a patch in several calls.
+/// Vertices of the most recent patch; Embree requests those of a patch in several calls.
 struct PatchMemo {
     uint64_t serial = 0;
     uint32_t patch = kNoIndex;
@@ -143,7 +143,7 @@ RTCGeometry make_grids(RTCDevice device, const TracerProbe& probe, int threads) 
             const std::span<Vec3f> room = get_patch_vertices(vertices, offsets, patch);
             const uint32_t edge = (1u << probe.patch_level(uint32_t(patch))) + 1;
             probe.evaluate_patch(uint32_t(patch), room);
-            // Embree cuts cells from 10 to 01; mirrored rows make that Relief's diagonal.
+            // Embree splits cells from 10 to 01; mirrored rows turn that into Relief's diagonal.
             for (uint32_t j = 0; j < edge; ++j)
                 std::reverse(room.begin() + j * edge, room.begin() + (j + 1) * edge);
             grids[patch] = {uint32_t(offsets.vertex[patch]), edge, uint16_t(edge), uint16_t(edge)};
@@ -167,7 +167,7 @@ RTCGeometry make_subdivision(RTCDevice device, const DisplacedPatches& patches) 
     for (uint32_t patch = 0; patch < count; ++patch) {
         const float side = float(1u << probe.patch_level(patch));
         faces[patch] = 4;
-        // The callback sets positions itself; what stands here only has to be a quad.
+        // Placeholder quad: the callback sets the positions.
         const Vec3f corners[4] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
         for (uint32_t k = 0; k < 4; ++k) {
             vertices[4 * patch + k] = corners[k];

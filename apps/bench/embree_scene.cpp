@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kBatchSize = 1024; ///< rays that a thread takes at once, as Relief's do
+constexpr size_t kBatchSize = 1024; ///< rays per task, as in Relief
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -44,7 +44,7 @@ template <class Packet> void set_ray(Packet& to, size_t lane, const Ray& ray) {
     to.time[lane] = 0, to.mask[lane] = 0xffffffffu, to.id[lane] = 0, to.flags[lane] = 0;
 }
 
-/// A span of rays on its way: what the loops below share.
+/// A span of rays in progress, shared by the loops below.
 struct Cast {
     RTCScene scene;
     RTCIntersectContext* context;

@@ -1,4 +1,5 @@
-// Surfaces in Embree 3: bare triangles, and what Relief traces in Embree's three ways.
+// Surfaces in Embree 3: plain triangle meshes, and Relief's displaced surfaces in Embree's three
+// representations.
 #pragma once
 
 #include <array>
@@ -14,17 +15,17 @@
 
 namespace relief::bench {
 
-/// triangles: the micro-triangles, made beforehand; grid: RTC_GEOMETRY_TYPE_GRID over the same vertices;
-/// subdivision: RTC_GEOMETRY_TYPE_SUBDIVISION whose displacement callback gives the same vertices.
+/// triangles: the pre-tessellated micro-triangles; grid: RTC_GEOMETRY_TYPE_GRID over the same vertices;
+/// subdivision: RTC_GEOMETRY_TYPE_SUBDIVISION whose displacement callback returns the same vertices.
 enum class EmbreeWay { triangles, grid, subdivision };
 enum class EmbreeMode { fast, robust };
 
-/// Which of Embree's calls answers a span of rays: rtcIntersect or rtcOccluded, for 1, 8 or 16 rays.
+/// Embree call used for a span of rays: rtcIntersect or rtcOccluded for 1, 8 or 16 rays.
 struct EmbreeQuery {
     HitKind kind = HitKind::closest;
     int width = 1;            ///< 1, 8 or 16
-    bool is_coherent = false; ///< told to Embree: neighbours start together and go the same way
-    int threads = 0;          ///< 0: those of the scene
+    bool is_coherent = false; ///< Embree's coherence flag
+    int threads = 0;          ///< 0: as for the scene
 };
 
 struct EmbreeRun {
@@ -40,27 +41,27 @@ std::string embree_version();
 
 class EmbreeScene {
   public:
-    /// Bare triangles on one thread. Build quality medium; throws Error where Embree refuses.
+    /// A plain triangle mesh on one thread, build quality medium. Throws Error on Embree errors.
     EmbreeScene(const Mesh& mesh, EmbreeMode mode);
-    /// The probe's surface with `threads` threads, world space, every displaced patch at its level. Where the
-    /// diagonal of a cell is Embree's choice, patches are handed over mirrored, so that it is the one that
-    /// Relief has. The probe must outlive the scene.
+    /// The probe's surface with `threads` threads, world space, every displaced patch at its level. Where
+    /// Embree determines the diagonal of a cell, patches are mirrored so that it matches Relief's. The probe
+    /// must outlive the scene.
     EmbreeScene(const TracerProbe& probe, EmbreeWay way, int threads);
     ~EmbreeScene();
     EmbreeScene(EmbreeScene&&) noexcept;
     EmbreeScene& operator=(EmbreeScene&&) noexcept;
 
-    /// Evaluating all vertices and writing them and the indices into Embree's buffers; 0 for subdivision,
-    /// which evaluates while it builds.
+    /// Seconds to evaluate all vertices and fill Embree's buffers; 0 for subdivision, which evaluates during
+    /// the build.
     double tessellate_s() const;
     double build_s() const;
-    /// What Embree and the buffers in its hands hold, by its own count.
+    /// Bytes held by Embree, its buffers included, as it reports.
     uint64_t byte_count() const;
 
-    /// `room`: of an earlier run, its memory is used again.
+    /// `room`: result of an earlier run whose memory is reused.
     EmbreeRun trace(std::span<const Ray> rays, const EmbreeQuery& query, EmbreeRun room = {}) const;
 
-    /// Corners of a micro-triangle; of scenes of triangles alone.
+    /// Corners of a micro-triangle; for scenes of triangles only.
     std::array<Vec3f, 3> find_corners(uint32_t primitive) const;
 
   private:

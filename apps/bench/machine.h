@@ -1,4 +1,4 @@
-// What every figure must name: the build it came from and the machine it was measured on.
+// Build and machine information recorded with every measurement.
 #pragma once
 
 #include "common/report.h"

@@ -1,4 +1,4 @@
-// relief-bench: the suites of measurements. Users start it as `relief bench`.
+// relief-bench: the benchmark suites. Users start it as `relief bench`.
 #include <cstdio>
 #include <filesystem>
 #include <string>

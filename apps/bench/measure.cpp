@@ -11,7 +11,7 @@ namespace relief::bench {
 
 namespace {
 
-/// summarize of one number of each run.
+/// summarize of one value per run.
 template <class Get> Value summarize_runs(const std::vector<Statistics>& runs, Get get) {
     std::vector<double> values;
     for (const Statistics& run : runs) values.push_back(get(run));
@@ -117,7 +117,7 @@ Value describe_frames(const std::vector<Statistics>& runs) {
 
 Value describe_casts(const std::vector<Statistics>& runs) {
     Value casts = Value::list();
-    // Every run traces the same rays, so that they have the same casts.
+    // Every run traces the same rays, hence has the same casts.
     for (size_t k = 0; k < runs.front().casts.size(); ++k) {
         const CastStatistics& first = runs.front().casts[k];
         Value cast = {

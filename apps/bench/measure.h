@@ -1,4 +1,4 @@
-// Frames measured many times in turn: medians with their spread.
+// Repeated, interleaved frame measurements: medians with their spread.
 #pragma once
 
 #include <functional>
@@ -11,31 +11,32 @@
 
 namespace relief::bench {
 
-/// Called with one line about what comes next.
+/// Called with one line about the next step.
 using Report = std::function<void(const std::string&)>;
 
-/// One way to render a scene, and what its runs said.
+/// One variant of rendering a scene, with the statistics of its runs.
 struct Variant {
     std::string name;
     RenderSettings settings;
-    std::vector<Statistics> runs; ///< without the first, which warms up
-    std::string refusal;          ///< not empty: the engine refused it, for this reason
+    std::vector<Statistics> runs; ///< without the warm-up run
+    std::string refusal;          ///< not empty: why the engine rejected it
 };
 
-/// {median, lowest, highest, runs}; of an even count the mean of the middle two. `values` is not empty.
+/// {median, lowest, highest, runs}; for an even count the mean of the middle two. `values` is not empty.
 Value summarize(std::vector<double> values);
 
-/// What one run of something took, seconds.
+/// Seconds of one run.
 using Measure = std::function<double()>;
 
-/// All in turn, first once to warm up, then `runs` times; seconds of every run that counts, of each.
+/// Runs all interleaved, once for warm-up, then `runs` times; returns the seconds of every measured run of
+/// each.
 std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measures, int runs);
 
-/// Renders all variants once to warm up, then `runs` times in turn (a, b, c, a, b, c ...), so that a machine
-/// that changes its speed changes it for all. A variant that is refused for want of memory keeps the reason.
+/// Renders all variants once for warm-up, then `runs` times interleaved (a, b, c, a, b, c ...), so that
+/// changes of the machine's speed affect all. A variant rejected for lack of memory records the reason.
 void measure_in_turn(const Scene& scene, int runs, std::vector<Variant>& variants, const Report& report);
 
-/// White, so that paths end where they leave the scene, not where they have grown dim.
+/// White materials, so that paths end when they leave the scene, not by Russian roulette.
 Scene make_white(Scene scene);
 
 /// Median seconds by stage, frame and preparation with their spread, bytes.

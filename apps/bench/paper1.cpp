@@ -17,10 +17,10 @@ namespace relief::bench {
 
 namespace {
 
-/// The paper's limit of subdivision, and the one above, at which its byte counts a patch come out.
+/// The paper's subdivision limit, and the level above, which reproduces its bytes per patch.
 constexpr int kTableLevels[] = {5, 6};
 
-/// The frame whose time is a goal.
+/// The frame whose time has a goal.
 constexpr int kPartyWidth = 1920, kPartyHeight = 1080;
 
 std::string format_level(int level) { return level == kAutoLevel ? "auto" : std::to_string(level); }
@@ -74,7 +74,7 @@ Value make_table_row(const std::string& name, const Scene& scene, const RenderSe
         {"paper", {{"tessellated_bytes", paper->tessellated_bytes}, {"direct_bytes", paper->direct_bytes}}}};
 }
 
-/// Tessellated, unless that is refused here: beyond the limit of the options.
+/// Tessellated, unless it exceeds the memory limit of the options.
 Variant make_tessellated(const Paper1Options& options, const RenderSettings& direct, uint64_t peak_bytes) {
     Variant variant{"tessellated", direct, {}, {}};
     variant.settings.surface.mode = SurfaceMode::tessellated;
@@ -100,7 +100,7 @@ Value make_figure1_7(const std::string& name, const std::vector<Variant>& varian
 constexpr std::pair<BottomForm, const char*> kBottomForms[] = {{BottomForm::split, "split"},
                                                                {BottomForm::fused, "fused"}};
 
-/// The direct variants in both forms of the Vulkan engine's bottom level.
+/// The direct variants with both forms of the Vulkan engine's patch tree kernels.
 void add_bottom_forms(RenderSettings cached, std::vector<Variant>& variants) {
     for (const auto& [form, name] : kBottomForms) {
         cached.experiment.bottom = form;
@@ -109,7 +109,7 @@ void add_bottom_forms(RenderSettings cached, std::vector<Variant>& variants) {
     }
 }
 
-/// What the engine refused is left out.
+/// Rejected variants are left out.
 Value make_bottom_forms(const std::string& name, std::span<const Variant> variants) {
     Value entry = {{"scene", name}, {"variants", Value::list()}};
     for (const Variant& variant : variants) {
@@ -137,14 +137,14 @@ void check_scenes(const std::vector<std::string>& scenes) {
             throw Error(ErrorKind::usage, {"not a scene of paper 1", name, "known: " + known});
 }
 
-/// One suite in the making.
+/// State of a running suite.
 class Paper1 {
   public:
     Paper1(const Paper1Options& options, const Report& report) : options_(options), report_(report) {}
 
     Value run() {
         check_scenes(options_.scenes);
-        // The largest first, while the process has held nothing else.
+        // The largest first, before the process has held anything else.
         for (const std::string& name : kPaper1Scenes)
             if (std::find(options_.scenes.begin(), options_.scenes.end(), name) != options_.scenes.end())
                 measure_scene(name);
@@ -191,7 +191,7 @@ class Paper1 {
         result_["figure1_10"].push_back(make_casts("bark", variants));
     }
 
-    /// `first` is the render that the process has made before any other.
+    /// `first`: the first render of the process.
     void measure_party_frame(const Scene& scene, RenderSettings settings, const Statistics& first,
                              const Report& report) {
         settings.image.width = std::min(kPartyWidth, settings.image.width * kPartyWidth / 1280);

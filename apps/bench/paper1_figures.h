@@ -1,4 +1,4 @@
-// What the paper itself says: its table, and the statements of its text about plots that print no numbers.
+// Figures of the paper: its table, and statements in its text about plots without numbers.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline constexpr std::array<PaperMemory, 4> kPaperMemory = {
 
 inline constexpr double kPaperPartyFrameMilliseconds = 77;
 
-/// By the figure that they are about.
+/// By figure.
 inline constexpr std::array<PaperStatement, 7> kPaperStatements = {
     {{"figure1_1", "Party renders in 77 ms a frame on an AMD FirePro W9100"},
      {"figure1_7", "pre-tessellation is faster only for Pumpkin, and slower for Bark"},

@@ -21,7 +21,7 @@ const Value* find_variant(const Value& scene, const std::string& name) {
     return nullptr;
 }
 
-/// Seconds a ray of the bounces at `depth`, its shadow rays left out.
+/// Seconds per bounce ray at `depth`, without shadow rays.
 std::optional<double> compute_seconds_a_ray(const Value& casts, int depth) {
     for (const Value& cast : casts)
         if (cast["depth"] == depth && cast["kind"] == "bounce")
@@ -41,7 +41,7 @@ void add_depth_goal(const Value& figure, Value& goals) {
     }
 }
 
-/// Direct against the same kernels over micro-quads made up front, where those were made.
+/// Direct tracing against the same kernels on pre-tessellated micro-quads, where measured.
 void add_tessellated_goals(const Value& figure, Value& goals) {
     for (const Value& scene : figure) {
         const Value *direct = find_variant(scene, "direct"), *flat = find_variant(scene, "tessellated");

@@ -58,10 +58,10 @@ Value describe_builds(TreeKind kind, const std::vector<TreeBuild>& builds, uint3
     return entry;
 }
 
-/// Where rays start in a tree.
+/// Start node of rays in a tree.
 enum class Start { root, last_hit };
 
-/// Everything of one mesh.
+/// All measurements of one mesh.
 class MeshMeasure {
   public:
     MeshMeasure(const Paper2Options& options, const Scene& scene, Report report)
@@ -70,7 +70,7 @@ class MeshMeasure {
           report_(std::move(report)),
           trees_(mesh_, options.settings),
           doubts_(mesh_) {
-        // Whatever tree comes first: all have to agree with it.
+        // Reference hits, from the first tree: all others must agree.
         trees_.build(TreeKind::sah);
         sets_.push_back(
             make_primary_rays(scene.camera, options.settings.image.width, options.settings.image.height));
@@ -108,7 +108,7 @@ class MeshMeasure {
   private:
     Value measure_tree(TreeKind kind) {
         report_(fmt::format("build {}", tree_name(kind)));
-        trees_.build(kind, heap_levels_); // warms up
+        trees_.build(kind, heap_levels_); // warm-up
         std::vector<TreeBuild> builds;
         for (int run = 0; run < options_.runs; ++run) builds.push_back(trees_.build(kind, heap_levels_));
         for (const TraversalKind traversal : tree_traversals(kind)) {
@@ -132,7 +132,7 @@ class MeshMeasure {
         return hits;
     }
 
-    /// Of each primary ray the leaf of its hit, the root where there is none.
+    /// Leaf of the hit of each primary ray; the root for misses.
     std::vector<uint64_t> find_leaves(TraversalKind traversal) {
         std::vector<uint64_t> keys(sets_[0].rays.size(), kRootKey);
         find_hits({traversal}, sets_[0], keys);
@@ -171,7 +171,7 @@ class MeshMeasure {
         casts_.push_back(std::move(entry));
     }
 
-    /// Of closest hits the bits; of any hits whether there is one. Doubtful ones may differ, and are counted.
+    /// Compares closest hits bitwise, any hits by occlusion. Doubtful hits may differ and are counted.
     void require_equal(const std::vector<TreeHit>& hits, size_t s, const std::string& name) {
         size_t different = 0;
         for (size_t k = 0; k < hits.size(); ++k) {
@@ -202,8 +202,8 @@ class MeshMeasure {
     std::vector<std::vector<TreeHit>> expected_;
     TreeCast counts_; ///< of the last cast
     int combinations_ = 0;
-    uint64_t doubtful_hits_ = 0; ///< that differ, over all casts
-    int heap_levels_ = 0;        ///< those of the paper where it has such a mesh
+    uint64_t doubtful_hits_ = 0; ///< differing ones, over all casts
+    int heap_levels_ = 0;        ///< as in the paper if it has this mesh
     Value casts_ = Value::list();
 };
 

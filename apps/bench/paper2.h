@@ -1,5 +1,5 @@
-// Builders and traversals over triangle meshes, side by side: what Murguia et al. 2013 (Bit-Trail Traversal
-// for Stackless LBVH on DirectCompute) measure, and what stands beside it today.
+// Compares builders and traversals on triangle meshes: those of Murguia et al. 2013 (Bit-Trail Traversal for
+// Stackless LBVH on DirectCompute) and current ones.
 #pragma once
 
 #include <string>
@@ -13,17 +13,17 @@
 namespace relief::bench {
 
 struct Paper2Options {
-    RenderSettings settings; ///< engine, device, threads, and width and height of the grid of primary rays
-    int runs = 5;            ///< that count, after one that does not; >= 1
+    RenderSettings settings; ///< engine, device, threads, and size of the grid of primary rays
+    int runs = 5;            ///< measured runs after a warm-up, >= 1
     std::vector<std::string> scenes = structure_scene_names();
-    std::vector<Scene> meshes; ///< the user's: each with one mesh or more, of which the first is measured
+    std::vector<Scene> meshes; ///< user scenes; the first mesh of each is measured
     MeshDetail detail = MeshDetail::full;
 };
 
-/// Options of a run that only shows that everything works.
+/// Options of a smoke test.
 Paper2Options make_quick_options(Paper2Options options);
 
-/// Throws Error{failed} where any two combinations disagree about a hit: then nothing is reported.
+/// Throws Error{failed}, without a report, if two combinations disagree about a hit.
 Value run_paper2(const Paper2Options& options, const Report& report);
 
 } // namespace relief::bench

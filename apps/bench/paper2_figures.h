@@ -1,4 +1,4 @@
-// What the paper itself says: its table of models and statements of its text.
+// Figures of the paper: its table of models and statements in its text.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 namespace relief::bench {
 
 /// 1024 x 1024 pixels, primary and shadow rays, one GPU of a GeForce GTX 590. Percentages are printed without
-/// labels; their assignment follows from triangles a leaf. Bytes a triangle and the bound of rays a second
-/// are worked out from the paper's figures.
+/// labels; triangles per leaf determine their assignment. Bytes per triangle and the bound on rays per second
+/// are derived from the paper's figures.
 struct Paper2Model {
     std::string_view stands_for, model;
     double triangles, levels, frames_per_second, triangles_a_leaf, used_share, heap_bytes;
 };
 
-/// 0 frames a second: the paper prints a bar without a number.
+/// 0 frames per second: the paper shows a bar without a number.
 inline constexpr std::array<Paper2Model, 3> kPaper2Models = {
     {{"body", "Stanford Bunny", 69451, 18, 94, 1.72, 0.31, 8.0 * (1 << 20)},
      {"hall", "Crytek Sponza", 279163, 21, 0, 2.98, 0.09, 64.0 * (1 << 20)},

@@ -16,7 +16,7 @@ struct CastName {
     std::string tree, traversal, rays, start;
 };
 
-/// Seconds, 0 where it was not measured.
+/// Seconds; 0 if not measured.
 double find_seconds(const Value& mesh, const CastName& name) {
     for (const Value& cast : mesh["casts"])
         if (cast["tree"] == name.tree && cast["traversal"] == name.traversal && cast["rays"] == name.rays &&

@@ -1,4 +1,4 @@
-// What a result says about the worth of the structures, as ratios.
+// Evaluates the goals of the structures, as ratios.
 #pragma once
 
 #include "common/report.h"

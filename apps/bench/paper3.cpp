@@ -36,7 +36,7 @@ struct Pair {
     TraversalKind traversal;
 };
 
-/// In the paper's order.
+/// In the order of the paper.
 constexpr std::array<Pair, 4> kPairs = {{{StructureKind::kdtree, TraversalKind::push_down},
                                          {StructureKind::kdtree, TraversalKind::backtrack},
                                          {StructureKind::bvh, TraversalKind::restart_trail},
@@ -54,7 +54,7 @@ const char* method_name(RenderMethod method) {
     return "";
 }
 
-/// One way to render a scene, its frames and the pictures of the first and the last of them.
+/// One variant of rendering a scene, its frames, and the first and last picture.
 struct Way {
     RenderSettings settings;
     std::vector<Statistics> runs;
@@ -85,7 +85,7 @@ std::string describe(const RenderSettings& s) {
                        traversal_name(s.experiment.traversal), method_name(s.experiment.method));
 }
 
-/// Runs below 0 warm up.
+/// Negative runs are warm-up.
 void render_way(const Scene& scene, Way& way, int run) {
     if (!way.refusal.empty()) return;
     try {
@@ -100,14 +100,14 @@ void render_way(const Scene& scene, Way& way, int run) {
     }
 }
 
-/// That all others are compared with: the first that was measured, or null.
+/// Reference for all others: the first measured one, or null.
 const Way* find_reference(const std::vector<Way>& ways) {
     const auto found =
         std::find_if(ways.begin(), ways.end(), [](const Way& way) { return way.is_measured(); });
     return found == ways.end() ? nullptr : &*found;
 }
 
-/// Of either picture.
+/// For either picture.
 uint64_t count_different_pixels(const Way& way, const Way& reference) {
     const auto count = [&](const Image& picture) {
         return uint64_t(compare_images(picture, *reference.first, "", 0).over_threshold);
@@ -131,7 +131,7 @@ Value describe_way(const Way& way, const Way* reference) {
     return entry;
 }
 
-/// That the pictures of all ways are one; missed where fewer than two ways could be compared.
+/// Goal that the pictures of all variants are equal; missed if fewer than two variants could be compared.
 Value make_goals(const Value& result) {
     Value goals = Value::list();
     for (const Value& scene : result["scenes"]) {
@@ -170,7 +170,7 @@ Value make_head(const Paper3Options& options) {
     return head;
 }
 
-/// One primary and one shadow ray a pixel: of several lights the first stays.
+/// One primary and one shadow ray per pixel: keeps only the first light.
 Scene light_once(Scene scene) {
     if (scene.lights.empty()) return scene;
     scene.lights.resize(1);
@@ -203,7 +203,7 @@ class Paper3 {
         scene = light_once(std::move(scene));
         RenderSettings base = options_.settings;
         base.image.spp = 1, base.image.bounces = 0;
-        base.experiment.sah_costs = SahCosts{}; // the paper's
+        base.experiment.sah_costs = SahCosts{}; // as in the paper
         std::vector<Way> ways = list_ways(base);
         for (int run = -options_.warm_up_runs; run < options_.runs; ++run)
             for (Way& way : ways) {

@@ -16,18 +16,18 @@ namespace relief::bench {
 std::vector<std::string> paper3_scenes();
 
 struct Paper3Options {
-    RenderSettings settings; ///< engine, device, size, threads; all else is the suite's
-    int runs = 5;            ///< that count; >= 1
-    int warm_up_runs = 1;    ///< before them
+    RenderSettings settings; ///< engine, device, size, threads; the suite sets the rest
+    int runs = 5;            ///< measured runs, >= 1
+    int warm_up_runs = 1;    ///< before the measured runs
     std::vector<std::string> scenes = paper3_scenes();
-    std::vector<Scene> meshes; ///< the user's
+    std::vector<Scene> meshes; ///< user scenes
     MeshDetail detail = MeshDetail::full;
 };
 
-/// Options of a run that only shows that everything works.
+/// Options of a smoke test.
 Paper3Options make_quick_options(Paper3Options options);
 
-/// What a device cannot do, or has no memory for, is a result: the reason stands in the place of figures.
+/// Missing features or memory of a device are results: the reason replaces the figures.
 Value run_paper3(const Paper3Options& options, const Report& report);
 
 } // namespace relief::bench

@@ -1,4 +1,4 @@
-// A statement of a paper's text about what its plots show without numbers.
+// A statement in a paper's text about a plot without numbers.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace relief::bench {
 
 struct PaperStatement {
-    std::string_view about, text; ///< part of the results it belongs to
+    std::string_view about, text; ///< `about`: the related part of the results
 };
 
 } // namespace relief::bench

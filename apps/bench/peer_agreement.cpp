@@ -15,7 +15,7 @@ namespace relief::bench {
 
 namespace {
 
-/// `kShortest` is a share of the largest coordinate of a ray's origin: below it distances count as that.
+/// `kShortest`: minimum reference distance, as a fraction of the largest coordinate of the ray's origin.
 constexpr double kSameDepth = 1e-5, kShortest = 0.1, kEdge = 1e-6, kTolerableShare = 1e-3;
 constexpr uint64_t kTolerableCount = 8;
 
@@ -29,9 +29,9 @@ double length(const Point& a) { return std::sqrt(dot(a, a)); }
 Point widen(const Vec3f& a) { return {a.x, a.y, a.z}; }
 double largest(const Vec3f& a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
 
-/// Distance between the line of a ray and the piece from `a` to `b`.
+/// Distance between the line of a ray and the segment from `a` to `b`.
 double compute_distance(const Point& origin, const Point& direction, const Point& a, const Point& b) {
-    // Across the ray, in the plane that it is perpendicular to.
+    // In the plane perpendicular to the ray.
     const double square = dot(direction, direction);
     const auto flatten = [&](const Point& p) {
         const Point to = subtract(p, origin);
@@ -56,8 +56,7 @@ bool is_at_edge(const Ray& ray, const Corners& corners) {
     return false;
 }
 
-/// Whether the ray's point at `t` lies in the triangle's plane: rays that graze it stretch rounding along
-/// them.
+/// Whether the ray's point at `t` lies in the triangle's plane: grazing rays amplify rounding.
 bool is_in_plane(const Ray& ray, double t, const Corners& corners) {
     const Point o = widen(ray.origin), d = widen(ray.direction), a = widen(corners[0]);
     const Point u = subtract(widen(corners[1]), a), v = subtract(widen(corners[2]), a);
@@ -67,19 +66,19 @@ bool is_in_plane(const Ray& ray, double t, const Corners& corners) {
     return std::fabs(dot(normal, to)) <= kEdge * scale * length(normal);
 }
 
-/// Distances of all rays, and how to find the triangle of a hit; none where that cannot be told.
+/// Distances of all rays, and a look-up of the triangle of a hit, if known.
 struct Answers {
     std::vector<float> depths;
     std::function<Corners(size_t)> find_corners;
 };
 
-/// Adds what differs among rays that both were asked for the nearest hit.
+/// Counts differences of closest-hit rays.
 void compare(std::span<const Ray> rays, const Answers& relief, const Answers& other, Agreement& result) {
     for (size_t k = 0; k < rays.size(); ++k) {
         const double a = relief.depths[k], b = other.depths[k];
         const bool has_a = std::isfinite(a), has_b = std::isfinite(b);
         if (!has_a && !has_b) continue;
-        // Short distances hold what rounding the coordinates leaves.
+        // Short distances are limited by the rounding of coordinates.
         const double scale = std::max(std::fabs(a), kShortest * largest(rays[k].origin));
         const double relative = has_a && has_b ? std::fabs(a - b) / std::max(scale, 1e-30) : 0;
         if (has_a && has_b && relative <= kSameDepth) {
@@ -117,7 +116,7 @@ Answers find_nearest(const EmbreeScene& embree, EmbreeWay way, std::span<const R
     return answers;
 }
 
-/// For rays that ask for any hit: those whose answers differ, once more for the nearest one.
+/// Any-hit rays with different answers are traced again for the closest hit.
 std::vector<Ray> list_disputed(const PeerRays& set, const std::vector<uint8_t>& a,
                                const std::vector<uint8_t>& b) {
     std::vector<Ray> rays;
@@ -145,7 +144,7 @@ Agreement compare_with_embree(const TracerProbe& probe, const EmbreeScene& embre
     result.hits = own.hit_count;
     const std::vector<Ray> disputed = list_disputed(set, own.occluded, theirs.occluded);
     compare(disputed, find_nearest(probe, disputed), find_nearest(embree, way, disputed), result);
-    // What is left contradicts the nearest hit of its own program.
+    // The remaining answers contradict the closest hit of the same program.
     result.missed += disputed.size() - std::min<uint64_t>(disputed.size(), result.differences());
     return result;
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<int, 3> kWidths = {1, 8, 16};
 
-/// One way to answer a set of rays, and what it is called in the results.
+/// One method to trace a set of rays, and its name in the results.
 struct CastWay {
     Value labels;
     Measure measure;
@@ -55,7 +55,7 @@ class CastMeasure {
     }
 
   private:
-    /// Relief once more, otherwise set.
+    /// Relief with other settings.
     struct Variant {
         RenderSettings settings;
         std::string isa;
@@ -85,7 +85,7 @@ class CastMeasure {
             add(compare_with_tessellated(probe_, tessellated, find_rays(sets_, name)));
     }
 
-    /// After all kinds of rays have been traced, so that what they ask for is built.
+    /// After all kinds of rays have been traced, so that all patch trees are built.
     Value describe_memory() const {
         const ProbeCounts counts = probe_.count();
         Value memory = {{"patches", counts.patches},
@@ -117,7 +117,7 @@ class CastMeasure {
                 [&probe, &set] { return probe.trace(set.rays, set.kind, RayGrouping::packets).seconds; }};
     }
 
-    /// The engine's own way for what the camera sees, its cache full, or empty at the start of each frame.
+    /// Frames by the engine's own camera path, with a full cache, or an empty one at the start of each frame.
     void add_frames(const RenderSettings& settings, const std::string& isa, std::vector<CastWay>& ways) {
         frame_probes_.push_back(std::make_unique<TracerProbe>(scene_.scene, settings));
         TracerProbe& probe = *frame_probes_.back();
@@ -186,7 +186,7 @@ class CastMeasure {
     const std::vector<PeerRays>& sets_;
     std::vector<BuiltWay> built_;
     std::vector<Variant> variants_;
-    std::vector<std::unique_ptr<TracerProbe>> frame_probes_; ///< whose caches may be emptied
+    std::vector<std::unique_ptr<TracerProbe>> frame_probes_; ///< with caches that may be cleared
 };
 
 } // namespace

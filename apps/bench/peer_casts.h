@@ -1,4 +1,4 @@
-// Warm rays: trees built, caches full, the same rays over and over; after the hits were compared.
+// Warm rays: trees built, caches full, the same rays repeatedly, after comparing the hits.
 #pragma once
 
 #include <vector>
@@ -13,10 +13,10 @@ struct PeerCasts {
     Value agreements; ///< a list of describe_agreement
     Value casts;      ///< a list of {rays, kind, count, hits, ways: [{program, way, call,
                       ///< threads, isa, seconds, rays_per_s}]}
-    Value memory;     ///< bytes a patch and a micro-quad of both
+    Value memory;     ///< bytes per patch and per micro-quad of both
 };
 
-/// Compares all hits first. Throws Error{failed} where they differ too much.
+/// Compares all hits first. Throws Error{failed} if they differ too much.
 PeerCasts measure_casts(const PeerScene& scene, const TracerProbe& probe, const std::vector<PeerRays>& sets);
 
 } // namespace relief::bench

@@ -63,7 +63,7 @@ class ColdMeasure {
             add(way, "peak_resident_bytes", double(*growth));
     }
 
-    /// Twice: the trees that occlusion rays ask for must not be there for diffuse rays.
+    /// Two passes: trees built for occlusion rays must not benefit diffuse rays.
     void run_relief() {
         const std::string way = "relief";
         for (const bool is_occlusion : {true, false}) {
@@ -116,10 +116,10 @@ class ColdMeasure {
 
     const PeerScene& scene_;
     const PeerRays &primary_, &occlusion_, &diffuse_;
-    TracerProbe surface_; ///< what Embree is given, ready before its clock starts
+    TracerProbe surface_; ///< input of Embree, prepared before its timer starts
     std::map<std::string, Record> records_;
     bool is_counting_ = false;
-    /// Hits go to the same memory in every run: it is no part of what a program takes.
+    /// Hits go to the same memory in every run, so it does not count for any program.
     ProbeRun camera_room_, second_room_;
     EmbreeRun embree_room_;
 };

@@ -1,4 +1,4 @@
-// First images from cold: scene and maps in memory, nothing made of them yet.
+// Cold first images: scene and maps are in memory, nothing has been built.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace relief::bench {
 
 /// {relief, triangles, grid, subdivision}, each with seconds of its parts (prepare, tessellate, build,
 /// primary, occlusion, diffuse), of the images first_primary, first_occlusion and first_diffuse, bytes, and
-/// the peak of what it took resident; in turns.
+/// peak resident memory; interleaved.
 Value measure_cold(const PeerScene& scene, const std::vector<PeerRays>& sets);
 
 } // namespace relief::bench

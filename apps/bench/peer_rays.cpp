@@ -12,12 +12,12 @@ namespace relief::bench {
 
 namespace {
 
-constexpr float kLensRadius = 0.01f; ///< of the distance to what is in focus
+constexpr float kLensRadius = 0.01f; ///< relative to the focus distance
 
-/// A unit vector towards the sun: from the left, high.
+/// Unit vector towards the sun: high, from the left.
 constexpr Vec3f kToSun{-0.48f, 0.64f, 0.6f};
 
-/// Numbers of the random directions: sets of rays share none.
+/// First random number of each set of rays; the sets share none.
 constexpr uint32_t kOcclusionNumbers = 0x40000000u, kBounceNumbers = 0x04000000u;
 
 float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -34,7 +34,7 @@ Camera make_pinhole_camera(Camera camera) {
     return camera;
 }
 
-/// The point with its normal on the side that the ray came from.
+/// The point with its normal on the ray's side.
 ProbePoint find_seen_point(const TracerProbe& probe, const ProbeHit& hit, const Ray& ray) {
     ProbePoint point = probe.find_point(hit);
     if (dot(point.normal, ray.direction) > 0)
@@ -52,7 +52,7 @@ PeerRays make_sun_rays(const TracerProbe& probe, const PeerRays& from, const std
     return set;
 }
 
-/// `first_number` of the random directions.
+/// `first_number`: first random number of the directions.
 void add_cosine_rays(const TracerProbe& probe, const PeerRays& from, const std::vector<ProbeHit>& hits,
                      uint32_t first_number, PeerRays& set) {
     for (size_t k = 0; k < hits.size(); ++k) {

@@ -1,4 +1,4 @@
-// What is measured of one scene at one level.
+// A scene at one level, as measured.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct PeerScene {
     std::string name; ///< with the level
     RenderSettings settings;
     int runs;
-    bool has_triangles; ///< of Embree: false where they would need too much memory
+    bool has_triangles; ///< of Embree; false if they need too much memory
     const Report& report;
 };
 

@@ -23,7 +23,7 @@ namespace {
 constexpr float kRough = 1, kMild = 0.3f;
 constexpr const char* kParty = "party";
 
-/// Of Embree's triangles with their buffers, measured; Relief's tessellated surface takes less.
+/// Bytes of Embree's triangles with their buffers, measured; Relief's tessellated surface needs less.
 constexpr uint64_t kTessellatedBytesPerQuad = 200;
 
 struct NamedScene {
@@ -43,7 +43,7 @@ std::vector<NamedScene> list_scenes() {
     return scenes;
 }
 
-/// One suite in the making.
+/// State of a running suite.
 class Peers {
   public:
     Peers(const PeersOptions& options, const Report& report) : options_(options), report_(report) {
@@ -57,7 +57,7 @@ class Peers {
     Value run() {
         check_scenes();
         begin();
-        // First, while the process has held nothing else.
+        // First, before the process has held anything else.
         if (is_asked_for(kParty)) measure_party();
         for (const NamedScene& named : list_scenes())
             if (is_asked_for(named.name)) measure_levels(named.name, named.make());
@@ -136,7 +136,7 @@ class Peers {
         result_["scenes"].push_back(std::move(entry));
     }
 
-    /// Relief's own paths, all surfaces white: seconds a ray by depth.
+    /// Relief's own paths with white materials: seconds per ray by depth.
     Value measure_bounces(const PeerScene& peer) const {
         RenderSettings settings = peer.settings;
         settings.image.bounces = kPeerBounces;

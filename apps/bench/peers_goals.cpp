@@ -17,7 +17,7 @@ constexpr double kColdPrimary = 12, kColdPrimaryTriangles = 60, kColdSecond = 3,
 constexpr double kPinhole = 5, kCoherent = 2, kIncoherent = 1.7, kIncoherentGrid = 2.3;
 constexpr double kDepthRatio = 1.3, kTwoThreads = 1.9, kAvx2 = 0.7;
 
-/// Ratio of a goal that nothing is to be left, where nothing is.
+/// Ratio of a goal of 0 that was reached.
 constexpr double kReachedFully = 1;
 
 std::optional<double> get_median(const Value& parts, const char* part) {
@@ -25,7 +25,7 @@ std::optional<double> get_median(const Value& parts, const char* part) {
     return parts[part]["median"].get<double>();
 }
 
-/// What a cast's way is looked up by; an empty label or threads of 0 fit any.
+/// Key of a way of a cast; an empty label or 0 threads match any.
 struct WayKey {
     std::string_view program, way, call, isa;
     int threads;
@@ -53,7 +53,7 @@ class GoalList {
         if (reached)
             add(name, goal, *reached, "at most", *reached > 0 ? goal / *reached : kReachedFully, unit);
     }
-    /// Quotient of two measures that both have to be there.
+    /// Quotient of two measures, if both exist.
     void add_least(const std::string& name, double goal, std::optional<double> dividend,
                    std::optional<double> divisor) {
         if (!dividend || !divisor || *divisor <= 0) return;
@@ -154,8 +154,8 @@ void add_bounce_goal(const Value& bounces, GoalList& goals) {
         goals.add_most("bounce 5 against bounce 1, time a ray", kDepthRatio, *last / *first, "times");
 }
 
-/// Rays that differ from Embree's triangles elsewhere than at edges or where they graze, or from the
-/// tessellated surface at all.
+/// Rays that differ from Embree's triangles other than at edges or at grazing angles, or from the tessellated
+/// surface at all.
 void add_agreement_goal(const Value& agreements, GoalList& goals) {
     double unexplained = 0;
     bool has_any = false;

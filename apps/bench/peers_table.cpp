@@ -14,7 +14,7 @@ std::string get_column(const Value& goal) {
     return fmt::format("{}, {}", goal["scene"].get<std::string>(), goal["level"].get<std::string>());
 }
 
-/// In the order in which they come.
+/// In order of appearance.
 template <class Get> std::vector<std::string> list_distinct(const Value& goals, Get get) {
     std::vector<std::string> names;
     for (const Value& goal : goals)

@@ -12,7 +12,7 @@ namespace relief::bench {
 
 namespace {
 
-/// A line of /proc/self/status, given in KiB.
+/// A value of /proc/self/status, in KiB.
 std::optional<uint64_t> read_status(const std::string& key) {
     std::ifstream stream("/proc/self/status");
     std::string word;
@@ -24,7 +24,7 @@ std::optional<uint64_t> read_status(const std::string& key) {
     return std::nullopt;
 }
 
-/// Linux sets the peak back to what is resident now (proc(5), clear_refs).
+/// Resets the peak to the current resident size (proc(5), clear_refs).
 bool reset_peak() {
     std::ofstream stream("/proc/self/clear_refs");
     stream << "5" << std::flush;

@@ -1,4 +1,4 @@
-// What this process has resident, and the most that something of it took.
+// Resident memory of this process and its peak over a scope.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 
 namespace relief::bench {
 
-/// Counts from its construction on. Memory that was freed before is given back to the system first.
+/// Starts at construction, after returning freed memory to the system.
 class ResidentMeter {
   public:
     ResidentMeter();
-    /// Most bytes resident since then above what was resident then; nothing where the system does not tell.
+    /// Peak resident bytes above the size at construction; nullopt if unknown.
     std::optional<uint64_t> growth() const;
 
   private:

@@ -27,7 +27,7 @@ namespace relief::bench {
 
 namespace {
 
-/// The settings for a suite whose pictures are of that size unless the command says otherwise.
+/// Settings of a suite with this default picture size.
 RenderSettings make_settings(const BenchOptions& o, int width, int height) {
     RenderSettings settings = o.settings;
     std::tie(settings.image.width, settings.image.height) = o.size.value_or(std::pair(width, height));
@@ -44,7 +44,7 @@ std::vector<std::string> check_scenes(const BenchOptions& o, const std::vector<s
     return o.scenes.empty() ? all : o.scenes;
 }
 
-/// Meshes of files come with a camera; they are measured under the sun of our own scenes.
+/// Mesh files get an automatic camera and the sun of our own scenes.
 std::vector<Scene> load_meshes(const BenchOptions& o) {
     std::vector<Scene> scenes;
     for (const std::string& file : o.meshes) {
@@ -58,7 +58,7 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
     return scenes;
 }
 
-/// What all suites have in common once their options are known.
+/// Common part of all suites, after parsing.
 template <class Options>
 SuiteResult run_suite(const BenchOptions& o, Options options, const Report& report,
                       Value (*run)(const Options&, const Report&), Table (*make_table)(const Value&)) {
@@ -93,7 +93,7 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_paper3, make_paper3_table);
 }
 
-/// Scenes of its own, rendered by the command `relief` that lies beside this program.
+/// Own scenes, rendered by the command `relief` beside this program.
 SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
     CyclesOptions options;
     options.settings = make_settings(o, 1280, 720);
@@ -104,7 +104,7 @@ SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_cycles, make_cycles_table);
 }
 
-/// The CPU engine, a scene of its own.
+/// CPU engine, own scene.
 SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     EditsOptions options;
     options.settings = make_settings(o, 1280, 720);
@@ -113,7 +113,7 @@ SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
 }
 
 #ifdef RELIEF_EMBREE
-/// One thread of the CPU engine; its own meshes are always measured.
+/// CPU engine, one thread; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
     TrianglesOptions options;
     options.isa = o.settings.device.isa;
@@ -121,7 +121,7 @@ SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_triangles, make_triangles_table);
 }
 
-/// Scenes of files take the place of the suite's own, unless those are asked for as well.
+/// Scene files replace the suite's own scenes, unless those are requested as well.
 SuiteResult run_peers_suite(const BenchOptions& o, const Report& report) {
     PeersOptions options;
     const RenderSettings settings = make_settings(o, options.width, options.height);

@@ -1,4 +1,4 @@
-// The suites by name: what each is called, which options it takes, how it is run.
+// The suites: name, supported options, and how to run them.
 #pragma once
 
 #include <string>
@@ -19,16 +19,16 @@ struct SuiteResult {
 struct Suite {
     std::string_view name, help;
     SuiteResult (*run)(const BenchOptions& options, const Report& report);
-    std::vector<std::string_view> options; ///< those that not every suite has
+    std::vector<std::string_view> options; ///< supported options that not every suite has
 };
 
-/// Throws Error{usage} with the nearest name where there is no such suite.
+/// Throws Error{usage} with the nearest name for an unknown suite.
 const Suite& find_suite(const std::string& name);
 
-/// All suites, each with its help, in one line.
+/// All suites with their help, in one line.
 std::string describe_suites();
 
-/// Throws Error{usage} where an option was given that the suite does not have.
+/// Throws Error{usage} for given options that the suite does not support.
 void refuse_options_of_others(const Suite& suite, const BenchOptions& options);
 
 } // namespace relief::bench

@@ -12,7 +12,7 @@ namespace {
 
 using Cells = std::vector<Value>;
 
-/// Adds `cells` and what is left of the row.
+/// Adds `cells` and fills up the row.
 void add_row(Table& table, Cells cells, std::initializer_list<Value> rest) {
     cells.insert(cells.end(), rest.begin(), rest.end());
     table.rows.push_back(std::move(cells));
@@ -23,7 +23,7 @@ void add_summary(Table& table, const Cells& cells, const std::string& measure, c
     add_row(table, cells, {measure, unit, summary["median"], summary["lowest"], summary["highest"]});
 }
 
-/// A single number: it has no spread.
+/// A single number without spread.
 void add_number(Table& table, const Cells& cells, const std::string& measure, const char* unit,
                 const Value& number) {
     add_row(table, cells, {measure, unit, number, {}, {}});
@@ -46,7 +46,7 @@ void add_memory_row(Table& table, const Value& row) {
 
 void add_frames(Table& table, const char* part, const Value& scene) {
     for (const Value& variant : scene["variants"]) {
-        if (!variant.contains("frame_s")) continue; // refused
+        if (!variant.contains("frame_s")) continue; // rejected
         const Cells cells = {part, scene["scene"], variant["name"], {}, {}};
         add_summary(table, cells, "frame", "s", variant["frame_s"]);
         add_summary(table, cells, "prepare", "s", variant["prepare_s"]);
@@ -85,7 +85,7 @@ void add_tree_cast(Table& table, const std::string& mesh, const Value& cast) {
     add_number(table, cells, "bytes_a_ray", "bytes", cast["bytes_a_ray"]);
 }
 
-/// Where the measure tells the unit by its name.
+/// Unit from the name of the measure.
 void add_named(Table& table, const Cells& cells, const std::string& measure, const Value& summary) {
     add_row(table, cells, {measure, summary["median"], summary["lowest"], summary["highest"]});
 }

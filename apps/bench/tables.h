@@ -1,4 +1,4 @@
-// The table of each suite's result: one measure a row.
+// Result tables of the suites, one measure per row.
 #pragma once
 
 #include "common/report.h"

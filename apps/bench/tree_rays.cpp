@@ -20,7 +20,7 @@ Vec3f cross(const Vec3f& a, const Vec3f& b) {
 }
 Vec3f make_unit(const Vec3f& a) { return scale(a, 1 / std::sqrt(dot(a, a))); }
 
-/// A fraction in [0, 1) from a number (finaliser of MurmurHash3).
+/// Hash to [0, 1) (finaliser of MurmurHash3).
 float make_fraction(uint32_t number) {
     number = (number ^ number >> 16) * 0x85ebca6bu;
     number = (number ^ number >> 13) * 0xc2b2ae35u;
@@ -89,7 +89,7 @@ std::vector<RaySet> make_secondary_rays(const Mesh& mesh, const RaySet& primary,
         const auto& [a, b, c] = triangles.at(hits[k].primitive);
         const Vec3f &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
         Vec3f normal = cross(subtract(q, p), subtract(r, p));
-        // A triangle so thin that it has no normal has no rays.
+        // Degenerate triangles without a normal spawn no rays.
         if (!(dot(normal, normal) > 1e-30f)) continue;
         normal = make_unit(normal);
         const Ray& seen = primary.rays[k];

@@ -1,4 +1,4 @@
-// Rays of the kinds that papers on structures measure, from a camera and from where its rays end.
+// Kinds of rays measured in papers on acceleration structures, from a camera and from its hits.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@ struct RaySet {
     HitKind kind = HitKind::closest;
     std::vector<Ray> rays;
     std::vector<uint32_t>
-        parents; ///< of each ray the primary ray whose hit it starts at; empty for primary rays
+        parents; ///< index of the primary ray whose hit each ray starts at; empty for primary rays
 };
 
-/// Corners of each triangle, faces cut into fans in their order: the numbers of a TreeHit.
+/// Corners of each triangle, faces as fans in order; indexed by TreeHit::primitive.
 std::vector<std::array<uint32_t, 3>> list_triangles(const Mesh& mesh);
 
-/// One ray through the middle of each pixel, row by row, through a pinhole.
+/// One pinhole ray through the centre of each pixel, row by row.
 RaySet make_primary_rays(const Camera& camera, int width, int height);
 
-/// By the cosine about a unit normal, the same for the same number.
+/// Cosine-distributed direction about a unit normal; a function of the number.
 Vec3f draw_cosine_direction(const Vec3f& normal, uint32_t number);
 
 /// From each hit of the primary rays: a shadow ray along `to_light`, an occlusion ray of a tenth of the
-/// mesh's diagonal, and a diffuse ray; the latter two by the cosine about the normal on the side of the ray,
-/// the same for every run.
+/// mesh's diagonal, and a diffuse ray; the latter two cosine distributed about the normal on the ray's side;
+/// deterministic.
 std::vector<RaySet> make_secondary_rays(const Mesh& mesh, const RaySet& primary,
                                         const std::vector<TreeHit>& hits, const Vec3f& to_light);
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTraceGoal = 1.2, kBuildGoal = 1.5;
 
-/// Distances this close count as one hit: relative, and below distance 1 absolute.
+/// Distance tolerance of equal hits: relative, below distance 1 absolute.
 constexpr double kSameDistance = 1e-5;
 
 bool has_area(const Vec3f& p, const Vec3f& q, const Vec3f& r) {
@@ -29,7 +29,7 @@ bool has_area(const Vec3f& p, const Vec3f& q, const Vec3f& r) {
     return x * x + y * y + z * z > 0;
 }
 
-/// Corners of faces are few; a fan does. What has no area is left out.
+/// Triangulates faces as fans, without degenerate triangles.
 Mesh cut_into_triangles(const Mesh& mesh) {
     Mesh result;
     result.name = mesh.name, result.source = mesh.source;
@@ -48,7 +48,7 @@ Mesh cut_into_triangles(const Mesh& mesh) {
     return result;
 }
 
-/// Rays that met another triangle at another distance.
+/// Rays that hit another triangle at another distance.
 size_t count_differences(std::span<const TreeHit> a, std::span<const TreeHit> b) {
     size_t count = 0;
     for (size_t k = 0; k < a.size(); ++k) {
@@ -77,7 +77,7 @@ RenderSettings make_settings(const TrianglesOptions& options) {
     return settings;
 }
 
-/// Both programs with the tree of one mesh.
+/// Both programs with a tree over one mesh.
 struct Contest {
     const Mesh& mesh;
     EmbreeScene fast, robust;

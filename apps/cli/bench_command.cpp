@@ -1,4 +1,4 @@
-// bench: hands its words to the program of the measurements, which is built and installed by itself.
+// bench: forwards its arguments to relief-bench, which is built and installed separately.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace relief::cli {
 
 namespace {
 
-/// The process becomes that program: exit code, signals and terminal are its own from then on.
+/// Replaces this process (exec), so that exit code, signals and terminal are those of the program.
 [[noreturn]] void become_bench(std::vector<std::string> words) {
     std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
     program.replace_filename("relief-bench");
@@ -34,7 +34,7 @@ namespace {
 } // namespace
 
 Command add_bench(CLI::App& verb) {
-    verb.set_help_flag(); // relief-bench answers --help
+    verb.set_help_flag(); // relief-bench handles --help
     verb.prefix_command();
     return [&verb]() -> int { become_bench(verb.remaining()); };
 }

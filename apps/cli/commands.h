@@ -12,7 +12,7 @@ Command add_scene(CLI::App& verb);
 Command add_compare(CLI::App& verb);
 Command add_merge(CLI::App& verb);
 Command add_devices(CLI::App& verb);
-/// All words after `bench` go to the program relief-bench, which takes the place of this one.
+/// All arguments after `bench` go to the program relief-bench, which replaces this process.
 Command add_bench(CLI::App& verb);
 
 /// Parses the command line, runs its verb, reports errors on stderr. Returns the exit code.

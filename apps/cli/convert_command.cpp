@@ -56,7 +56,7 @@ std::string format_factors(const Vec3f& v) {
     return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("{:g},{:g},{:g}", v.x, v.y, v.z);
 }
 
-/// What to tell the program that reads the new map.
+/// How the reading program must interpret the new map.
 std::string describe(const Displacement& map) {
     const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
                         : map.space == DisplacementSpace::object ? "object"
@@ -71,15 +71,14 @@ std::string describe(const Displacement& map) {
                        format_factors(map.scale), map.flip_v ? " --flip-v" : "");
 }
 
-/// Two digits, not below `value`.
+/// Rounds up to two significant digits.
 float round_up(float value) {
     if (!(value > 0)) return 1;
     const double step = std::pow(10.0, std::floor(std::log10(double(value))) - 1);
     return float(std::ceil(double(value) / step - 1e-6) * step);
 }
 
-/// The meaning of the new map: what is said, and for the rest that of the old one; integers take what they
-/// can hold.
+/// Convention of the new map: as given, else that of the old one; for integer formats a scale that fits.
 Displacement make_target(const ConvertOptions& options, const Displacement& from, const Mesh* mesh,
                          MapSamples samples) {
     MapOptions said = options.to;

@@ -1,7 +1,7 @@
 // Edits of displacement maps as lines of text, one JSON object a line:
 //   {"displacement": "skin", "tile": 1001, "at": [column, row], "texels": "part.exr", "output": "next.exr"}
-// `displacement` may be left out where the scene has one, `tile` where it is 1001, `output` where no picture
-// is wanted yet. Paths are relative to the folder in which the command runs.
+// `displacement` is optional if the scene has only one, `tile` if it is 1001, `output` if no picture is
+// needed yet. Paths are relative to the working directory.
 #pragma once
 
 #include <filesystem>
@@ -16,20 +16,21 @@ namespace relief::cli {
 
 struct EditLine {
     MapEdit edit;
-    std::filesystem::path output; ///< empty: none yet
+    std::filesystem::path output; ///< empty: no picture yet
     double read_s = 0;            ///< from the arrival of the line
 };
 
-/// Reads edits as they come. Errors name `source` and the line.
+/// Reads edits as they arrive. Errors name `source` and the line.
 class EditStream {
   public:
-    /// `only_displacement`: name of the scene's displacement, where it has one; the stream must outlive this.
+    /// `only_displacement`: name of the scene's displacement, if it has exactly one. The stream must outlive
+    /// this object.
     EditStream(std::istream& lines, std::string source, std::string only_displacement);
 
-    /// The next one, its texels read; nothing at the end. Throws Error{bad_input}, and as read_texture.
+    /// The next edit with its texels; nullopt at the end. Throws Error{bad_input}, and as read_texture.
     std::optional<EditLine> next();
 
-    /// Calls `body`; an Error from it gets the place of the line read last.
+    /// Calls `body`; adds the position of the last line to its Errors.
     template <class Body> void with_place(const Body& body) const {
         try {
             body();

@@ -36,7 +36,7 @@ void keep_files(const std::vector<std::string>& files, const std::filesystem::pa
     if (output.empty()) return;
     const std::filesystem::path place = find_place(output);
     for (const std::string& file : files) {
-        std::error_code ignored; // of names that are no files
+        std::error_code ignored; // names that are not files
         if (file.empty() || file == "-") continue;
         if (find_place(file) == place || std::filesystem::equivalent(file, output, ignored))
             refuse_output(output);

@@ -1,4 +1,4 @@
-// Files that a command reads: what it writes never takes their place.
+// Input files of a command, which its output must never overwrite.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 
 namespace relief::cli {
 
-/// Files that a scene was read from, as far as they are known: its own, meshes, maps, textures.
+/// Files that a scene was read from, as far as known: scene file, meshes, maps, textures.
 std::vector<std::string> list_files(const Scene& scene);
 
-/// Where a file is or would be, without links in its folder: names with <UDIM> are no files.
+/// Path of an existing or future file with symbolic links of its folder resolved; names with <UDIM> are not
+/// files.
 std::filesystem::path find_place(const std::filesystem::path& file);
 
-/// Throws Error{usage}: `output` is read as well.
+/// Throws Error{usage}: `output` is also an input.
 [[noreturn]] void refuse_output(const std::filesystem::path& output);
 
-/// Throws Error{usage} where `output`, which may be empty, is one of the files, under whatever name. Files
-/// may be empty, or "-" for standard input.
+/// Throws Error{usage} if `output`, which may be empty, is the same file as an input. Inputs may be empty, or
+/// "-" for standard input.
 void keep_files(const std::vector<std::string>& files, const std::filesystem::path& output);
 
 } // namespace relief::cli

@@ -1,4 +1,4 @@
-// inspect: what a scene, a mesh or a map is, what it costs, what is wrong with it.
+// inspect: properties, cost and problems of a scene, mesh or map.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -29,9 +29,9 @@ namespace {
 
 struct InspectOptions {
     std::string file, mesh, picture;
-    MeshSceneOptions scene;             ///< its `map` is also what a map alone means
-    std::vector<std::string> mesh_only; ///< options given that only a mesh takes
-    std::vector<std::string> map_only;  ///< options given that only a map takes, or the mesh of one
+    MeshSceneOptions scene;             ///< its `map` also applies to a map alone
+    std::vector<std::string> mesh_only; ///< given options that only meshes support
+    std::vector<std::string> map_only;  ///< given options that only maps, or meshes with a map, support
     bool is_json = false, is_strict = false;
 };
 
@@ -54,7 +54,7 @@ std::string get_severity_name(Severity severity) {
     return "error";
 }
 
-/// Facts and findings of a mesh after those of its map.
+/// Appends facts and findings of a mesh to those of its map.
 void append(Inspection mesh, Inspection& map) {
     for (Fact& fact : mesh.facts) map.facts.push_back({"mesh." + fact.name, std::move(fact.value)});
     for (Finding& finding : mesh.findings) {
@@ -75,7 +75,7 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
     if (file.empty()) return;
     keep_files(list_files(scene), file);
     write_image(make_check_picture(scene, settings), file);
-    // Not where the facts go, which programs read.
+    // On stderr: stdout is machine readable.
     fmt::print(stderr, "wrote {}\n", file);
 }
 
@@ -131,7 +131,7 @@ Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
     return inspection;
 }
 
-/// What the mesh is, then what a render makes of it, but for what the mesh has said already.
+/// Facts of the mesh, then those of the scene that a render would make of it, without duplicates.
 Inspection inspect_mesh_as_rendered(const InspectOptions& options) {
     const Scene scene = load_mesh_scene(options.file, options.scene);
     Inspection inspection = inspect_mesh(scene.meshes.front());
@@ -162,7 +162,7 @@ Inspection inspect_file(const InspectOptions& options) {
     return inspect_as_scene(load_scene(options.file), options);
 }
 
-/// For programs that read the answer: what cannot be read is a finding, too.
+/// JSON readers get an unreadable input as a finding.
 Inspection inspect_or_report(const InspectOptions& options) {
     try {
         return inspect_file(options);

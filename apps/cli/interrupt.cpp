@@ -12,11 +12,11 @@ namespace relief::cli {
 
 namespace {
 
-// The only globals of the command: a signal handler has no other way to tell.
+// The only globals of the command; a signal handler needs them.
 std::atomic<int> caught_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch lock-free atomics only");
 
-std::atomic<int64_t> caught_at{0}; ///< milliseconds of a steady clock; 0: not yet
+std::atomic<int64_t> caught_at{0}; ///< steady clock, milliseconds; 0: no signal yet
 static_assert(std::atomic<int64_t>::is_always_lock_free);
 
 int64_t get_milliseconds() {
@@ -25,7 +25,7 @@ int64_t get_milliseconds() {
     return int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1000000;
 }
 
-/// Keys that are struck twice at once mean what one stroke means: the picture is written.
+/// A quick double stroke counts as one: the picture is written.
 extern "C" void note_signal(int signal) {
     constexpr int64_t kTogether = 500;
     const int64_t now = get_milliseconds();
@@ -39,7 +39,7 @@ extern "C" void note_signal(int signal) {
 } // namespace
 
 void catch_interrupts() {
-    // What a shell has its background jobs ignore stays ignored.
+    // Signals ignored by the parent, as for background jobs, stay ignored.
     for (const int signal : {SIGINT, SIGTERM})
         if (std::signal(signal, note_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }

@@ -1,13 +1,13 @@
-// Ctrl-C and SIGTERM while a picture is made: the first asks for an orderly end, a second ends at once,
-// unless it comes within half a second.
+// Ctrl-C and SIGTERM during a render: the first signal cancels, a second one terminates immediately unless it
+// follows within half a second.
 #pragma once
 
 namespace relief::cli {
 
-/// From here on the first SIGINT or SIGTERM is only noted. Call it when there is something worth saving.
+/// From now on the first SIGINT or SIGTERM is only recorded. Call once there is something to save.
 void catch_interrupts();
 
-/// The signal that was caught, 0 for none. Any thread.
+/// The caught signal, 0 for none. Thread safe.
 int get_interrupt();
 
 } // namespace relief::cli

@@ -27,7 +27,7 @@ Vec3f parse_factors(const std::string& option, const std::string& text) {
 
 namespace {
 
-/// Adds options of one place.
+/// Adds options with one prefix.
 class MapOptionAdder {
   public:
     MapOptionAdder(CLI::App& verb, const MapOptionPlace& place) : verb_(verb), place_(place) {}

@@ -1,4 +1,4 @@
-// Options that say what a displacement map means, for every verb that reads one.
+// Options for the convention of a displacement map, shared by all verbs that read one.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace relief::cli {
 
-/// Where the options stand in the help, and who is told which of them were given.
+/// Help group and prefix of the options, and the list that records given ones.
 struct MapOptionPlace {
     std::string group;
-    std::string preset = "--preset";           ///< names of the option for the preset
-    std::string prefix;                        ///< of the other names: "to-" makes --to-axes
+    std::string preset = "--preset";           ///< name of the preset option
+    std::string prefix;                        ///< prefix of the other names: "to-" gives --to-axes
     std::vector<std::string>* given = nullptr; ///< may be null
 };
 
-/// Adds the option for the preset, --type, --space, --axes, --encoding, --midlevel, --vdm-scale, --wrap and
-/// --flip-v; with a prefix --PREFIXscale for the scale, and no wrap. `options` and `place.given` must outlive
-/// the parsing.
+/// Adds the preset option, --type, --space, --axes, --encoding, --midlevel, --vdm-scale, --wrap and --flip-v;
+/// with a prefix the scale is --PREFIXscale and there is no --wrap. `options` and `place.given` must outlive
+/// parsing.
 void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& place);
 
 /// "F" or "F,F,F". Throws Error{usage}.

@@ -1,4 +1,4 @@
-// Options that say what a mesh is rendered with that comes without a scene file, for the verbs that take one.
+// Options for rendering a mesh without a scene file, for the verbs that accept one.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace relief::cli {
 
-/// Adds --vdm, --subdivision, --subdivision-level, --filter, --autobump and --no-dilate. Those that are given
-/// are added to `given`; what they refer to must outlive the parsing.
+/// Adds --vdm, --subdivision, --subdivision-level, --filter, --autobump and --no-dilate. Given options are
+/// appended to `given`; all arguments must outlive parsing.
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given);
 
-/// Throws Error{usage} for options that say nothing without another one.
+/// Throws Error{usage} for options that have no effect without another one.
 void check_mesh_options(const MeshSceneOptions& options);
 
-/// The same for those that say what a map means.
+/// The same for options of the map convention.
 void check_map_options(const MeshSceneOptions& options);
 
 } // namespace relief::cli

@@ -1,4 +1,4 @@
-// Finished pictures are not lost: where the place asked for fails at the end, another is tried.
+// Finished pictures are not lost: if the requested path fails at the end, fallbacks are tried.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ namespace relief::cli {
 using ImageWriter = std::function<void(const Image&, const std::filesystem::path&)>;
 
 struct Saved {
-    std::filesystem::path file; ///< where the picture is
-    bool is_elsewhere = false;  ///< not where it was asked for
+    std::filesystem::path file; ///< actual path of the picture
+    bool is_elsewhere = false;  ///< differs from the requested path
 };
 
-/// Folders tried in turn when the place asked for fails: the system's temporary folder, the home directory.
+/// Fallback folders, in order: the system's temporary folder, the home directory.
 std::vector<std::filesystem::path> get_fallback_folders();
 
-/// Writes to `file`; when that throws, the same file name in each fallback folder, where nothing is
-/// overwritten. Tells on stderr what happened. Rethrows the first failure when no place works.
+/// Writes to `file`; if that throws, to the same file name in each fallback folder without overwriting
+/// anything. Reports on stderr. Rethrows the first error if everything fails.
 Saved save_with_fallback(const Image& image, const std::filesystem::path& file,
                          const std::vector<std::filesystem::path>& fallback_folders,
                          const ImageWriter& write);

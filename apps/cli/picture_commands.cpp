@@ -1,4 +1,4 @@
-// compare and merge: what is done with finished pictures.
+// compare and merge.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -50,7 +50,7 @@ int run_compare(const CompareOptions& options) {
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
 
-/// Those of the window that no part has samples of.
+/// Pixels of the window without samples in any part.
 size_t count_empty_pixels(const Image& image) {
     const std::optional<size_t> samples = image.find_channel("samples.Y");
     if (!samples) return 0;

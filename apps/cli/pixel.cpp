@@ -10,7 +10,7 @@ namespace relief::cli {
 
 namespace {
 
-// The command sees the public values only; these few lines are all the arithmetic it needs.
+// The command uses the public value types only; this is all the arithmetic it needs.
 Vec3f add_scaled(const Vec3f& a, const Vec3f& b, float s) {
     return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }

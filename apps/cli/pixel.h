@@ -1,4 +1,4 @@
-// One pixel, explained: what its centre ray hits and what colour it gets.
+// Explains one pixel: what its centre ray hits, and its colour.
 #pragma once
 
 #include "relief/intersect.h"
@@ -7,10 +7,10 @@
 
 namespace relief::cli {
 
-/// Ray through the centre of pixel (x, y) of a picture, lens closed; direction of unit length.
+/// Pinhole ray through the centre of pixel (x, y); direction of unit length.
 Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y);
 
-/// Prints object, patch, position on it, t, normal and colour of a pixel on stdout.
+/// Prints object, patch, patch uv, t, normal and colour of a pixel on stdout.
 void explain_pixel(const Scene& scene, const RenderSettings& settings, int x, int y);
 
 } // namespace relief::cli

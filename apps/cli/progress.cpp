@@ -25,7 +25,7 @@ double compute_rays_per_second(const Progress& progress) {
     return progress.elapsed_s > 0 ? double(progress.rays) / progress.elapsed_s : 0;
 }
 
-/// Seconds still to go at the speed so far; negative while nothing is known.
+/// Estimated seconds left; negative if unknown.
 double compute_left(const Progress& progress) {
     return progress.fraction > 0 ? progress.elapsed_s * (1 - progress.fraction) / progress.fraction : -1;
 }
@@ -78,7 +78,7 @@ void ProgressPrinter::on_progress(const Progress& progress) {
 
 void ProgressPrinter::print_bar(const Progress& progress) {
     const int filled = int(progress.fraction * kBarWidth);
-    // "\x1b[K" clears what a longer line left behind.
+    // "\x1b[K" clears the rest of a longer previous line.
     fmt::print(stderr, "\r[{:<{}}] {}\x1b[K", std::string(size_t(filled), '#'), kBarWidth,
                format_progress(progress));
     std::fflush(stderr);

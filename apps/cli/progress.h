@@ -1,4 +1,4 @@
-// How far a render has come, on stderr: a bar for people, lines for logs, JSON for programs.
+// Progress of a render on stderr: a bar for terminals, lines for logs, JSON for programs.
 #pragma once
 
 #include <chrono>
@@ -10,17 +10,17 @@ namespace relief::cli {
 
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
-/// One line without its end: percent, samples, rays a second, elapsed, time left.
+/// One line without newline: percent, samples, rays per second, elapsed time, time left.
 std::string format_progress(const Progress& progress);
 
 /// The same as one JSON object: percent, samples, samples_total, rays, rays_per_second, elapsed_s, left_s.
 std::string format_progress_json(const Progress& progress);
 
-/// Prints what the renderer tells it and passes on Ctrl-C.
+/// Prints progress and cancels the render on Ctrl-C.
 class ProgressPrinter : public RenderObserver {
   public:
-    /// `automatic` is a bar on a terminal and lines otherwise. Lines are some seconds apart; the last one
-    /// comes where there were others before it, or where lines were asked for.
+    /// `automatic` is a bar on a terminal and lines otherwise. Lines are some seconds apart; a final one is
+    /// printed after others, or if lines were requested explicitly.
     explicit ProgressPrinter(ProgressStyle style);
     ~ProgressPrinter() override;
     ProgressPrinter(const ProgressPrinter&) = delete;
@@ -35,7 +35,7 @@ class ProgressPrinter : public RenderObserver {
     ProgressStyle style_;
     std::chrono::steady_clock::time_point last_line_;
     bool has_bar_ = false;
-    bool tells_end_; ///< of lines
+    bool tells_end_; ///< print the final line
 };
 
 } // namespace relief::cli

@@ -77,10 +77,10 @@ int get_exit_code(const RenderOptions& options, const RenderResult& result, cons
     return kExitDone;
 }
 
-/// Since when a picture has been waited for, and what of that was reading.
+/// Start of the wait for a picture, and the time spent reading.
 struct Waiting {
     double start, load_s;
-    uint64_t camera_rays = 0; ///< of pictures before: engines count on
+    uint64_t camera_rays = 0; ///< of previous pictures: engines accumulate
 };
 
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
@@ -95,12 +95,12 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     const double write_start = get_seconds();
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
     statistics.load_s = waiting.load_s;
-    statistics.first_image_s += waiting.load_s; // from the start of the command, as a person waits for it
+    statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
     if (options.is_verbose) print_summary(result, settings);
     fmt::print("wrote {}\n", saved.file.string());
-    std::fflush(stdout); // whoever sends edits waits for it
+    std::fflush(stdout); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
     return get_exit_code(options, result, saved);
@@ -112,7 +112,7 @@ template <class Make> RenderResult make_picture(const RenderOptions& options, co
     return make(&progress);
 }
 
-/// Warnings of the reader are told before the wait, those of the render after it.
+/// Warnings of the reader are printed before the render, those of the render after it.
 class Warner {
   public:
     Warner(const Scene& scene, bool is_quiet) : told_(scene.warnings.size()), is_quiet_(is_quiet) {
@@ -146,13 +146,13 @@ void print_edit(const EditReport& report) {
     fmt::print(stderr, "edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
 }
 
-/// All lines of a file, before anybody waits for the first picture. Texels are read once more when their turn
-/// comes: all of them may be more than memory holds.
+/// Checks all lines of a file before the first render. Texels are read again when needed, because all of them
+/// together may exceed memory.
 void check_edits(const std::string& path, const std::string& only_displacement, const Session& session,
                  const std::vector<std::string>& files) {
     std::ifstream file(path);
     EditStream edits(file, path, only_displacement);
-    std::set<std::filesystem::path> read, written; // there may be thousands
+    std::set<std::filesystem::path> read, written; // sets: there may be thousands
     while (const std::optional<EditLine> line = edits.next())
         edits.with_place([&] {
             session.check(line->edit);
@@ -167,7 +167,7 @@ void check_edits(const std::string& path, const std::string& only_displacement, 
         });
 }
 
-/// One picture as ever, then one after each edit that asks for it.
+/// The first picture, then one after each edit with an output.
 int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene, Waiting waiting) {
     catch_interrupts();
     std::ifstream file;
@@ -191,7 +191,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
         return exit_code;
     };
     int exit_code = show(options.output);
-    bool is_pending = false; // edits that no picture shows yet
+    bool is_pending = false; // edits not shown in a picture yet
     while (exit_code == kExitDone || exit_code == kExitWarnings) {
         const std::optional<EditLine> line = edits.next();
         if (!line) break;

@@ -23,7 +23,7 @@ template <class T> using Word = std::pair<std::string_view, T>;
 constexpr std::array<std::string_view, 10> kLayers = {"depth", "N",  "Ng",      "P",        "albedo",
                                                       "uv",    "id", "samples", "variance", "cost"};
 
-/// Adds an option whose text goes to `parse`; its value is named `value` in the help.
+/// Adds an option parsed by `parse`; its value is called `value` in the help.
 template <class Parse>
 CLI::Option* add(CLI::App& verb, const std::string& name, const char* value, const char* help, Parse parse) {
     return verb.add_option_function<std::string>(name, parse, help)->type_name(value);
@@ -221,7 +221,7 @@ void complete_render_options(RenderOptions& o) {
                     {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
                                                       : "there is no such file",
                      "--edits " + o.edits, "-: standard input, which may be a pipe"});
-    // Before the scene is read, and again with all of its files.
+    // Checked before the scene is read, and again with all of its files.
     const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
                                             o.mesh.environment.string(), o.edits};
     keep_files(files, o.output), keep_files(files, o.statistics_file);

@@ -1,4 +1,4 @@
-// What `relief render` was asked for, checked as far as that is possible without the scene.
+// Options of `relief render`, validated as far as possible without the scene.
 #pragma once
 
 #include <filesystem>
@@ -21,12 +21,12 @@ struct Tile {
 
 struct RenderOptions {
     std::filesystem::path input, output, statistics_file;
-    std::string edits; ///< file of edits to follow, "-": standard input; empty: none
+    std::string edits; ///< file of edits, "-": standard input; empty: none
     MeshSceneOptions mesh;
-    std::vector<std::string> mesh_only; ///< options given that only a mesh takes
+    std::vector<std::string> mesh_only; ///< given options that only meshes support
     EngineOptions engine;
-    RenderSettings settings; ///< of the command line; picture defaults apply where `given` is empty
-    PictureDefaults given;   ///< picture settings that the command line holds
+    RenderSettings settings; ///< from the command line; picture defaults apply where `given` is empty
+    PictureDefaults given;   ///< picture settings given on the command line
     std::optional<std::pair<int, int>> samples;
     std::optional<Tile> tile;
     std::optional<std::pair<int, int>> pixel;
@@ -34,18 +34,17 @@ struct RenderOptions {
     bool is_quiet = false, is_verbose = false, is_strict = false;
 };
 
-/// Adds the options; `options` must outlive the parsing.
+/// Adds the options; `options` must outlive parsing.
 void add_render_options(CLI::App& verb, RenderOptions& options);
 
-/// Checks what does not need the scene: files, and options that exclude each other. Fills the default output
+/// Checks everything that does not need the scene: files and conflicting options. Fills in the default output
 /// name.
 void complete_render_options(RenderOptions& options);
 
-/// Settings of the render: command line, then scene file, then defaults; crop, tile and sample range worked
-/// in.
+/// Final settings: command line, then scene file, then defaults; with crop, tile and sample range applied.
 RenderSettings make_settings(const RenderOptions& options, const PictureDefaults& picture);
 
-/// Rows of tile `tile` of a window: horizontal bands of whole rows, as equal as they can be.
+/// Tile `tile` of a window: horizontal bands of whole rows, of nearly equal height.
 Window make_tile_window(const Window& window, const Tile& tile);
 
 } // namespace relief::cli

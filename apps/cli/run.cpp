@@ -23,7 +23,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     std::vector<Verb> verbs;
     const auto add = [&](const char* name, const char* description, Command (*add_options)(CLI::App&)) {
         CLI::App* verb = app.add_subcommand(name, description);
-        verb->allow_extras(); // collected, so that the message can name the nearest option
+        verb->allow_extras(); // collected, so that the error can suggest the nearest option
         verbs.push_back({verb, add_options(*verb)});
     };
     add("render", "Render a scene file, or a mesh alone", add_render);

@@ -1,4 +1,4 @@
-// scene and devices: what there is.
+// scene and devices.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -36,7 +36,7 @@ std::string list_scenes() {
                        fmt::join(peer_scene_names(), ", "));
 }
 
-/// A sample, or one of the scenes that other renderers are compared on.
+/// A sample scene, or a scene of the renderer comparisons.
 Scene make_named_scene(const SceneOptions& options) {
     const std::vector<std::string> peers = peer_scene_names();
     if (std::find(peers.begin(), peers.end(), options.name) == peers.end())
@@ -47,13 +47,13 @@ Scene make_named_scene(const SceneOptions& options) {
     return make_peer_scene(options.name, 1, PeerWorld::sky);
 }
 
-/// All of a file; empty where there is none.
+/// Contents of a file; empty if it does not exist.
 std::string read_text(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// FILE.bak, or FILE.bak2, FILE.bak3... where that is taken.
+/// FILE.bak, or FILE.bak2, FILE.bak3... if that exists.
 std::string find_free_copy(const std::string& file) {
     std::string copy = file + ".bak";
     for (int k = 2; std::filesystem::exists(copy); ++k) copy = fmt::format("{}.bak{}", file, k);

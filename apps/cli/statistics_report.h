@@ -1,4 +1,4 @@
-// The file of `--stats`: its keys are a contract with scripts.
+// The file of `--stats`; its keys are stable, scripts depend on them.
 #pragma once
 
 #include "common/report.h"
@@ -6,7 +6,7 @@
 
 namespace relief::cli {
 
-/// All numbers of one render under their stable keys.
+/// All statistics of one render under their stable keys.
 Value describe_statistics(const RenderResult& result, const RenderSettings& settings);
 
 } // namespace relief::cli

@@ -1,4 +1,4 @@
-// CLI11's App by name alone: its header takes a compiler longer to read than any of ours.
+// Forward declaration of CLI11's App, whose header is slow to compile.
 #pragma once
 
 namespace CLI {

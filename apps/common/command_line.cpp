@@ -26,7 +26,7 @@ void report(const std::string& where, const std::string& message, const std::str
     if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
 }
 
-/// One empty line between groups of options in place of two: a help shall fit on a screen.
+/// One empty line between option groups instead of two, so that the help fits on a screen.
 class HelpFormatter : public CLI::Formatter {
   public:
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {

@@ -72,7 +72,7 @@ std::filesystem::path choose_pipeline_cache(int device) {
     namespace fs = std::filesystem;
     fs::path folder;
     const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-    if (cache && fs::path(cache).is_absolute()) // the XDG rules: a relative path counts as none
+    if (cache && fs::path(cache).is_absolute()) // XDG specification: ignore relative paths
         folder = cache;
     else if (home && *home)
         folder = fs::path(home) / ".cache";

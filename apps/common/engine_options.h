@@ -1,4 +1,4 @@
-// Which engine renders, and on which device: options of every verb that renders.
+// Engine and device options of all verbs that render.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,19 @@
 
 namespace relief::cli {
 
-/// Options given that only one engine takes.
+/// Given options that only one engine supports.
 struct EngineOptions {
     std::vector<std::string> vulkan_only, cpu_only;
 };
 
-/// Adds --engine, --device, --bottom, --threads and --isa; both structures must outlive the
-/// parsing.
+/// Adds --engine, --device, --bottom, --threads and --isa; both structures must outlive parsing.
 void add_engine_options(CLI::App& verb, EngineOptions& options, RenderSettings& settings);
 
-/// Refuses options of the other engine; gives the Vulkan engine its file of compiled kernels.
+/// Rejects options of the other engine; sets the pipeline cache file of the Vulkan engine.
 void complete_engine_options(const EngineOptions& options, RenderSettings& settings);
 
-/// Where compiled kernels are kept for a device: in $XDG_CACHE_HOME/relief or ~/.cache/relief, which is made;
-/// empty where neither can be.
+/// Pipeline cache file of a device in $XDG_CACHE_HOME/relief or ~/.cache/relief, which is created; empty if
+/// neither is possible.
 std::filesystem::path choose_pipeline_cache(int device);
 
 } // namespace relief::cli

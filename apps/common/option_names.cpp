@@ -11,7 +11,7 @@ struct OptionName {
     std::string_view setting, option;
 };
 
-/// What contains another entry comes before it.
+/// An entry that contains another one precedes it.
 constexpr std::array<OptionName, 26> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},

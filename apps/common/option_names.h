@@ -1,12 +1,12 @@
-// The library's messages name settings ("image.crop"); users of the command know them as options ("--crop").
+// Translates settings in library messages ("image.crop") to command options ("--crop").
 #pragma once
 
 #include <string>
 
 namespace relief::cli {
 
-/// `text` with every "SETTING = VALUE" as "--option VALUE" and every other name of a setting as its option;
-/// calls that list devices become the command that does.
+/// `text` with every "SETTING = VALUE" replaced by "--option VALUE", other setting names by their option, and
+/// calls that list devices by the corresponding command.
 std::string name_options(std::string text);
 
 } // namespace relief::cli

@@ -1,5 +1,4 @@
-// What the programs report: a tree of named values and lists, or a table; and how it is written as JSON and
-// CSV.
+// Report values: a tree of named values and lists, or a table, written as JSON or CSV.
 #pragma once
 
 #include <array>
@@ -20,8 +19,8 @@ namespace relief {
 struct Field;
 struct Member;
 
-/// Nothing, a truth value, a number, a text, a list, or a record: named values in the order in which they
-/// came. Wrong use (a key that is missing, a text taken as a number) throws Error{failed}.
+/// Null, boolean, number, string, list, or record: named values in insertion order. Misuse (a missing key, a
+/// string taken as a number) throws Error{failed}.
 class Value {
   public:
     enum class Kind { nothing, truth, integer, real, text, list, record };
@@ -46,7 +45,7 @@ class Value {
     /// A record.
     Value(std::initializer_list<Field> fields);
     static Value record();
-    /// An empty list, and one of these entries.
+    /// An empty list, and a list of these entries.
     static Value list();
     static Value list(std::initializer_list<Value> entries);
 
@@ -57,7 +56,7 @@ class Value {
     ~Value();
 
     Kind kind() const { return kind_; }
-    /// T: bool, a number, std::string. Numbers become each other, as by a cast.
+    /// T: bool, a number type, std::string. Numbers are converted as by a cast.
     template <class T> T get() const {
         if constexpr (std::same_as<T, bool>)
             return truth();
@@ -69,15 +68,15 @@ class Value {
             return T(text());
     }
 
-    /// The value of that name; of what is no constant it is added where it is missing.
+    /// The value of that name; added if missing and the record is not const.
     Value& operator[](std::string_view name);
     const Value& operator[](std::string_view name) const;
     bool contains(std::string_view name) const;
-    /// The text of that name, empty where it is missing.
+    /// The string of that name, empty if missing.
     std::string text_or_empty(std::string_view name) const;
-    /// All of a record.
+    /// All entries of a record.
     const std::vector<Member>& members() const;
-    /// Takes over all values of another record.
+    /// Adds all entries of another record.
     void update(const Value& record);
 
     /// Entries of a list.
@@ -87,7 +86,7 @@ class Value {
     const std::vector<Value>& entries() const;
     auto begin() const { return entries().begin(); }
     auto end() const { return entries().end(); }
-    /// Of a list or a record; nothing has none.
+    /// Number of entries of a list or record; 0 for null.
     size_t size() const;
     bool empty() const { return size() == 0; }
 
@@ -114,7 +113,7 @@ class Value {
     std::vector<Member> members_;
 };
 
-/// Of an initializer list.
+/// From an initializer list.
 struct Field {
     const char* name;
     Value value;
@@ -125,24 +124,25 @@ struct Member {
     Value value;
 };
 
-/// Rows of cells below their names; a cell that is nothing stays empty.
+/// Rows of cells with a header; null cells stay empty.
 struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<Value>> rows;
 };
 
-/// A file of results before it is written.
+/// Name and contents of a result file.
 struct ReportFile {
     std::string name, text;
 };
 
-/// As JSON: in lines with that many blanks a level and an end of line; without, in one line without its end.
+/// As JSON: indented by that many spaces per level, with a final newline; without a value, in one line
+/// without newline.
 std::string write_json(const Value& value, std::optional<int> indent = {});
 
-/// Throws Error{bad_input} where the text is not JSON.
+/// Parses JSON. Throws Error{bad_input} if the text is not JSON.
 Value read_json(const std::string& text);
 
-/// As CSV; a text stands in quotes where it has to.
+/// As CSV; strings are quoted where necessary.
 std::string write_csv(const Table& table);
 
 } // namespace relief

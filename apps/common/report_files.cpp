@@ -1,4 +1,4 @@
-// The one file of the programs that knows a JSON library.
+// The only file of the programs that uses a JSON library.
 #include <iterator>
 
 #include <fmt/format.h>

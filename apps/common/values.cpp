@@ -16,7 +16,7 @@ int64_t parse_integer(const std::string& option, const std::string& text, int64_
     const char* end = text.data() + text.size();
     const std::from_chars_result result = std::from_chars(text.data(), end, value);
     if (result.ec != std::errc() || result.ptr != end || value < low || value > high)
-        refuse_value(option, text, fmt::format("a whole number from {} to {}", low, high));
+        refuse_value(option, text, fmt::format("an integer from {} to {}", low, high));
     return value;
 }
 
@@ -33,7 +33,7 @@ std::vector<int64_t> parse_integers(const std::string& option, const std::string
                                     size_t count, std::pair<int64_t, int64_t> range) {
     const std::vector<std::string> parts = split(text, separator);
     if (parts.size() != count)
-        refuse_value(option, text, fmt::format("{} whole numbers separated by '{}'", count, separator));
+        refuse_value(option, text, fmt::format("{} integers separated by '{}'", count, separator));
     std::vector<int64_t> values;
     for (const std::string& part : parts)
         values.push_back(parse_integer(option, part, range.first, range.second));
@@ -45,7 +45,7 @@ int parse_level(const std::string& text) {
     try {
         return int(parse_integer("--level", text, 0, kMaxLevel));
     } catch (const Error&) {
-        refuse_value("--level", text, fmt::format("'auto' or a whole number from 0 to {}", kMaxLevel));
+        refuse_value("--level", text, fmt::format("'auto' or an integer from 0 to {}", kMaxLevel));
     }
 }
 

@@ -1,4 +1,4 @@
-// Option values from text, with messages that name the option and what it may be.
+// Parses option values, with errors that name the option and its valid values.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace relief::cli {
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text,
                                const std::string& expected);
 
-/// Whole number in [low, high]; anything else, or trailing text, is a usage error that tells the range.
+/// Integer in [low, high]; anything else, or trailing text, is a usage error that tells the range.
 int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high);
 
 /// Finite number in [low, high].

@@ -1,4 +1,4 @@
-// relief-gpu: checks and measurements of the Vulkan engine on a machine that has nothing but its driver.
+// relief-gpu: tests and benchmarks of the Vulkan engine on a machine with nothing but a driver.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -25,7 +25,7 @@ struct Options {
     int device = -1;
     bool is_quick = false;
     std::vector<std::string> scenes; ///< empty: all
-    std::string only;                ///< part of the names of cases
+    std::string only;                ///< substring of case names
     std::vector<int> size;           ///< pixels; empty: the default
     int runs = 5;
     uint64_t tessellated_limit_mebibytes = 4096;

@@ -18,7 +18,7 @@ namespace relief::gpu {
 
 namespace {
 
-constexpr int kBlocks = 16; ///< a side
+constexpr int kBlocks = 16; ///< per side
 
 size_t get_channel(const Image& image, const char* name) {
     const auto channel = image.find_channel(name);
@@ -26,8 +26,8 @@ size_t get_channel(const Image& image, const char* name) {
     return *channel;
 }
 
-/// Sums over the pixels of a block: radiance (mean of R, G, B) and its variance, the channels' noise taken as
-/// fully correlated, which can only overstate it.
+/// Sums over the pixels of a block: radiance (mean of R, G, B) and its variance, conservatively assuming
+/// fully correlated noise of the channels.
 struct Block {
     double sum = 0, variance = 0, pixels = 0;
 };
@@ -50,7 +50,7 @@ std::vector<Block> sum_blocks(const Image& image) {
     return blocks;
 }
 
-/// What is changed about the settings, and how it is called.
+/// A change to the settings, and its name.
 struct Setting {
     std::string name;
     std::function<void(RenderSettings&)> apply;
@@ -76,7 +76,7 @@ class Parity {
     Value run() {
         for (const std::string& name : options_.scenes) {
             report_(fmt::format("making the scene {}", name));
-            // One of them with shared meshes: all its instances share the jobs of a patch.
+            // One scene with shared meshes: all its instances share the jobs of a patch.
             check_scene(name,
                         make_sample_scene(name, name == "barks" ? Instancing::shared : Instancing::none));
         }
@@ -91,7 +91,7 @@ class Parity {
         add_case("means, " + scene_name, [&](Value& entry) { return check_means(scene, entry); });
     }
 
-    /// Both forms of the bottom kernel, where it is used, against one picture of the CPU engine.
+    /// Compares both forms of the patch tree kernels, where used, with one picture of the CPU engine.
     void check_setting(const std::string& scene_name, const Scene& scene, const Setting& setting) {
         RenderSettings settings = options_.settings;
         settings.image.spp = 1, settings.image.bounces = 0;
@@ -111,7 +111,7 @@ class Parity {
         add_form(name + ", fused", BottomForm::fused);
     }
 
-    /// Runs a check that fills in what it found and tells whether that is good.
+    /// Runs a check that fills in its findings and returns whether it passed.
     void add_case(const std::string& name, const std::function<bool(Value&)>& check) {
         if (name.find(options_.only) == std::string::npos) return;
         report_(name);
@@ -120,7 +120,7 @@ class Parity {
             entry["outcome"] = check(entry) ? "passed" : "failed";
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::device_missing) throw;
-            // A scene that one machine cannot hold tells nothing about the engine.
+            // A scene that does not fit into memory is not a failure of the engine.
             entry["outcome"] = error.kind() == ErrorKind::out_of_memory ? "refused" : "failed";
             entry["message"] = error.what();
         }
@@ -163,7 +163,7 @@ class Parity {
         settings.image.spp = options_.noise_samples, settings.image.bounces = 4;
         settings.image.layers = {"variance"};
         const Image found = render_vulkan(scene, settings).image;
-        settings.image.seed += 1; // other samples, so that their noise is independent
+        settings.image.seed += 1; // independent samples
         const double z = compute_largest_z(found, render_cpu(scene, settings).image);
         entry["largest_z"] = z;
         return z <= kLargestZ;
@@ -181,7 +181,7 @@ class Parity {
     static RenderResult render_cpu(const Scene& scene, RenderSettings settings) {
         settings.device.engine = EngineKind::cpu;
         settings.device.index = -1, settings.experiment.bottom = BottomForm::automatic;
-        settings.surface.cache_bytes = RenderSettings{}.surface.cache_bytes; // changes no bit, only the time
+        settings.surface.cache_bytes = RenderSettings{}.surface.cache_bytes; // affects only the time
         return render(scene, settings);
     }
 
@@ -218,7 +218,7 @@ HitDifference compare_hits(const Image& a, const Image& b) {
 }
 
 double compute_largest_z(const Image& a, const Image& b) {
-    /// Of a mean: what rounding may do.
+    /// Tolerance of a mean for rounding.
     constexpr double kRelativeFloor = 1e-4;
     const std::vector<Block> blocks_a = sum_blocks(a), blocks_b = sum_blocks(b);
     double largest = 0;

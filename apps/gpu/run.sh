@@ -39,7 +39,7 @@ logs=${result%.json}-files
 rm -rf "$logs"
 mkdir -p "$logs/lib" || exit 1
 
-# The machine's own libraries come first: its driver was made for them.
+# System libraries come first: the driver was built against them.
 known=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null)
 for library in "$here"/fallback/*; do
     case $known in
@@ -50,7 +50,7 @@ done
 export LD_LIBRARY_PATH="$here/lib:$logs/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 export VK_LAYER_PATH="$here/layers"
 
-# Containers keep the driver's manifest in places that the loader does not know.
+# Containers keep the driver's manifest in places that the loader does not search.
 if [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] &&
     ! ls /etc/vulkan/icd.d/*.json /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json 2>/dev/null |
         grep -q .; then

@@ -1,4 +1,4 @@
-// The devices that the Vulkan engine could run on.
+// Devices available to the Vulkan engine.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,17 @@
 namespace relief {
 
 struct DeviceInfo {
-    int index = 0; ///< what DeviceSettings::index takes
+    int index = 0; ///< value for DeviceSettings::index
     std::string name, driver;
-    std::string kind;                 ///< "gpu", or "cpu" for a program that stands in for one
-    uint64_t memory_bytes = 0;        ///< of its largest memory
-    std::vector<std::string> missing; ///< what Relief needs and it lacks, by Vulkan's names; empty: usable
-    std::vector<std::string> missing_to_draw; ///< and what the methods fragment and hybrid need beyond it
-    std::vector<std::string> methods;         ///< render methods that it offers, the default first
+    std::string kind;          ///< "gpu", or "cpu" for a software implementation
+    uint64_t memory_bytes = 0; ///< size of its largest memory heap
+    std::vector<std::string>
+        missing; ///< required features and limits it lacks, by Vulkan name; empty: usable
+    std::vector<std::string> missing_to_draw; ///< further ones that fragment and hybrid require
+    std::vector<std::string> methods;         ///< supported render methods, the default first
 };
 
-/// All of them, in the order of their indices; empty without a driver and in builds without Vulkan.
+/// All devices in the order of their indices; empty without a driver and in builds without Vulkan.
 std::vector<DeviceInfo> vulkan_devices();
 
 } // namespace relief

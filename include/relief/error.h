@@ -1,5 +1,4 @@
-// The one exception type of the library. What went wrong, where (file, object, place), and what to do about
-// it.
+// The one exception type of the library: what went wrong, where (file, object, place), and how to fix it.
 #pragma once
 
 #include <stdexcept>
@@ -8,15 +7,17 @@
 
 namespace relief {
 
-/// Decides the exit code of the command: failed 1, usage 2, bad_input 3, device_missing 4, out_of_memory 5.
+/// Category of an error; its value is the exit code of the command: failed 1, usage 2, bad_input 3,
+/// device_missing 4, out_of_memory 5.
 enum class ErrorKind { failed = 1, usage = 2, bad_input = 3, device_missing = 4, out_of_memory = 5 };
 
-/// `what()` reads "WHERE: MESSAGE (HINT)"; the parts stay available for programs that format their own text.
+/// `what()` reads "WHERE: MESSAGE (HINT)"; the parts are available separately for programs that format their
+/// own text.
 class Error : public std::runtime_error {
   public:
     struct Parts {
         std::string message; ///< what is wrong, one sentence without a full stop
-        std::string where;   ///< file, line and column, object or pixel: whatever pins it down; may be empty
+        std::string where;   ///< file, line and column, object or pixel; may be empty
         std::string hint;    ///< what the user can do; may be empty
     };
 

@@ -1,5 +1,5 @@
-// Images with named channels, textures with raw texels, and what is done with finished pictures: compare and
-// merge.
+// Images with named channels, textures with raw texels; comparing and merging finished images. All functions
+// are thread safe.
 #pragma once
 
 #include <cstddef>
@@ -15,27 +15,27 @@ namespace relief {
 /// How the samples of a file were stored before they were read.
 enum class SampleType { uint8, uint16, uint32, float16, float32 };
 
-/// A picture or a layer stack: interleaved 32-bit floats, row 0 at the top. The pixels cover the data window
-/// [x0, x0 + width) x [y0, y0 + height) of a display window [0, full_width) x [0, full_height).
+/// An image with any number of layers: interleaved 32-bit floats, row 0 at the top. The pixels cover the data
+/// window [x0, x0 + width) x [y0, y0 + height) of a display window [0, full_width) x [0, full_height).
 struct Image {
     int width = 0, height = 0;
     int x0 = 0, y0 = 0;
     int full_width = 0, full_height = 0;
-    std::vector<std::string> channels;           ///< "R", "depth.Z", ...: one name a channel, all distinct
+    std::vector<std::string> channels;           ///< "R", "depth.Z", ...: one name per channel, all distinct
     std::vector<float> pixels;                   ///< width * height * channels.size()
     std::map<std::string, std::string> metadata; ///< header entries, e.g. "relief:seed"
     SampleType source_type = SampleType::float32;
 
-    /// Index of a channel by its full name, or nothing.
+    /// Index of a channel by its full name; nullopt if absent.
     std::optional<size_t> find_channel(const std::string& name) const;
-    /// (x, y) in pixels of the display window, inside the data window.
+    /// (x, y) in display-window pixels; must lie inside the data window.
     float& at(int x, int y, size_t channel);
     float at(int x, int y, size_t channel) const;
 };
 
-/// Texels as they came from the file, never colour converted: four interleaved channels (missing ones are 0,
-/// a missing fourth is 1; `channel_count` tells how many the file had), row 0 at the top. Exactly one of the
-/// arrays is filled.
+/// Texels as stored in the file, never colour converted: four interleaved channels (missing ones are 0, a
+/// missing fourth is 1; `channel_count` is the number in the file), row 0 at the top. Exactly one of `floats`
+/// and `halves` is filled.
 struct Texture {
     uint32_t width = 0, height = 0;
     uint32_t channel_count = 0;
@@ -43,33 +43,33 @@ struct Texture {
     std::vector<float> floats;    ///< 4 * width * height, or empty; integers are scaled to [0, 1]
     std::vector<uint16_t> halves; ///< 4 * width * height IEEE 754 binary16 bits, or empty
     std::string file;             ///< for messages
-    std::string colour_tag; ///< what in the file calls its values colours ("sRGB chunk"); empty: nothing
-    /// Bytes of the texels held.
+    std::string colour_tag; ///< what in the file marks the values as colours ("sRGB chunk"); empty: nothing
+    /// Bytes of texel data.
     size_t byte_count() const { return floats.size() * sizeof(float) + halves.size() * sizeof(uint16_t); }
 };
 
-/// Difference of two images over their common layer.
+/// Difference of two images in one layer.
 struct ImageDifference {
     size_t pixels = 0;         ///< pixels compared
-    size_t one_only = 0;       ///< pixels finite in one image only
+    size_t one_only = 0;       ///< pixels that are finite in one image only
     size_t over_threshold = 0; ///< pixels whose difference is above the threshold, one_only included
     double max = 0, mean = 0, rms = 0;
 };
 
-/// Compares layer `layer` ("" is R, G, B) of two images of the same data window. Differences are relative to
-/// the larger value for "depth", absolute for every other layer. Throws bad_input when the windows or
-/// channels differ.
+/// Compares layer `layer` ("" is R, G, B) of two images with the same data window. Differences are relative
+/// to the larger value for "depth", absolute for all other layers; `threshold` is in the same unit. Throws
+/// Error{bad_input} when windows or channels differ.
 ImageDifference compare_images(const Image& a, const Image& b, const std::string& layer, double threshold);
 
-/// Joins tiles and sample ranges of one picture into what one render of all samples gives, up to rounding.
-/// Colour, alpha, albedo and cost are means weighted by the parts' "samples.Y"; P and uv are weighted by the
-/// samples that hit, which are A times samples; depth is the least, id that of the least depth (without a
-/// depth layer: of the lowest sample range that hit); variance is that of the joint mean. N and Ng are the
-/// exception: parts hold unit vectors, so their mean by hits, normalised again, only comes close to that of
-/// all samples where a pixel's normals spread. Pixels that no part covers are 0, their depth infinity.
-/// Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer
-/// "samples". Throws bad_input for parts of different pictures (scene hash, seed, size, channels) or
-/// overlapping sample ranges of a pixel.
+/// Merges tiles and sample ranges of one picture; the result equals one render of all samples, up to
+/// rounding. Colour, alpha, albedo and cost are means weighted by the parts' "samples.Y"; P and uv are
+/// weighted by the samples that hit, which are A times samples; depth is the minimum, id that of the nearest
+/// hit (without a depth layer: of the lowest sample range that hit); variance is that of the combined mean. N
+/// and Ng are approximate: parts hold unit vectors, so their renormalised mean weighted by hits differs from
+/// that of all samples where the normals within a pixel vary. Pixels that no part covers are 0, their depth
+/// infinity. Parts carry "relief:samples" = "A:B" and, unless one sample range covers each whole part, the
+/// layer "samples". Throws Error{bad_input} for parts of different pictures (scene hash, seed, size,
+/// channels) or overlapping sample ranges of a pixel.
 Image merge_images(std::span<const Image> parts);
 
 } // namespace relief

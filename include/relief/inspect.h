@@ -1,5 +1,5 @@
-// What a scene, a mesh or a map is, what it will cost, and what is wrong with it. docs/inspect.md lists the
-// codes of what can be found.
+// Diagnostics: properties of a scene, mesh or map, its cost, and what is wrong with it. docs/inspect.md lists
+// the codes of all findings. All functions are thread safe.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ enum class Severity { note, warning, error };
 struct Finding {
     Severity severity = Severity::note;
     std::string code; ///< stable, e.g. "W-8BIT"
-    std::string text; ///< with the remedy
+    std::string text; ///< message, with the remedy
 };
 
 struct Fact {
     std::string name;  ///< stable key, e.g. "patches"
-    std::string value; ///< with its unit
+    std::string value; ///< formatted, with its unit
 };
 
 struct Inspection {
@@ -30,41 +30,43 @@ struct Inspection {
     std::vector<Finding> findings;
 };
 
-/// What a scene would hold with every displaced patch cut into micro-quads up front: the baseline of direct
-/// tracing.
+/// Memory of a scene whose displaced patches are all pre-tessellated into micro-quads: the baseline for
+/// direct ray tracing.
 struct TessellationCost {
     uint64_t micro_quads = 0;
     uint64_t geometry_bytes = 0;   ///< exact
-    uint64_t structures_bytes = 0; ///< from the size of such trees elsewhere: within a tenth
-    uint64_t peak_bytes = 0;       ///< of the displaced surfaces while they are made, what a render asks for
+    uint64_t structures_bytes = 0; ///< estimated from measured trees, within 10 %
+    uint64_t peak_bytes = 0;       ///< peak while the displaced surfaces are built; a render reserves as much
 };
 
-/// Cost at the levels of `settings`; nothing is tessellated. Throws Error (bad_input).
+/// Cost at the levels of `settings`, computed without tessellating. Throws Error{bad_input}.
 TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings& settings);
 
-/// Counts, bytes, the time that a render of `settings` would take (measured on a few windows of the picture),
-/// and the mistakes of all meshes and maps.
+/// Counts, bytes, the estimated render time with `settings` (measured on a few windows of the picture), and
+/// the findings of all meshes and maps. Throws as render().
 Inspection inspect_scene(const Scene& scene, const RenderSettings& settings);
 
-/// Faces, edges, uvs. With the displacement that is meant for it also what of the two does not fit: tiles,
-/// density, range of uvs.
+/// Checks faces, edges and uvs; with its displacement also whether the two match: UDIM tiles, texel density,
+/// uv range.
 Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement = nullptr);
 
-/// Whether the values of a Displacement beside its tiles are what somebody said, or only defaults.
+/// Whether the convention of a Displacement (all but its tiles) was stated by the user or consists of
+/// defaults.
 enum class MapMeaning { declared, unknown };
 
-/// What the texels of a map are, how they are probably meant and why, and which of the usual mistakes they
-/// show. With the mesh that the map is for, tangent and object space can be told apart, and lengths be
-/// compared with its size. Values that are not finite are found, not refused.
+/// Statistics of a map's texels, its probable convention and the reasons, and common mistakes. With the mesh
+/// that the map belongs to, tangent and object space can be distinguished and lengths compared with its size.
+/// Non-finite values are reported as findings, not as errors.
 Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh = nullptr);
 
-/// The same map with space, axes and midlevel as they are probably meant; what cannot be told stays as it is.
+/// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
-/// Contact sheet of a scene, seen by its camera, four pictures of `settings.width` x `settings.height` each:
-/// the base (with the axes of its displacement as arrows, red, green and blue), displaced, displacement as
-/// colours (red, green, blue along t, b, n or x, y, z; grey is none), and folds: where the surface faces away
-/// from its base, in red. Values are for a tone-mapped file. Throws as render().
+/// Contact sheet of a scene seen by its camera, four pictures of `settings.image.width` x
+/// `settings.image.height` each: the base (with the displacement axes as red, green and blue arrows), the
+/// displaced surface, the displacement as colours (red, green, blue along t, b, n or x, y, z; grey is zero),
+/// and folds: where the surface faces away from its base, in red. Values are meant for a tone-mapped file.
+/// Throws as render().
 Image make_check_picture(const Scene& scene, const RenderSettings& settings);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-// Relief as an intersector for other programs: rays in, hits on displaced geometry out.
+// Ray queries for other programs: rays in, hits on displaced geometry out.
 #pragma once
 
 #include <limits>
@@ -15,70 +15,71 @@ namespace relief {
 struct Ray {
     Vec3f origin{};
     float t_min = 0;
-    Vec3f direction{}; ///< need not have unit length; t counts in its lengths
+    Vec3f direction{}; ///< need not be normalised; t is in units of its length
     float t_max = std::numeric_limits<float>::infinity();
 };
 
 /// 32 bytes without padding.
 struct RayHit {
-    float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing hit
+    float t = std::numeric_limits<float>::infinity(); ///< infinity: a miss
     uint32_t object = kNoIndex;                       ///< index into Scene::objects
     uint32_t patch = kNoIndex;                        ///< face of the object's mesh after refinement to quads
     Vec2f uv{};                                       ///< position on the patch, [0, 1]^2
-    Vec3f normal{}; ///< geometric, world space, unit length, on the side of the winding
+    Vec3f normal{}; ///< geometric, world space, unit length, oriented by the winding
 };
 static_assert(sizeof(RayHit) == 32);
 
-/// What can be computed of a hit beside its RayHit; bits of RayQuery::attributes.
+/// Optional attributes of a hit; bits of RayQuery::attributes.
 enum HitAttribute : uint32_t { kShadingNormal = 1, kTextureUv = 2, kDerivatives = 4 };
 
-/// World space; zero where nothing is hit, and what the query does not name.
+/// World space. Zero for misses and for attributes that were not requested.
 struct HitAttributes {
     Vec3f shading_normal{}; ///< unit length, on the side of RayHit::normal
-    Vec3f dp_du{}, dp_dv{}; ///< of the micro-triangle at the hit, by RayHit::uv
-    Vec2f texture_uv{};     ///< of the mesh, within its tile of a UDIM map; (0, 0) without
+    Vec3f dp_du{}, dp_dv{}; ///< derivatives of the micro-triangle's position by RayHit::uv
+    Vec2f texture_uv{};     ///< of the mesh, within its tile of a UDIM map; (0, 0) for a mesh without uvs
 };
 
-/// What a call asks of all of its rays.
+/// Options shared by all rays of a call.
 struct RayQuery {
-    uint32_t visibility_mask = kVisibleToAll; ///< meets objects whose Object::visibility_mask shares a bit
-    uint32_t attributes = 0;                  ///< of HitAttribute, joined by |
+    uint32_t visibility_mask = kVisibleToAll; ///< hits objects whose Object::visibility_mask shares a bit
+    uint32_t attributes = 0;                  ///< HitAttribute bits, combined by |
 };
 
-/// The parts of RenderSettings that decide what rays meet and who finds it.
+/// The parts of RenderSettings that apply to ray queries.
 struct IntersectorSettings {
     SurfaceSettings surface;
     DeviceSettings device;
     ExperimentSettings experiment;
-    int picture_height = 720; ///< pixels that the scene's camera sees; decides automatic levels
+    int picture_height = 720; ///< pixels of the scene camera's view; determines automatic levels
 };
 
-/// A scene made ready for rays. All calls are thread safe and use up to `device.threads` threads; they may
-/// throw Error (out_of_memory, device_missing). A ray of which something but t_max is infinite or NaN hits
-/// nothing.
+/// A scene prepared for ray queries. All const members are thread safe and use up to `device.threads`
+/// threads; they may throw Error (out_of_memory, device_missing). A ray with a NaN, or with an infinite
+/// component other than t_max, hits nothing.
 class Intersector {
   public:
-    /// Throws Error: usage for settings out of range, bad_input, device_missing, out_of_memory.
+    /// Prepares the scene and builds its trees. Throws Error: usage for settings out of range, bad_input for
+    /// an invalid scene, device_missing, out_of_memory.
     Intersector(Scene scene, const IntersectorSettings& settings);
     ~Intersector();
     Intersector(Intersector&&) noexcept;
     Intersector& operator=(Intersector&&) noexcept;
 
-    /// Nearest hits with t in (t_min, t_max]. `rays` and `hits` have equal length, `attributes` as well if
-    /// the query names any, else none; Error{usage} otherwise. Attributes are those at the levels of the
-    /// scene's objects, also with LodRule::ray.
+    /// Nearest hits with t in (t_min, t_max]. `hits` has the length of `rays`; so has `attributes` if the
+    /// query requests any, else it is empty; Error{usage} otherwise. Attributes are evaluated at the levels
+    /// of the level field, also with LodRule::ray.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, const RayQuery& query = {},
                       std::span<HitAttributes> attributes = {}) const;
 
-    /// hits[i] = 1 where anything lies in (t_min, t_max], else 0. Spans of equal length, else Error{usage}.
+    /// hits[i] = 1 if anything is hit in (t_min, t_max], else 0. Spans of equal length, else Error{usage}.
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits,
                   uint32_t visibility_mask = kVisibleToAll) const;
 
-    /// The same of one ray, on the calling thread where the CPU engine answers. Spans are faster.
+    /// The same for one ray, on the calling thread with the CPU engine. Batches are faster.
     RayHit closest_hit(const Ray& ray, uint32_t visibility_mask = kVisibleToAll) const;
     bool any_hit(const Ray& ray, uint32_t visibility_mask = kVisibleToAll) const;
 
-    /// What the scene was warned of when it was read and prepared.
+    /// Warnings from reading and preparing the scene.
     const std::vector<std::string>& warnings() const;
 
   private:

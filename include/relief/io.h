@@ -1,6 +1,6 @@
-// Files: scenes, meshes, maps in; scenes and pictures out. Links against relief_io; the core works without
-// it. Plain EXR is read by relief_io itself; PNG, JPEG, TIFF, HDR and other EXR by the module
-// relief_pictures, which lies beside the program and is loaded when the first such picture is opened.
+// Reading and writing of files: scenes, meshes, maps and images. In library relief_io; the core does not need
+// it. relief_io reads plain EXR itself; PNG, JPEG, TIFF, HDR and other EXR are read by the module
+// relief_pictures beside the program, loaded when the first such image is opened.
 #pragma once
 
 #include <filesystem>
@@ -14,47 +14,47 @@
 
 namespace relief {
 
-/// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file.
-/// Throws Error{bad_input} with file, line and column, object and hint; for its pictures as read_image.
+/// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file. Throws
+/// Error{bad_input} with file, line and column, object and hint; for images as read_image.
 Scene load_scene(const std::filesystem::path& file);
 
-/// What is said of a displacement map beside its file. Unset values come from the preset, then from the file;
-/// docs/formats.md lists the names.
+/// Convention of a displacement map. Unset values come from the preset, then from the file; docs/formats.md
+/// lists the names.
 struct MapOptions {
     std::string preset; ///< empty: none
     std::optional<std::string> type, space, axes, frame, lengths, encoding, wrap, filter;
-    std::optional<Vec3f> midlevel, scale; ///< a channel each; of the values after the encoding
+    std::optional<Vec3f> midlevel, scale; ///< one per channel; of decoded values
     bool flip_v = false;
     bool dilate = true, autobump = false; ///< see Displacement
 };
 
-/// The tiles of a map and what they mean. `file` may hold `<UDIM>`, `<UVTILE>` or `<uvtile>`. Values that are
-/// not finite are kept, for inspect_map; a render refuses them. What had to be assumed is added to
+/// Reads the tiles of a map. `file` may contain `<UDIM>`, `<UVTILE>` or `<uvtile>`. Non-finite values are
+/// kept for inspect_map; render() rejects them. Assumptions made about the convention are added to
 /// `warnings`. Throws Error{bad_input}.
 Displacement load_map(const std::filesystem::path& file, const MapOptions& options,
                       std::vector<std::string>& warnings);
 
-/// What the options say of a map, without its tiles: as load_map does for a file of floats.
+/// The convention that load_map would derive from the options for a file of floats, without tiles.
 Displacement make_map_meaning(const MapOptions& options);
 
-/// Samples of a map file that is written.
+/// Sample type of a written map file.
 enum class MapSamples { float16, float32, uint16 };
 
-/// Writes the tiles of a map by the extension of the name: .exr (float16 or float32) or .png (uint16, which
-/// keeps [0, 1] only). A map with tiles takes a name with `<UDIM>`, `<UVTILE>` or `<uvtile>`; folders must be
-/// there. Files appear whole or not at all. Throws Error{usage} for another extension, samples that it does
-/// not hold, or a name with a token too many or too few; Error{bad_input} for values that do not fit.
+/// Writes the tiles of a map. The extension selects the format: .exr (float16 or float32) or .png (uint16,
+/// values in [0, 1]). A map with tiles needs a name with `<UDIM>`, `<UVTILE>` or `<uvtile>`; folders must
+/// exist. Each file is replaced atomically. Throws Error{usage} for another extension, a sample type that the
+/// format lacks, or a name with a missing or superfluous token; Error{bad_input} for values out of range.
 void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples);
 
-/// Writes .obj, or .ply (binary): faces as they are, with uvs. Throws Error{usage} for another extension,
-/// Error{bad_input} for a mesh that is not sound, Error{failed}.
+/// Writes .obj, or binary .ply: faces unchanged, with uvs. Throws Error{usage} for another extension,
+/// Error{bad_input} for an invalid mesh, Error{failed} where the file cannot be written.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& file);
 
-/// For the plain name of a file that is one tile of several that lie in its folder ("head.1001.exr"): the
-/// name with the token that takes them all ("head.`<UDIM>`.exr"). Else empty.
+/// For a file that is one of several tiles in its folder ("head.1001.exr"): the name with the token that
+/// matches all of them ("head.`<UDIM>`.exr"). Else empty.
 std::string find_tile_pattern(const std::filesystem::path& file);
 
-/// What a mesh is rendered with that comes without a scene file.
+/// How to render a mesh without a scene file.
 struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold `<UDIM>`
     MapOptions map;
@@ -63,56 +63,56 @@ struct MeshSceneOptions {
     std::filesystem::path environment;      ///< empty: a soft sky and a sun
 };
 
-/// A mesh alone: automatic camera (from above, front; the object fills about 85 % of the height of a square
-/// or wider picture) and light. The brightness of an environment given here is set so that the brightest
-/// white diffuse surface that the camera can see, whatever way it is turned, has radiance 1.
+/// A mesh with automatic camera (from above, front; the object fills about 85 % of the height of a square or
+/// wider picture) and light. The strength of a given environment is normalised so that a white diffuse
+/// surface of the brightest orientation that the camera can see has radiance 1. Throws as load_mesh, load_map
+/// and read_image.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
 
-/// A mesh in memory, displaced by `map` unless that is null, with the same kind of camera and light.
+/// A mesh in memory, displaced by `map` unless that is null, with automatic camera and light.
 Scene make_mesh_scene(Mesh mesh, const Displacement* map);
 
-/// A map alone, on a plane two units wide that faces +z, with the same kind of camera and light. Throws
-/// Error{bad_input}.
+/// A map on a plane two units wide that faces +z, with automatic camera and light. Throws Error{bad_input}.
 Scene make_map_scene(const Displacement& map);
 
-/// True when the file name ends like a mesh that load_mesh reads (.obj .ply .gltf .glb .fbx).
+/// Whether load_mesh reads files with this extension (.obj .ply .gltf .glb .fbx).
 bool is_mesh_file(const std::filesystem::path& file);
 
 struct MeshReadOptions {
-    int uv_set = 0; ///< of glTF and FBX, counted from 0; OBJ and PLY have the first one only
+    int uv_set = 0; ///< of glTF and FBX, from 0; OBJ and PLY have only set 0
 };
 
-/// Polygons of a file, quads and n-gons kept. Throws Error{bad_input} with file, place and hint.
+/// Reads a polygon mesh; quads and n-gons are kept. Throws Error{bad_input} with file, place and hint.
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options = {});
 
-/// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder, so that load_scene gives the same scene.
-/// Throws Error{bad_input} for a map that goes through tangents of its mesh, since OBJ holds none.
+/// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws
+/// Error{bad_input} for a map in the mesh's own tangent frames, since OBJ has no tangents.
 void save_scene(const Scene& scene, const std::filesystem::path& folder);
 
-/// Reads all channels of the first part as floats, data window and metadata included. Throws
-/// Error{bad_input} for a file that is missing, damaged, too large or of an unknown kind, Error{failed} where
-/// it takes the module relief_pictures and that is missing or of another version, Error{out_of_memory} where
-/// its pixels do not fit.
+/// Reads all channels of the first part as floats, with data window and metadata. Throws Error{bad_input} for
+/// a file that is missing, damaged, too large or of an unknown format, Error{failed} where the module
+/// relief_pictures is needed but missing or of another version, Error{out_of_memory} where the pixels do not
+/// fit.
 Image read_image(const std::filesystem::path& file);
 
-/// Texels as stored: no colour conversion, no flip. Throws as read_image.
+/// Reads texels as stored: no colour conversion, no flip. Throws as read_image.
 Texture read_texture(const std::filesystem::path& file);
 
-/// Writes by extension: .exr (all channels, ZIP, float), .hdr (R, G, B), .png (tone mapped, 8 bit sRGB).
-/// The file appears whole or not at all: it is written beside its place and renamed. Throws Error{usage} for
-/// another extension, Error{failed} where it cannot be written, std::bad_alloc.
+/// Writes an image; the extension selects .exr (all channels, ZIP, float), .hdr (R, G, B) or .png (tone
+/// mapped, 8-bit sRGB). The file is replaced atomically: written beside its place, then renamed. Throws
+/// Error{usage} for another extension, Error{failed} where it cannot be written, std::bad_alloc.
 void write_image(const Image& image, const std::filesystem::path& file);
 
-/// Throws now if write_image to this file would fail for its name, folder or rights.
+/// Throws what write_image to this file would throw because of its name, folder or permissions.
 void check_writable(const std::filesystem::path& file);
 
-/// Calls `body`, in which all of the above takes at most `threads` threads; 0: all cores, as outside.
+/// Calls `body`, within which the functions above use at most `threads` threads; 0: all cores, the default.
 void with_io_threads(int threads, const std::function<void()>& body);
 
-/// Writes any text; the file appears whole or not at all. Throws Error{failed}.
+/// Writes a text file, replaced atomically. Throws Error{failed}.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// Throws now if write_text_file to this file would fail for its folder or rights.
+/// Throws what write_text_file to this file would throw because of its folder or permissions.
 void check_text_writable(const std::filesystem::path& file);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-// From a scene to a finished picture. One call; progress and cancellation through an observer.
+// Renders a scene to an image in one call, with progress and cancellation through an observer.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,12 @@ enum class SurfaceMode { direct, tessellated };
 enum class LeafKind { exact, box };
 enum class LodRule { field, ray };
 enum class EngineKind { cpu, vulkan };
-/// How the Vulkan engine builds and walks patch trees: one kernel that keeps groups resident and takes jobs
-/// from a queue (Harada 2015), or a build kernel and then one invocation per pair of patch and ray.
+/// How the Vulkan engine builds and traverses patch trees: `fused` is one kernel of persistent work groups
+/// that take jobs from a queue (Harada 2015); `split` is a build kernel, then one invocation per pair of
+/// patch and ray.
 enum class BottomForm { automatic, fused, split };
-/// What of a device finds hits (GRAPP 2019, section 3.3): compute kernels; fragment shaders over the
-/// full screen; or compute kernels after the first hits have been found by drawing the surfaces.
+/// How a device finds hits (GRAPP 2019, section 3.3): compute kernels; full-screen fragment shaders; or
+/// rasterised first hits, then compute kernels.
 enum class RenderMethod { compute, fragment, hybrid };
 enum class Isa { best, avx512, avx2, sse4, neon, scalar };
 
@@ -33,45 +34,44 @@ struct Window {
     friend bool operator==(const Window&, const Window&) = default;
 };
 
-/// How displaced surfaces are represented, and how finely.
+/// Representation and resolution of displaced surfaces.
 struct SurfaceSettings {
     SurfaceMode mode = SurfaceMode::direct;
-    int level = kAutoLevel; ///< kAutoLevel, or fixed 2^level cells a side, [0, kMaxLevel]
-    float pixel_error = 1;  ///< auto level: cell size aimed at, pixels, (0, 1e6]
+    int level = kAutoLevel; ///< kAutoLevel, or fixed: 2^level cells per patch side, [0, kMaxLevel]
+    float pixel_error = 1;  ///< automatic levels: target cell size, pixels, (0, 1e6]
     LodRule lod = LodRule::field;
     LeafKind leaf = LeafKind::exact;
-    size_t cache_bytes = size_t(176) << 20; ///< cap of the patch tree cache; 0 turns it off
+    size_t cache_bytes = size_t(176) << 20; ///< limit of the patch tree cache; 0 disables it
 };
 
-/// What computes, and with how much of the machine.
+/// Engine, device and threads.
 struct DeviceSettings {
     EngineKind engine = EngineKind::cpu;
     int index = -1;             ///< Vulkan: index of vulkan_devices() (relief/devices.h); -1: the best one
-    std::string pipeline_cache; ///< Vulkan: file that keeps compiled kernels between runs; empty: none
+    std::string pipeline_cache; ///< Vulkan: file that caches compiled kernels between runs; empty: none
     int threads = 0;            ///< [0, kMaxThreads]; 0: all cores
     Isa isa = Isa::best;        ///< of the CPU engine
 };
 
-/// The picture, and how its pixels are sampled.
+/// Size and sampling of the image.
 struct ImageSettings {
     int width = 1280, height = 720; ///< pixels, [1, kMaxPictureSize] each
-    int spp = 64;                   ///< samples a pixel, [1, kMaxSamples]
+    int spp = 64;                   ///< samples per pixel, [1, kMaxSamples]
     int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
     Window crop;                     ///< part of the picture to render
     int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
-    std::vector<std::string> layers; ///< depth N Ng P albedo uv id samples variance cost
+    std::vector<std::string> layers; ///< any of depth N Ng P albedo uv id samples variance cost
 };
 
-/// Other structures, traversals and methods than the engines' own, to compare with. All give the same hits.
+/// Alternative structures, traversals and methods, for comparison. All find the same hits.
 struct ExperimentSettings {
     StructureKind structure = StructureKind::bvh;
     TraversalKind traversal = TraversalKind::automatic; ///< one of available_traversals()
-    /// Of the trees of structure kdtree, or of bvh for a traversal other than the engine's default: a bvh is
-    /// then built by a full sweep, and its leaves hold up to 8 polygons. None: what each structure has of
-    /// itself.
+    /// SAH costs of kd-trees, and of BVHs for a traversal other than the engine's default: such a BVH is
+    /// built by a full sweep, with up to 8 polygons per leaf. nullopt: the defaults of each structure.
     std::optional<SahCosts> sah_costs;
-    RenderMethod method = RenderMethod::compute; ///< of the Vulkan engine; all give the same bits
+    RenderMethod method = RenderMethod::compute; ///< of the Vulkan engine; all are bit-identical
     BottomForm bottom = BottomForm::automatic;   ///< of the Vulkan engine
 };
 
@@ -82,17 +82,16 @@ struct RenderSettings {
     ExperimentSettings experiment;
 };
 
-/// Rays of one kind at one depth of their paths, and what casting them took, in seconds of the whole machine
-/// (Vulkan) or summed over threads (CPU). The top of camera rays includes aiming them, that of all the making
-/// of hits from what was met.
+/// Rays of one kind at one path depth and their cost, in seconds of wall-clock time (Vulkan) or summed over
+/// threads (CPU). top_traversal_s includes creating the hit records, and for camera rays their generation.
 struct CastStatistics {
     int depth = 0;          ///< 0: camera rays and their shadow rays
-    bool is_shadow = false; ///< towards lights
+    bool is_shadow = false; ///< rays towards lights
     uint64_t rays = 0, pairs = 0;
     double top_traversal_s = 0, sort_s = 0, bottom_build_s = 0, bottom_traversal_s = 0;
 };
 
-/// Numbers of one render; names follow the keys of `--stats`.
+/// Statistics of one render; names follow the keys of `--stats`. Sizes in bytes, times in seconds.
 struct Statistics {
     std::string engine, device, isa;
     int threads = 0;
@@ -102,9 +101,9 @@ struct Statistics {
            film_s = 0;
     uint64_t camera_rays = 0, shadow_rays = 0, bounce_rays = 0;
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
-    /// Of the CPU engine's own walk over displaced surfaces: nodes above the patches and within them, each
-    /// once for all the rays that visit it together, and blocks of triangles, once a ray. For any number of
-    /// threads and any cache the same.
+    /// Of the CPU engine's default traversal of displaced surfaces: nodes of scene trees and of patch trees,
+    /// each counted once for all rays that visit it together, and blocks of triangles, counted per ray.
+    /// Independent of the number of threads and of the cache.
     uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0;
     uint64_t bottom_built = 0, bottom_reused = 0;
     std::vector<uint64_t> bottom_levels; ///< trees built at level 0, 1, 2, ...
@@ -116,35 +115,36 @@ struct Statistics {
 
 struct Progress {
     double fraction = 0;  ///< [0, 1] of all samples
-    int samples_done = 0; ///< whole passes over the picture
+    int samples_done = 0; ///< completed passes over the picture
     int samples_total = 0;
-    uint64_t rays = 0;    ///< traced so far
-    double elapsed_s = 0; ///< since rendering started
+    uint64_t rays = 0;    ///< rays traced so far
+    double elapsed_s = 0; ///< since the render started
 };
 
-/// Called from one thread at a time, a few times a second.
+/// Receives progress and requests cancellation. Called from one thread at a time, a few times a second.
 class RenderObserver {
   public:
     virtual ~RenderObserver() = default;
     virtual void on_progress(const Progress& progress) = 0;
-    /// True asks for an early, orderly end: the picture so far is returned and is valid.
+    /// Returning true cancels the render: the image so far is returned and is valid.
     virtual bool is_cancelled() const = 0;
 };
 
 struct RenderResult {
-    Image image; ///< R G B A and the layers asked for; linear, data window = crop
+    Image image; ///< R G B A and the requested layers; linear, data window = crop
     Statistics statistics;
-    bool is_complete = true; ///< false after a cancellation; "samples.Y" then tells how far each pixel came
+    bool is_complete =
+        true; ///< false if cancelled; "samples.Y" then holds the number of samples of each pixel
 };
 
-/// Renders `scene`. The scene's polygons are released as soon as patches are made from them.
-/// Throws Error (bad_input, device_missing, out_of_memory). Safe to call from several threads at once.
+/// Renders `scene`, whose polygons are freed once patches have been built from them. `observer` may be null.
+/// Throws Error (usage for settings out of range, bad_input, device_missing, out_of_memory). Thread safe.
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr);
 
-/// What an engine can walk a structure by, the default first.
+/// Traversals of a structure that an engine supports, the default first.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);
 
-/// Names of the instruction sets that this machine can run, best first; "scalar" is always there.
+/// Names of the instruction sets that this machine supports, best first; always includes "scalar".
 std::vector<std::string> available_isas();
 
 } // namespace relief

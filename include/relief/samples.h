@@ -1,4 +1,4 @@
-// Sample scenes of the project, made from nothing but formulas and a seed.
+// Procedural sample scenes.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace relief {
 
 enum class Instancing { none, shared };
 
-/// Names that make_sample_scene knows: pumpkin, bark, barks, party, ear.
+/// Valid names for make_sample_scene: pumpkin, bark, barks, party, ear.
 std::vector<std::string> sample_scene_names();
 
 /// Builds a sample scene in memory. Throws Error{usage} for an unknown name.

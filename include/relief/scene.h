@@ -1,6 +1,5 @@
-// What is to be rendered, as plain values: make one in memory, or load one with relief/io.h.
-// Right-handed, y up, lengths in scene units, angles in degrees where the name says so, colours linear
-// Rec.709.
+// Scene description as plain values: build one in memory, or load one with relief/io.h. Right-handed, y up,
+// lengths in scene units, angles in degrees where the name says so, colours linear Rec.709.
 #pragma once
 
 #include <array>
@@ -14,36 +13,36 @@
 
 namespace relief {
 
-// Limits that every reader, the command and render() share; docs/scene.schema.json holds the same numbers.
-inline constexpr int kMaxPictureSize = 65536; ///< pixels a side
-inline constexpr int kMaxSamples = 1 << 20;   ///< a pixel
+// Limits enforced by all readers, the command and render(); docs/scene.schema.json holds the same numbers.
+inline constexpr int kMaxPictureSize = 65536; ///< pixels per side
+inline constexpr int kMaxSamples = 1 << 20;   ///< per pixel
 inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
 inline constexpr float kInfiniteSharpness = 10; ///< of a crease
 
-/// Semi-sharp edge of a subdivided mesh (DeRose, Kass and Truong 1998), between two positions; a sharp point
-/// where `first` and `second` are the same.
+/// Semi-sharp crease of a subdivided mesh (DeRose, Kass and Truong 1998) between two positions, given by
+/// index; a sharp vertex where `first` equals `second`.
 struct Crease {
     uint32_t first = 0, second = 0;
-    float sharpness = 0; ///< >= 0; kInfiniteSharpness and above stays sharp for ever
+    float sharpness = 0; ///< >= 0; infinitely sharp from kInfiniteSharpness on
     friend bool operator==(const Crease&, const Crease&) = default;
 };
 
 enum class SubdivisionScheme { none, bilinear, catmark };
-/// How uvs are subdivided: as positions are, but for the boundaries of uv islands, whose corners and
-/// junctions stay sharp; or linearly in each face.
+/// Face-varying interpolation of uvs: `smooth` as positions, except that corners and junctions of uv island
+/// boundaries stay sharp; `linear` within each face.
 enum class UvRule { smooth, linear };
-/// What stays sharp where the mesh ends: its edges, or also the corners of lone faces.
+/// Boundary interpolation: boundary edges stay sharp, or also corners that belong to one face only.
 enum class BoundaryRule { edge_only, edge_and_corner };
 enum class CreaseRule { obey, ignore };
 
-/// How a mesh becomes a smooth base.
+/// How a mesh becomes a smooth base surface.
 struct Subdivision {
     SubdivisionScheme scheme = SubdivisionScheme::none;
-    /// Every quad becomes 2^level x 2^level patches, [0, kMaxSubdivisionLevel]; a mesh with faces that are
-    /// not quads is subdivided at least once.
+    /// Every quad becomes 2^level x 2^level patches, [0, kMaxSubdivisionLevel]; a mesh with other faces than
+    /// quads is subdivided at least once.
     int level = 3;
     UvRule uv = UvRule::smooth;
     BoundaryRule boundary = BoundaryRule::edge_and_corner;
@@ -51,33 +50,34 @@ struct Subdivision {
     friend bool operator==(const Subdivision&, const Subdivision&) = default;
 };
 
-/// Polygons with separate indices for positions, uvs and normals, as OBJ has them.
+/// Polygon mesh with separate indices for positions, uvs and normals, as in OBJ.
 struct Mesh {
     std::string name;
-    std::string source; ///< file it came from, for messages; may be empty
+    std::string source; ///< source file, for messages; may be empty
     std::vector<Vec3f> positions;
     std::vector<Vec2f> uvs;           ///< may be empty
-    std::vector<Vec3f> normals;       ///< may be empty; of plain faces, and where FrameKind::file is asked
+    std::vector<Vec3f> normals;       ///< may be empty; used by undisplaced faces and by FrameKind::file
     std::vector<uint32_t> face_sizes; ///< corners of each face, >= 3
-    std::vector<uint32_t> position_indices; ///< one a corner, faces one after another, counter-clockwise
+    std::vector<uint32_t> position_indices; ///< one per corner, face after face, counter-clockwise
     std::vector<uint32_t> uv_indices;       ///< one a corner, or empty
     std::vector<uint32_t> normal_indices;   ///< one a corner, or empty
     std::vector<std::array<float, 4>>
-        tangents;                ///< one a corner: unit x, y, z, and the bitangent's sign; or empty
+        tangents;                ///< one per corner: unit x, y, z, and the sign of the bitangent; or empty
     std::vector<Crease> creases; ///< used where the mesh is subdivided
-    Subdivision subdivision;     ///< of the surface that is rendered
+    Subdivision subdivision;     ///< of the rendered surface
 };
 
 enum class DisplacementType { vector, height };
 enum class DisplacementSpace { tangent, object, world };
 enum class WrapMode { clamp, repeat, mirror, black };
-/// Where the tangent frames of a surface come from: MikkTSpace, as bakers have it; the mean of dP/du at each
-/// vertex; or normals and tangents of the mesh, or its normals alone, which MikkTSpace goes around.
+/// Source of the tangent frames: `mikk` is MikkTSpace, as in most bakers; `dpdu` the mean of dP/du at each
+/// vertex; `file` the normals and tangents of the mesh, or MikkTSpace on its normals if it has no tangents.
 enum class FrameKind { mikk, dpdu, file };
-/// Displacements in scene units along unit axes, or in units of dP/du and dP/dv, so that they grow with the
-/// faces; those along the normal are in scene units either way.
+/// Unit of tangential displacements: scene units along unit axes, or units of dP/du and dP/dv, so that they
+/// scale with the faces. Displacements along the normal are always in scene units.
 enum class FrameLengths { absolute, relative };
-/// What a sample of the surface reads: the map as it is, or a copy whose texels are as large as the cells.
+/// Texel filter of surface samples: bilinear on the map itself, or on the mip level whose texels are as large
+/// as the cells.
 enum class MapFilter { none, mip };
 
 /// Signed permutation: channel c of the map moves along axis[c] (0, 1, 2 = t, b, n or x, y, z) times sign[c].
@@ -93,34 +93,36 @@ struct MapTile {
     std::shared_ptr<const Texture> texture;
 };
 
-/// Displacement of a texel: A (value - midlevel) scale, A the signed permutation. A height map moves along n
-/// by (R - midlevel.x) scale.x. Row 0 of a map is v = 1 unless `flip_v`.
+/// A displacement map and its convention. A texel displaces by A (value - midlevel) scale, A the signed
+/// permutation; a height map along n by (R - midlevel.x) scale.x. Row 0 of a map is v = 1 unless `flip_v`.
 struct Displacement {
     std::string name;
     DisplacementType type = DisplacementType::vector;
     DisplacementSpace space = DisplacementSpace::tangent;
-    FrameKind frame = FrameKind::mikk;             ///< in tangent space; of a height map only whose normals
-    FrameLengths lengths = FrameLengths::absolute; ///< in tangent space; not of a height map
+    FrameKind frame = FrameKind::mikk;             ///< in tangent space; a height map uses only the normals
+    FrameLengths lengths = FrameLengths::absolute; ///< in tangent space; not for height maps
     AxisMap axes;
     Vec3f midlevel{0, 0, 0};
-    bool has_midlevel = false; ///< somebody said it, also where it is 0; for inspection only
+    bool has_midlevel = false; ///< stated explicitly, even if 0; for inspection only
     Vec3f scale{1, 1, 1};
     bool flip_v = false;
-    bool is_udim = false; ///< tiles are addressed by floor(u), floor(v); a missing tile displaces by 0
+    bool is_udim = false; ///< tiles are selected by floor(u), floor(v); a missing tile displaces by 0
     WrapMode wrap = WrapMode::clamp;
-    /// Texels between uv islands that hold the background's value take that of their neighbours inside.
+    /// Dilation: texels in the gutter between uv islands that hold the background value take that of the
+    /// nearest texel inside.
     bool dilate = true;
     MapFilter filter = MapFilter::none;
-    /// Shading normals keep the map's detail that is finer than the cells.
+    /// Shading normals include detail of the map that is finer than the cells.
     bool autobump = false;
     std::vector<MapTile> tiles;
 };
 
-/// Metallic-roughness surface. Textures multiply the constants; row 0 of a texture is v = 1, wrap is repeat.
+/// Metallic-roughness material. Textures multiply the constants; row 0 of a texture is v = 1, wrap mode is
+/// repeat.
 struct Material {
     std::string name;
     Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
-    float roughness = 0.5f;                            ///< [0, 1]; alpha of GGX is its square
+    float roughness = 0.5f;                            ///< [0, 1]; GGX alpha is its square
     float metallic = 0.0f;                             ///< [0, 1]
     float ior = 1.5f;                                  ///< of the dielectric coat, >= 1; 1 removes it
     Vec3f emission{0, 0, 0};                           ///< radiance, >= 0
@@ -128,17 +130,17 @@ struct Material {
     std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
 };
 
-/// Mask of objects and queries that leave nothing out. Pictures show all objects.
+/// Visibility mask with all bits set. Renders ignore masks and show all objects.
 inline constexpr uint32_t kVisibleToAll = 0xffffffff;
 
 struct Object {
     std::string name;
     uint32_t mesh = 0;
-    uint32_t displacement = kNoIndex; ///< kNoIndex: plain polygons
+    uint32_t displacement = kNoIndex; ///< kNoIndex: not displaced
     uint32_t material = kNoIndex;     ///< kNoIndex: the default material
     Affine world_from_object;
     uint32_t visibility_mask =
-        kVisibleToAll; ///< not 0; an Intersector's rays whose mask shares no bit miss it
+        kVisibleToAll; ///< not 0; Intersector rays whose mask shares no bit miss the object
 };
 
 struct Camera {
@@ -148,7 +150,8 @@ struct Camera {
     float focus_distance = 1;  ///< scene units along the view axis, > 0
 };
 
-/// Latitude-longitude radiance; the middle of the image looks along -z, turned by `rotate_degrees` about +y.
+/// Latitude-longitude environment map of radiance; the centre of the image is seen along -z, rotated by
+/// `rotate_degrees` about +y.
 struct Environment {
     std::shared_ptr<const Texture> texture; ///< may be null: constant `color`
     Vec3f color{1, 1, 1};                   ///< multiplies the texture
@@ -160,7 +163,7 @@ enum class LightType { sun, point };
 
 struct Light {
     LightType type = LightType::sun;
-    Vec3f direction{0, -1, 0};   ///< sun: the way the light travels
+    Vec3f direction{0, -1, 0};   ///< sun: direction of travel of the light
     float angle_degrees = 0.53f; ///< sun: diameter of the disc, [0, 90]; 0 is a delta light
     Vec3f position{0, 0, 0};     ///< point
     float radius = 0;            ///< point: radius of its sphere; 0 is a delta light
@@ -168,7 +171,7 @@ struct Light {
     float strength = 1; ///< sun: irradiance at normal incidence; point: radiant intensity
 };
 
-/// Picture settings that a scene file may carry; the command line overrides them.
+/// Image settings stored in a scene file; the command line overrides them.
 struct PictureDefaults {
     std::optional<int> width, height, spp, bounces;
     std::optional<uint32_t> seed;
@@ -184,14 +187,15 @@ struct Scene {
     Camera camera;
     PictureDefaults picture;
     std::string source;                ///< scene or mesh file, for messages
-    uint64_t hash = 0;                 ///< of the content that decides the picture; 0: made in memory
-    std::vector<std::string> warnings; ///< what a reader noticed
+    uint64_t hash = 0;                 ///< of the content that determines the picture; 0: built in memory
+    std::vector<std::string> warnings; ///< from the reader
 };
 
-/// Checks every index, range and finiteness. Throws Error{bad_input} that names the object at fault.
+/// Checks all indices and ranges, and that values are finite. Throws Error{bad_input} naming the offending
+/// object.
 void validate_scene(const Scene& scene);
 
-/// The same of one mesh, which is called by its name or else by its index.
+/// The same for one mesh, which messages call by its name, or by `index` if it has none.
 void validate_mesh(const Mesh& mesh, size_t index = 0);
 
 } // namespace relief

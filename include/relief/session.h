@@ -1,4 +1,4 @@
-// A scene that stays ready between pictures while its displacement maps are painted.
+// Interactive rendering: a scene that stays prepared between pictures while its displacement maps are edited.
 #pragma once
 
 #include <cstdint>
@@ -12,43 +12,43 @@ namespace relief {
 
 /// New texels for a rectangle of a displacement map.
 struct MapEdit {
-    std::string displacement; ///< its name in the scene
-    int udim = 1001;          ///< its tile
-    uint32_t x = 0, y = 0;    ///< where the first texel goes: column and row, row 0 at the top
-    Texture texels;           ///< raw values, as in the map's file
+    std::string displacement; ///< name in the scene
+    int udim = 1001;          ///< UDIM number of the tile
+    uint32_t x = 0, y = 0;    ///< column and row of the first texel, row 0 at the top
+    Texture texels;           ///< raw values in the map's encoding
 };
 
-/// What an edit cost.
+/// Cost of an edit.
 struct EditReport {
-    uint64_t patches = 0; ///< patches that were made ready anew, of all surfaces with that map
+    uint64_t patches = 0; ///< patches that were updated, of all surfaces with that map
     double seconds = 0;
 };
 
-/// Keeps surfaces, trees and the cache of fine geometry from picture to picture. After an edit only what the
-/// rectangle reaches is made anew: its part of the bounds of the map, levels and boxes of the patches that
-/// read it, the nodes above them and their fine geometry; and of the next picture the blocks of pixels whose
-/// rays came near them. The CPU engine's own walk does so; engines and structures asked for by name make
-/// their trees, device buffers and pictures anew. Pictures are those that the edited map gives when it is
-/// loaded, bit for bit, as long as what lies between its uv islands keeps its background, which is found when
-/// the session begins (Displacement::dilate). Not thread safe.
+/// Keeps surfaces, trees and the patch tree cache between pictures. An edit updates only what reads the
+/// rectangle: its part of the map's bounds pyramid, levels and boxes of the affected patches, the nodes above
+/// them and their patch trees; the next picture traces only the blocks of pixels whose rays came near them.
+/// This holds for the CPU engine's default traversal; other engines, structures and traversals rebuild trees,
+/// device buffers and the whole picture. Pictures are bit-identical to those of a freshly loaded edited map,
+/// as long as the texels between uv islands keep their background value, which is determined when the session
+/// begins (Displacement::dilate). Not thread safe.
 class Session {
   public:
-    /// Maps are held as copies of the scene's. Throws as render(), and Error{usage} for tessellated surfaces.
+    /// Copies the maps of the scene. Throws as render(), and Error{usage} for SurfaceMode::tessellated.
     Session(Scene scene, const RenderSettings& settings);
     ~Session();
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
 
-    /// The next picture. Its `prepare_s` is what came since the last one: making the session, or edits. Rays,
-    /// trees and times of stages are counted from the session's start.
+    /// Renders the next picture. Its `prepare_s` covers the work since the last one: construction, or edits.
+    /// Rays, trees and stage times accumulate over the session. Throws as relief::render().
     RenderResult render(RenderObserver* observer = nullptr);
 
-    /// Every displacement that uses the same image follows. Throws Error{bad_input} for a name or tile that
-    /// is not there, a rectangle that leaves the map, a value that is not finite or displaces beyond 1e18:
-    /// nothing is changed then.
+    /// Replaces texels in all displacements that share the image. Throws Error{bad_input}, and changes
+    /// nothing, for an unknown name or tile, a rectangle outside the map, and values that are not finite or
+    /// displace by more than 1e18 scene units.
     EditReport edit(const MapEdit& edit);
 
-    /// Throws what edit() would; nothing is changed.
+    /// Throws what edit() would throw; changes nothing.
     void check(const MapEdit& edit) const;
 
   private:

@@ -1,11 +1,11 @@
-// Trees and the ways through them, by name.
+// Acceleration structures and traversals, by name.
 #pragma once
 
 namespace relief {
 
-/// Over instances, and over the patches of a mesh.
+/// Kind of the scene trees: over instances, and over the patches of a surface.
 enum class StructureKind { bvh, lbvh, kdtree };
-/// How a ray walks them; see docs/structures.md. `automatic` is the first of available_traversals().
+/// How rays traverse them; see docs/structures.md. `automatic` is the first of available_traversals().
 enum class TraversalKind {
     automatic,
     wide,
@@ -20,13 +20,13 @@ enum class TraversalKind {
     backtrack
 };
 
-/// What the surface-area heuristic reckons with, relative to each other; those of GRAPP 2019.
+/// Relative costs in the surface-area heuristic; the defaults are those of GRAPP 2019.
 struct SahCosts {
-    float traversal = 3.0f;    ///< of one inner node, > 0
-    float intersection = 1.5f; ///< of one primitive, > 0
+    float traversal = 3.0f;    ///< of an inner node, > 0
+    float intersection = 1.5f; ///< of a primitive, > 0
 };
 
-/// As the command spells it: "skip-link".
+/// Name in command-line options, e.g. "skip-link".
 const char* traversal_name(TraversalKind traversal);
 const char* structure_name(StructureKind structure);
 

@@ -1,5 +1,5 @@
-// Plain values of the public calls: small vectors and affine transforms.
-// Arithmetic on them lives in src/math; a user of the library needs the members only.
+// Value types of the public interface: small vectors and affine transforms. Their arithmetic is internal
+// (src/math).
 #pragma once
 
 #include <array>

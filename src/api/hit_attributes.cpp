@@ -11,8 +11,7 @@ namespace {
 
 constexpr size_t kGrain = 256;
 
-/// Of the micro-triangle, which is linear in the place on the patch: over one cell, u and v change by 1 /
-/// side.
+/// Position derivatives of the micro-triangle, which is linear in (u, v); a cell spans 1 / side of u and v.
 void compute_derivatives(const PreparedScene& scene, const cpu::TraceHit& hit, const PatchSamples* samples,
                          HitAttributes& result) {
     const Affine& world_from_object = scene.instances[hit.instance].world_from_object;

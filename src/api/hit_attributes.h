@@ -1,5 +1,4 @@
-// What other programs ask of a hit beside its place: computed from the place alone, so that it does not
-// matter which engine found it.
+// Optional attributes of hits, computed from the position alone, so that they do not depend on the engine.
 #pragma once
 
 #include <span>
@@ -9,7 +8,7 @@
 
 namespace relief {
 
-/// `wanted`: bits of HitAttribute. Spans of equal length; in parallel.
+/// `wanted`: bits of HitAttribute. Spans of equal length; runs in parallel.
 void compute_hit_attributes(const PreparedScene& scene, uint32_t wanted, std::span<const RayHit> hits,
                             std::span<HitAttributes> attributes);
 

@@ -1,4 +1,5 @@
-// The engine that settings name. The one place that knows both, and the laboratory's traversals.
+// Creates the engine selected by the settings. The only place that depends on both engines and on the
+// laboratory's traversals.
 #pragma once
 
 #include <memory>
@@ -7,7 +8,7 @@
 
 namespace relief {
 
-/// Throws Error{device_missing} for an instruction set or a device that is not there.
+/// Throws Error{device_missing} for an instruction set or a device that is not available.
 std::unique_ptr<Engine> make_engine(std::shared_ptr<const PreparedScene> scene,
                                     const RenderSettings& settings);
 

@@ -1,4 +1,4 @@
-// What every picture says of itself, whoever made it.
+// Statistics and metadata common to all pictures.
 #pragma once
 
 #include "prepare/prepared_scene.h"
@@ -6,11 +6,10 @@
 
 namespace relief {
 
-/// Adds what the scene holds: meshes, patches, texels and their bytes.
+/// Adds counts and bytes of the scene: meshes, patches, texels.
 void count_scene(const PreparedScene& scene, Statistics& statistics);
 
-/// Writes version, seed, samples, the scene's hash and whether pixels lack some of the samples into the
-/// header.
+/// Writes version, seed, sample range, scene hash and whether pixels lack samples into the metadata.
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-// The whole path: scene -> surfaces and levels -> trees -> rays -> film -> image.
+// The whole pipeline: scene -> surfaces and levels -> trees -> rays -> film -> image.
 #include "relief/render.h"
 
 #include <utility>
@@ -22,7 +22,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     Statistics& statistics = result.statistics;
     const Timer total;
     with_threads(settings.device.threads, [&] {
-        // First, so that a picture that cannot be held is refused before the scene is prepared.
+        // First, so that a picture too large for memory is rejected before the scene is prepared.
         Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
         std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
@@ -38,7 +38,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         statistics.ray_buffers_bytes += film.byte_count();
         statistics.warnings = prepared->warnings;
         count_scene(*prepared, statistics);
-        // The picture may lie where they lay.
+        // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
         result.image = film.resolve();
     });

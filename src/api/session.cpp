@@ -19,7 +19,7 @@ struct Session::Implementation {
     double prepare_s = 0; ///< since the last picture
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
-    std::unique_ptr<Film> film; ///< holds the last picture; null: none that the engine could go on with
+    std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
 
     Implementation(Scene scene, const RenderSettings& given) : settings(given) {
         validate_settings(settings);
@@ -33,12 +33,12 @@ struct Session::Implementation {
     }
 
     void start_engine() {
-        film.reset(), engine.reset(); // a device need not hold two
+        film.reset(), engine.reset(); // so that a device does not hold two
         engine = make_engine(editor->scene(), settings);
         engine->expect_changes();
     }
 
-    /// What changed since the last picture is traced anew, the rest kept.
+    /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
         if (film) return engine->refresh(*film, observer);
         auto fresh = std::make_unique<Film>(settings.image.width, settings.image.height, settings.image.crop,
@@ -51,7 +51,7 @@ struct Session::Implementation {
     EditReport apply(const MapEdit& edit) {
         const Timer timer;
         const CheckedEdit checked = editor->check(edit);
-        // Whatever fails from here on, no picture is gone on with.
+        // If anything fails from here on, the next picture is rendered from scratch.
         std::unique_ptr<Film> kept = std::move(film);
         const std::vector<SurfaceChange> changes = editor->apply(checked);
         if (engine->apply_changes(changes))

@@ -1,4 +1,4 @@
-// DCHECK: misuse inside the library. Active in debug and sanitizer builds, gone in release.
+// DCHECK: assertion against internal misuse. Active in debug and sanitizer builds, gone in release.
 #pragma once
 
 #include <cstdio>

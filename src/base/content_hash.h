@@ -9,11 +9,11 @@
 
 namespace relief {
 
-/// XXH3 (Collet, xxHash 0.8) of each part, with the hash of all before it as its seed. The same on every
-/// machine with the same order of bytes. Parts must have no padding.
+/// XXH3 (Collet, xxHash 0.8) of each part, seeded with the hash of all parts before. Depends on the machine's
+/// byte order only. Parts must have no padding.
 class ContentHash {
   public:
-    /// Goes on from the value of another hash.
+    /// Continues from the value of another hash.
     explicit ContentHash(uint64_t seed = 0) : state_(seed) {}
 
     void add_bytes(const void* data, size_t size);

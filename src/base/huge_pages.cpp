@@ -23,7 +23,7 @@ void* allocate_pages(size_t bytes, size_t alignment) {
     void* const memory = size < bytes ? nullptr : std::aligned_alloc(unit, std::max(size, unit));
     if (!memory) throw std::bad_alloc();
 #ifdef __linux__
-    // A request: without huge pages everything works as well.
+    // Only a hint: failure is harmless.
     if (is_large) madvise(memory, size, MADV_HUGEPAGE);
 #endif
     return memory;

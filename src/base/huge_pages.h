@@ -1,16 +1,15 @@
-// Memory for large arrays that are read all over: asks the system for huge pages, which spare the look-ups of
-// addresses.
+// Memory for large arrays with random access: requests huge pages, which reduces TLB misses.
 #pragma once
 
 #include <cstddef>
 
 namespace relief {
 
-/// `alignment` is a power of two. Throws std::bad_alloc. To be freed with free_pages.
+/// `alignment` is a power of two. Throws std::bad_alloc. Free with free_pages.
 void* allocate_pages(size_t bytes, size_t alignment);
 void free_pages(void* memory);
 
-/// For std::vector.
+/// Allocator for std::vector.
 template <class T> struct HugePageAllocator {
     using value_type = T;
 

@@ -19,7 +19,7 @@ uint64_t read_number(const char* file) {
     return stream >> value ? value : kUnknown;
 }
 
-/// Bytes behind a key of a file whose lines are "Key: N kB", or other text.
+/// Value, in bytes, of a key in a file with lines "Key: N kB"; other lines are ignored.
 uint64_t read_bytes(const char* file, const std::string& wanted) {
     std::ifstream stream(file);
     uint64_t kibibytes = 0;
@@ -42,7 +42,7 @@ std::string processor_name() {
 }
 
 uint64_t peak_resident_bytes() {
-    // getrusage also counts what the process held before it became this program: at times that of its parent.
+    // Preferred to getrusage, which includes memory held before exec, at times that of the parent process.
     const uint64_t peak = read_bytes("/proc/self/status", "VmHWM:");
     if (peak != kUnknown) return peak;
     rusage usage{};

@@ -1,4 +1,4 @@
-// What the machine is, what this process holds of it, and what it can still give.
+// Processor, memory of this process, and available memory.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +7,14 @@
 
 namespace relief {
 
-/// Model of the processor; "cpu" where the system does not tell.
+/// Model of the processor; "cpu" if unknown.
 std::string processor_name();
 
-/// Largest resident size of this process so far, bytes; 0 where the system does not tell.
+/// Peak resident size of this process, bytes; 0 if unknown.
 uint64_t peak_resident_bytes();
 
-/// Bytes that can be allocated without swapping, the limit of the enclosing control group included; the
-/// largest uint64_t where the system does not tell.
+/// Bytes that can be allocated without swapping, within the limit of the control group; UINT64_MAX if
+/// unknown.
 uint64_t available_memory_bytes();
 
 } // namespace relief

@@ -21,9 +21,8 @@ extern "C" void __tsan_release(void* address);
 namespace relief {
 namespace {
 
-// oneTBB of the distributions is not instrumented, so the thread sanitizer has to be told what TBB
-// guarantees: what came before a loop is seen by its bodies, and what the bodies did is seen after it. Bodies
-// stay unordered.
+// Distributions' oneTBB is not instrumented, so the thread sanitizer must be told TBB's guarantees: a loop
+// happens after what precedes it and before what follows; its bodies are unordered.
 class LoopOrder {
   public:
     LoopOrder() { release(&start_); }
@@ -51,7 +50,7 @@ class BodyScope {
     LoopOrder& order_;
 };
 
-/// Finishes the order also when a body throws.
+/// Completes the ordering also when a body throws.
 class LoopScope {
   public:
     ~LoopScope() { order.finish(); }

@@ -1,4 +1,4 @@
-// Parallel loops with names. The only place with oneTBB; results never depend on the number of threads.
+// Named parallel loops. The only user of oneTBB; results never depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@ void parallel_for(const char* name, size_t count, size_t grain,
 /// Runs both functions, possibly at the same time.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
-/// Index of the calling worker in [0, thread_count()); two bodies that run at the same time never share it.
+/// Index of the calling worker in [0, thread_count()); unique among concurrently running bodies.
 int current_thread_index();
 
-/// Threads that a parallel_for of this scope may use.
+/// Maximum number of threads of a parallel_for in this scope.
 int thread_count();
 
-/// Calls `body` with at most `threads` workers for all parallel loops inside it; 0 means all cores.
+/// Calls `body`; parallel loops inside it use at most `threads` workers; 0 means all cores.
 void with_threads(int threads, const std::function<void()>& body);
 
 } // namespace relief

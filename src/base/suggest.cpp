@@ -23,9 +23,9 @@ size_t compute_edit_distance(std::string_view a, std::string_view b) {
     return table[a.size()][b.size()];
 }
 
-constexpr size_t kShortestStem = 3; // letters that a longer word is known by
+constexpr size_t kShortestStem = 3; // shortest prefix, in letters, that identifies a longer word
 
-/// The one known word that begins with `word`; empty for none or several.
+/// The only known word with prefix `word`; empty for none or several.
 std::string_view find_only_extension(std::string_view word, std::span<const std::string_view> known) {
     const size_t dashes = std::min(word.find_first_not_of('-'), word.size());
     const auto extends = [&](std::string_view candidate) { return candidate.starts_with(word); };
@@ -34,7 +34,7 @@ std::string_view find_only_extension(std::string_view word, std::span<const std:
     return *std::find_if(known.begin(), known.end(), extends);
 }
 
-constexpr size_t kLongestWord = 64; // longer words are nobody's typing mistake
+constexpr size_t kLongestWord = 64; // longer words are not typing mistakes
 constexpr size_t kLongestList = 16;
 
 } // namespace

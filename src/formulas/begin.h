@@ -1,6 +1,5 @@
-// Opens a formula file: the names that GLSL and C++ share. C++ puts formulas of one lane into
-// relief::scalar. Instances of many lanes define RELIEF_LANES and include formulas in a namespace of their
-// own.
+// Opens a formula file: names shared by GLSL and C++. C++ compiles the scalar instance into relief::scalar;
+// SIMD instances define RELIEF_LANES and include the formulas in their own namespace.
 #ifndef __cplusplus
 #include "formulas/lang.h"
 #elif defined(RELIEF_LANES)

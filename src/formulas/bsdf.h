@@ -1,8 +1,8 @@
 // Metallic-roughness surface in the local frame (shading normal = z): a GGX lobe over a diffuse base, both
 // energy conserving. Microfacets: Walter et al. 2007 with height-correlated Smith shadowing (Heitz 2014,
-// Understanding the Masking-Shadowing Function). Energy lost between microfacets and the coupling of coat and
+// Understanding the Masking-Shadowing Function). Multiple-scattering compensation and coupling of coat and
 // base: Kulla and Conty 2017, Revisiting Physically Based Shading; both are reciprocal, and a white surface
-// returns all light.
+// reflects all light.
 #if !defined(RELIEF_BSDF_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_BSDF_H
@@ -20,12 +20,12 @@ struct BsdfParameters {
     Float ior;       ///< of the dielectric coat, >= 1; 1: no coat
 };
 
-/// Made for one outgoing direction.
+/// Evaluated for one outgoing direction.
 struct Bsdf {
     Vec3 f0;   ///< Schlick's Fresnel at normal incidence
     Float f90; ///< and at grazing incidence
     Float alpha, roughness;
-    Vec3 multiple; ///< of light scattered more than once: times (1 - E(o)) (1 - E(i))
+    Vec3 multiple; ///< multiple scattering: times (1 - E(o)) (1 - E(i))
     Vec3 diffuse;  ///< of the base: times (1 - C(o)) (1 - C(i)), C the albedo of the dielectric coat
     Float coat_f0, coat_f90, coat_multiple;
     Float escape_multiple;      ///< 1 - E(o)
@@ -54,8 +54,8 @@ FN Vec3 make_grey(Float value) {
 
 FN Float luminance(Vec3 c) { return Float(0.2126f) * c.x + Float(0.7152f) * c.y + Float(0.0722f) * c.z; }
 
-/// Part of the light that leaves after several bounces between microfacets, of Fresnel average f (Hill 2018,
-/// A Multi-Faceted Exploration, part 2): f^2 E / (1 - f (1 - E)).
+/// Fraction of light that leaves after multiple scattering between microfacets, for average Fresnel f (Hill
+/// 2018, A Multi-Faceted Exploration, part 2): f^2 E / (1 - f (1 - E)).
 FN Float multiple_scattering(Float f, Float average_albedo) {
     return f * f * average_albedo / (Float(1.0f) - f * (Float(1.0f) - average_albedo));
 }
@@ -63,12 +63,12 @@ FN Float multiple_scattering(Float f, Float average_albedo) {
 /// Mean of Schlick's Fresnel over the cosine-weighted hemisphere.
 FN Float average_fresnel(Float f0, Float f90) { return f0 + (f90 - f0) * Float(1.0f / 21.0f); }
 
-/// Albedo of the dielectric coat, light scattered several times included.
+/// Albedo of the dielectric coat, multiple scattering included.
 FN Float coat_albedo(Bsdf b, GgxAlbedo e) {
     return b.coat_f0 * e.scale + b.coat_f90 * e.bias + b.coat_multiple * (Float(1.0f) - e.scale - e.bias);
 }
 
-/// That of a material without coat or metal, whatever the outgoing direction: what make_general_bsdf gives.
+/// For a material without coat or metal; equals make_general_bsdf for every outgoing direction.
 FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
     Float zero = Float(0.0f);
     Bsdf b;
@@ -87,7 +87,7 @@ FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
     return b;
 }
 
-/// No light but that of the diffuse base, unattenuated.
+/// Whether only the diffuse base scatters, unattenuated.
 FN Bool is_diffuse(Bsdf b) { return b.f90 == Float(0.0f); }
 
 FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
@@ -95,7 +95,7 @@ FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
     Float dielectric = one - p.metallic;
     Float root = (p.ior - one) / (p.ior + one);
     Float coat_f0 = root * root;
-    // Below 2 % at normal incidence the coat fades as a whole, to nothing at ior 1.
+    // Below 2 % reflectance at normal incidence the whole coat fades out, vanishing at ior 1.
     Float coat_f90 = min(one, Float(50.0f) * coat_f0);
     GgxAlbedo average = lookup_ggx_average(p.roughness);
     GgxAlbedo at_o = lookup_ggx_albedo(p.roughness, cos_o);
@@ -121,7 +121,7 @@ FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
     Float specular = luminance(b.f0) * at_o.scale + b.f90 * at_o.bias;
     Float cosine =
         luminance(f_multiple) * b.escape_multiple + dielectric * luminance(p.base_color) * b.escape_coat;
-    // At least a fifth for the sharp lobe: its Fresnel factor can be far above its mean.
+    // At least a fifth for the specular lobe: its Fresnel factor can be far above its mean.
     Float share = clamp(specular / (specular + cosine), Float(0.2f), one);
     b.specular_probability = select(specular > Float(0.0f), share, Float(0.0f));
     return b;
@@ -159,7 +159,7 @@ FN Float ggx_lambda(Float alpha, Float cos_theta) {
     return Float(0.5f) * (sqrt(Float(1.0f) + alpha * alpha * tan2) - Float(1.0f));
 }
 
-/// Normal distribution; h a unit vector. Written without 1 - h.z^2, which cancels for smooth surfaces.
+/// Normal distribution; h a unit vector. Avoids 1 - h.z^2, which suffers cancellation for smooth surfaces.
 FN Float ggx_distribution(Float alpha, Vec3 h) {
     Float x = h.x / alpha;
     Float y = h.y / alpha;
@@ -198,7 +198,7 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     Float zero = Float(0.0f);
     Bool is_above = wo.z > zero && wi.z > zero;
     BsdfValue result;
-    // All that there is where no light comes from a coat or a metal.
+    // Purely diffuse materials.
     result.value = select(is_above, b.diffuse * wi.z, make_grey(zero));
     result.pdf = select(is_above, cosine_hemisphere_pdf(wi.z), zero);
     Bool is_general = is_above && !is_diffuse(b);
@@ -210,8 +210,8 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     return result;
 }
 
-/// Direction that `wo` is mirrored to by a microfacet normal drawn from those visible (Dupuy and Benyoub
-/// 2023, Sampling Visible GGX Normals with Spherical Caps).
+/// Reflection of `wo` at a microfacet normal sampled from the visible normals (Dupuy and Benyoub 2023,
+/// Sampling Visible GGX Normals with Spherical Caps).
 FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
     Vec3 stretched = {alpha * wo.x, alpha * wo.y, wo.z};
     Vec3 o = normalize(stretched);
@@ -224,7 +224,7 @@ FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
     return h * (Float(2.0f) * dot(wo, h)) - wo;
 }
 
-/// Draws an incoming direction for `wo`: `u_lobe` in [0, 1) picks the lobe, `u` the direction within it.
+/// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects the lobe, `u` the direction within it.
 FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
     Vec3 wi = square_to_cosine_hemisphere(u);
     Bool is_specular = u_lobe < b.specular_probability;
@@ -237,7 +237,7 @@ FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
     return result;
 }
 
-/// Rounding may put a grazing viewer onto the horizon, where nothing could be seen.
+/// Rounding may put a grazing viewer onto the horizon, where the BSDF is undefined.
 FN Vec3 lift_viewer(Vec3 wo_local) {
     Vec3 lifted = {wo_local.x, wo_local.y, max(wo_local.z, Float(1e-4f))};
     return normalize(lifted);

@@ -59,7 +59,7 @@ FN CameraRay make_camera_ray(CameraFrame camera, Vec2 pixel, Vec2 lens) {
     return result;
 }
 
-/// Where a point appears through the pinhole; meaningless for a distance <= 0.
+/// Projection of a point through the pinhole; meaningless for a distance <= 0.
 FN CameraProjection project_point(CameraFrame camera, Vec3 p) {
     Vec3 v = p - camera.origin;
     Float distance = dot(v, camera.forward);

@@ -1,11 +1,11 @@
-// Which cell of a patch a place lies in, and where in it.
+// The cell that a position on a patch lies in, and the position within it.
 #ifndef RELIEF_CELL_PLACE_H
 #define RELIEF_CELL_PLACE_H
 #include "formulas/surface_point.h"
 
 #include "formulas/begin.h"
 
-/// Place on a patch of side * side cells. `is_upper`: on the second triangle of cell (i, j).
+/// Position on a patch of side * side cells. `is_upper`: on the second triangle of cell (i, j).
 struct CellPlace {
     float u, v;
     uint i, j;
@@ -34,7 +34,7 @@ FN CornerWeights weigh_corners(CellPlace place, float side) {
     return weigh_cell_corners(at, cell, place.is_upper, side);
 }
 
-/// Share of the patch's (u, v) that one micro-triangle has.
+/// Area of one micro-triangle in the patch's (u, v).
 FN float triangle_uv_area(bool is_triangle, float side) { return is_triangle ? 1.0f : 0.5f / (side * side); }
 
 #include "formulas/end.h"

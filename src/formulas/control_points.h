@@ -1,9 +1,9 @@
-// Numbers of the control points of a bicubic patch.
+// Indices of the control points of a bicubic patch.
 #ifndef RELIEF_CONTROL_POINTS_H
 #define RELIEF_CONTROL_POINTS_H
 #include "formulas/begin.h"
 
-/// Those of a patch that are not its corners.
+/// Control points of a patch other than its corners.
 const uint kInnerControlCount = 12u;
 
 /// 0..3 are the corners, 4 + 2 k and 5 + 2 k those of edge k from corner k to the next one, 12 + k the inner

@@ -1,5 +1,5 @@
-// What a displaced surface is: the exact float operations of one vertex, in the one order that every engine
-// keeps. Shared edges are closed because both of their patches run these lines on the same numbers.
+// Definition of the displaced surface: the float operations of one vertex in the exact order that every
+// engine follows. Shared edges are watertight because both patches evaluate these lines on the same numbers.
 #if !defined(RELIEF_DISPLACE_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_DISPLACE_H
@@ -23,8 +23,8 @@ struct CubicWeights {
     Float first, second, third, fourth;
 };
 
-/// At parameter s. Exactly one weight is not 0 at s = 0 and s = 1; those of 1 - s, where it is exact, are the
-/// same in turned order.
+/// At parameter s. Exactly one weight is nonzero at s = 0 and s = 1; the weights at 1 - s, where that is
+/// exact, are the same in reverse order.
 FN CubicWeights weigh_cubic(Float s) {
     EXACT Float r = Float(1.0f) - s;
     EXACT Float both = Float(3.0f) * (s * r);
@@ -63,7 +63,7 @@ FN Float decode_row(Float r, Float g, Float b, Float m0, Float m1, Float m2) {
     return d;
 }
 
-/// One world coordinate of the displacement (t, b, n) carried through the frame's coordinates of T, B and N.
+/// One world coordinate of the displacement (t, b, n), given that coordinate of T, B and N.
 FN Float carry_through_frame(Float t, Float b, Float n, Float frame_t, Float frame_b, Float frame_n) {
     EXACT Float d = t * frame_t + b * frame_b + n * frame_n;
     return d;

@@ -1,6 +1,6 @@
-// The environment as a light: a latitude-longitude image, directions drawn by brightness from a piecewise
-// constant density over cells of latitude and longitude (Pharr, Jakob and Humphreys 2023, Physically Based
-// Rendering, section 12.5.2).
+// Environment light: a latitude-longitude image, importance-sampled by a piecewise constant density over
+// cells of latitude and longitude (Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section
+// 12.5.2).
 #if !defined(RELIEF_ENVIRONMENT_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_ENVIRONMENT_H
@@ -10,8 +10,8 @@
 #endif
 #include "formulas/begin.h"
 
-/// Point of a latitude-longitude image, (0, 0) its top left corner, that is seen along a unit vector: the
-/// middle looks along -z, up is +y, right is +x. Not turned.
+/// Position in a latitude-longitude image, (0, 0) its top left corner, for a unit vector: the centre is -z,
+/// up is +y, right is +x. Without rotation.
 FN Vec2 direction_to_latlong(Vec3 d) {
     Vec2 result = {Float(0.5f) + find_angle(d.x, Float(0.0f) - d.z) * Float(0.5f / kPi),
                    find_arc_cosine(clamp(d.y, Float(-1.0f), Float(1.0f))) * Float(1.0f / kPi)};
@@ -39,7 +39,7 @@ FN Vec3 turn_out_of_environment(EnvironmentData e, Vec3 d) {
     return result;
 }
 
-/// Point of the image that is seen along a world direction.
+/// Position in the image for a world direction, with rotation.
 FN Vec2 locate_in_environment(EnvironmentData e, Vec3 direction) {
     return direction_to_latlong(turn_into_environment(e, direction));
 }
@@ -50,15 +50,15 @@ FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
     return result;
 }
 
-/// Cell of `count` along one axis that holds a position in [0, 1], as a whole number; the first one for what
-/// is NaN.
+/// Cell of `count` along one axis that holds a position in [0, 1], as an integer-valued float; the first one
+/// for NaN.
 FN Float locate_environment_cell(Float position, Float count) {
     Float cell = floor(position * count);
     return select(cell > Float(0.0f), min(cell, count - Float(1.0f)), Float(0.0f));
 }
 
-/// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, which have no
-/// measure.
+/// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, where the solid
+/// angle vanishes.
 FN Float environment_cell_density(EnvironmentData e, Float probability, Vec3 direction) {
     Float sine = sqrt(direction.x * direction.x + direction.z * direction.z);
     Bool is_pole = sine == Float(0.0f);

@@ -1,5 +1,5 @@
-// Vector arithmetic whose every operation rounds once, in one order, in C++ and GLSL alike: what decides
-// where surfaces are goes through here.
+// Vector arithmetic in which every operation rounds once, in a fixed order, in C++ and GLSL alike. Everything
+// that determines surface positions uses it.
 #ifndef RELIEF_EXACT_H
 #define RELIEF_EXACT_H
 #include "formulas/begin.h"

@@ -6,11 +6,11 @@
 
 #include "formulas/begin.h"
 
-// 0 and +-1 are exact in both precisions, so that frames along the axes come back exactly.
+// 0 and +-1 are exact in both precisions, so axis-aligned frames are restored exactly.
 const float kFineUnit = 32767.0f;
 const float kCoarseUnit = 16383.0f;
 
-/// Signed number in the lowest `width` bits, divided by `scale`.
+/// Signed integer in the lowest `width` bits, divided by `scale`.
 FN float dequantize_unit(uint bits, uint width, float scale) {
     EXACT float value = float(int(bits << (32u - width)) >> int(32u - width)) / scale;
     return clamp(value, -1.0f, 1.0f);

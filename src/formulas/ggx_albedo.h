@@ -1,4 +1,4 @@
-// The table of the GGX lobe's albedo, interpolated.
+// Interpolated look-up of the GGX albedo table.
 #if !defined(RELIEF_GGX_ALBEDO_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_GGX_ALBEDO_H

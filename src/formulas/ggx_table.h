@@ -5,9 +5,9 @@
 
 // Split by Fresnel as in Karis 2013, Real Shading in Unreal Engine 4: albedo = f0 scale + f90 bias, with
 // Schlick's Fresnel. Rows: roughness 0, 1/15, ..., 1. Columns: square root of the cosine 0, 1/15, ..., 1. The
-// averages of the rows come last. From 400 x 400 stratified samples an entry; the tests compute the integrals
-// anew and compare. The averages are 2 integral(albedo(x) x dx) of the linearly interpolated table, not of
-// the lobe itself, so that what the table says adds up to one exactly.
+// averages of the rows come last. 400 x 400 stratified samples per entry; the tests recompute the integrals.
+// The averages are 2 integral(albedo(x) x dx) of the linearly interpolated table, not of the lobe itself, so
+// that the table conserves energy exactly.
 #ifdef __cplusplus
 // clang-format off
 const float kGgxScale[272] = {
@@ -51,7 +51,7 @@ const float kGgxBias[272] = {
 // clang-format on
 #endif
 
-const uint kGgxAverages = 256u; ///< where the averages follow in the table
+const uint kGgxAverages = 256u; ///< offset of the averages in the table
 const uint kGgxEntryCount = 272u;
 
 #ifdef __cplusplus

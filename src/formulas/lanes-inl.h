@@ -1,7 +1,7 @@
-// Sixteen (or eight, or four) floats as one value on every instruction set: one register on AVX-512, two on
-// AVX2, four on SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside
-// HWY_NAMESPACE only. Every operation rounds once and nothing is fused, so that results are the same bits on
-// every target.
+// Sixteen (or eight, or four) floats as one value on every instruction set: one register with AVX-512, two
+// with AVX2, four with SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside
+// HWY_NAMESPACE only. Every operation rounds once and nothing is fused, so results are bit-identical on all
+// targets.
 #if defined(RELIEF_MATH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_LANES_INL_H
 #undef RELIEF_MATH_LANES_INL_H
@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One bit a lane.
+/// One bit per lane.
 using LaneMask = uint32_t;
 
 template <size_t kWidth> struct Lanes {
@@ -46,13 +46,13 @@ template <size_t kWidth> struct Lanes {
         for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::LoadU(D(), source + p * kLanes);
         return r;
     }
-    /// Sixteen (or eight...) pairs of numbers, firsts and seconds apart.
+    /// Sixteen (or eight, ...) pairs of numbers in structure-of-arrays layout.
     static HWY_INLINE void load_pairs(const float* source, Lanes& first, Lanes& second) {
         for (size_t p = 0; p < kParts; ++p)
             hn::LoadInterleaved2(D(), source + 2 * p * kLanes, first.part[p], second.part[p]);
     }
-    /// origin + code * scale of the codes of a quantised box. The scale is a power of two, so products are
-    /// exact, and the sum has the same bits whether it is fused with them or not.
+    /// origin + code * scale for the codes of a quantised box. The scale is a power of two, so the products
+    /// are exact and a fused multiply-add gives the same bits.
     static HWY_INLINE Lanes decode(const uint8_t* codes, float origin, float scale) {
         const hn::Rebind<uint8_t, D> d8;
         const hn::Rebind<int32_t, D> d32;
@@ -96,8 +96,8 @@ template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
     return r;
 }
 
-/// In one piece from the mask to the number and back: a word that is stored by bytes, or the other way round,
-/// has to wait for its stores.
+/// Converts mask and number through one word: mixing byte stores with a word load, or the reverse, defeats
+/// store-to-load forwarding.
 static_assert(std::endian::native == std::endian::little);
 template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     alignas(8) uint8_t bytes[8] = {};
@@ -107,7 +107,8 @@ template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     return bits;
 }
 
-/// Stores the lanes of `mask` one after another. A whole register is written: what follows them is undefined.
+/// Compress store of the lanes in `mask`. Whole registers are written: memory behind the stored lanes is
+/// undefined.
 template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, hn::TFromD<D>* target) {
     const uint64_t bits = mask;
     hn::StoreU(hn::CompressBits(v, reinterpret_cast<const uint8_t*>(&bits)), d, target);
@@ -124,7 +125,7 @@ template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask 
 RELIEF_LANES_COMPARE(less_equal, Le)
 RELIEF_LANES_COMPARE(less, Lt)
 RELIEF_LANES_COMPARE(equal, Eq)
-RELIEF_LANES_COMPARE(not_equal, Ne) // of a NaN: true or false, by instruction set
+RELIEF_LANES_COMPARE(not_equal, Ne) // NaN: true or false, depending on the instruction set
 #undef RELIEF_LANES_COMPARE
 
 /// a where x < y, else b.
@@ -148,7 +149,7 @@ template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
     return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
 }
 
-/// In no order that is promised.
+/// The order of summation is unspecified.
 template <size_t W> HWY_INLINE float reduce_sum(const Lanes<W>& a) {
     auto sum = a.part[0];
     for (size_t p = 1; p < Lanes<W>::kParts; ++p) sum = hn::Add(sum, a.part[p]);
@@ -164,7 +165,7 @@ template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes
 
 using Lanes16 = Lanes<16>;
 
-/// Sixteen whole numbers: places that lanes come from, which are not negative, or words to be stored.
+/// Sixteen integers: non-negative lane indices, or words to be stored.
 struct LaneIndices {
     using D = hn::Rebind<int32_t, Lanes16::D>;
     hn::Vec<D> part[Lanes16::kParts];
@@ -192,7 +193,7 @@ struct LaneIndices {
     HWY_INLINE explicit LaneIndices(const Lanes16& bits) {
         for (size_t p = 0; p < Lanes16::kParts; ++p) part[p] = hn::BitCast(D(), bits.part[p]);
     }
-    /// Of floats that are whole numbers.
+    /// From integer-valued floats.
     static HWY_INLINE LaneIndices convert(const Lanes16& whole) {
         LaneIndices r;
         for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(D(), whole.part[p]);
@@ -225,7 +226,7 @@ struct LaneIndices {
     }
 };
 
-/// Lanes of `a` where a number is negative, else of `b`.
+/// Lanes of `a` where the integer is negative, else of `b`.
 HWY_INLINE Lanes16 select_negative(const LaneIndices& number, const Lanes16& a, const Lanes16& b) {
     Lanes16 r;
     for (size_t p = 0; p < Lanes16::kParts; ++p) {
@@ -235,7 +236,7 @@ HWY_INLINE Lanes16 select_negative(const LaneIndices& number, const Lanes16& a, 
     return r;
 }
 
-/// base[index] in every lane.
+/// Gathers base[index] in every lane.
 HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
     Lanes16 r;
     for (size_t p = 0; p < Lanes16::kParts; ++p)
@@ -243,8 +244,8 @@ HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
     return r;
 }
 
-/// kCount floats, eight or sixteen, that lanes pick from by indices below kCount: out of registers where two
-/// hold all, else out of memory, which is slower.
+/// Look-up table of kCount floats, eight or sixteen, indexed per lane: a permutation where two registers hold
+/// the table, else a gather, which is slower.
 template <size_t kCount> struct LaneTable {
     using Values = Lanes<kCount>;
     static constexpr bool kIsInRegisters = Lanes16::kLanes >= 8;
@@ -265,7 +266,7 @@ template <size_t kCount> struct LaneTable {
     }
 
   private:
-    /// `table` is this one: a template, so that each instruction set compiles its own way only.
+    /// `table` is *this: a template, so that each instruction set compiles its own branch only.
     template <class Table, class Index> static HWY_INLINE auto look_up(const Table& table, Index index) {
         const Lanes16::D d;
         const hn::Rebind<int32_t, Lanes16::D> d32;
@@ -287,7 +288,7 @@ template <size_t kCount> struct LaneTable {
 using Lanes8 = Lanes<8>;
 using Lanes4 = Lanes<4>;
 
-/// Four floats of each lane, one lane after another.
+/// Four floats per lane, lane after lane.
 struct LaneQuads {
     alignas(64) float lane[16][4];
 
@@ -311,7 +312,7 @@ using Float = Lanes16;
 #undef RELIEF_LANES
 } // namespace wide
 
-/// The same over the four channels of a texel.
+/// The same formulas over the four channels of a texel.
 namespace texel {
 using Float = Lanes4;
 #define RELIEF_LANES

@@ -20,7 +20,7 @@ float copy_sign(float size, float sign) {
 
 bool is_finite(vec3 v) { return all(lessThanEqual(abs(v), vec3(3.402823466e38f))); }
 
-/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h gives.
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h.
 vec3 make_unit(vec3 a) {
     precise float squared = a.x * a.x + a.y * a.y + a.z * a.z;
     if (!(squared > 1e-37) || !(squared < 3e38)) {

@@ -1,16 +1,16 @@
-// Formulas that lights and the surfaces under them share.
+// Formulas shared by all lights.
 #ifndef RELIEF_LIGHT_H
 #define RELIEF_LIGHT_H
 #include "formulas/begin.h"
 
-/// Weight of the technique with density a beside one with density b (Veach 1997, power heuristic with
+/// MIS weight of the technique with density a against one with density b (Veach 1997, power heuristic with
 /// exponent 2). Infinite a (a delta light) gives 1.
 FN float power_heuristic(float a, float b) {
     float ratio = b / a;
     return a > 0.0f ? 1.0f / (1.0f + ratio * ratio) : 0.0f;
 }
 
-/// 1 - cos of the half angle under which a sphere is seen; 2, every direction, from inside it.
+/// 1 - cos of the half angle that a sphere subtends; 2, all directions, from inside.
 FN float sphere_cone_height(float radius, float distance) {
     float s = radius / distance;
     float s2 = s * s;

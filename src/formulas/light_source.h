@@ -1,4 +1,4 @@
-// Lights one by one: how bright each may be at a point, and directions drawn towards it.
+// Light sources: estimated irradiance at a point, and sampling of directions towards them.
 #ifndef RELIEF_LIGHT_SOURCE_H
 #define RELIEF_LIGHT_SOURCE_H
 #include "formulas/basis.h"
@@ -16,7 +16,7 @@ const uint kSourceEmitters = 3u; ///< all emissive surfaces together
 /// Members of 4 bytes, the same in device memory.
 struct LightSourceData {
     uint kind;
-    float power; ///< luminance of what estimate_irradiance scales
+    float power; ///< luminance scaled by estimate_irradiance
     Vec3 color;
     float strength; ///< sun: irradiance at normal incidence; point: radiant intensity; both times `color`
     Vec3 center;    ///< of the point light, or of a sphere about all emitters
@@ -26,7 +26,7 @@ struct LightSourceData {
     float cone;     ///< of the sun: 1 - cos of the half angle; 0: a delta light
 };
 
-/// A direction towards a light, drawn with density `pdf` per solid angle; 0: nothing could be drawn.
+/// A sampled direction towards a light with density `pdf` per solid angle; 0: no sample.
 struct LightDraw {
     Vec3 direction; ///< unit length
     float distance; ///< infinity for the environment and suns
@@ -34,10 +34,10 @@ struct LightDraw {
     float pdf;      ///< infinity for a delta light
 };
 
-/// A light met by a ray.
+/// A light hit by a ray.
 struct LightSeen {
-    Vec3 radiance; ///< zero: not met
-    float pdf;     ///< with which the direction would have been drawn
+    Vec3 radiance; ///< zero: missed
+    float pdf;     ///< density with which sampling would have chosen the direction
 };
 
 FN float estimate_irradiance(LightSourceData source, Vec3 position) {
@@ -47,7 +47,7 @@ FN float estimate_irradiance(LightSourceData source, Vec3 position) {
     return source.power;
 }
 
-/// Radiance of a light that has a shape: a sun's disc, or the sphere of a point light.
+/// Radiance of a light with extent: a sun's disc, or the sphere of a point light.
 FN Vec3 shape_radiance(LightSourceData source) {
     // A disc of half angle a has the projected solid angle pi sin(a)^2, and sin^2 = h (2 - h) with h = 1 -
     // cos.
@@ -80,14 +80,14 @@ FN LightDraw draw_point_light(LightSourceData source, Vec3 position, Vec2 u) {
     float cone = sphere_cone_height(source.radius, distance);
     drawn.pdf = cone_pdf(cone);
     drawn.direction = normalize(from_local(make_basis(axis), square_to_cone(u, cone)));
-    // At the rim rounding may miss the sphere: it is as far away as its tangent then.
+    // Rounding may miss the sphere at its rim; use the distance of the tangent point then.
     float reach = sphere_distance(to, source.radius, drawn.direction);
     drawn.distance = reach <= 0.0f ? distance : reach;
     drawn.weight = shape_radiance(source) * (1.0f / drawn.pdf);
     return drawn;
 }
 
-/// Density per solid angle, seen from a point `to` away, of a place on an emissive patch that is drawn with
+/// Density per solid angle, from a point `to` away, of a point on an emissive patch selected with
 /// `probability`; `area_per_uv` and `normal` are those of its micro-triangle.
 FN float emitter_density(float probability, float area_per_uv, Vec3 normal, Vec3 to) {
     float distance2 = dot(to, to);
@@ -96,7 +96,7 @@ FN float emitter_density(float probability, float area_per_uv, Vec3 normal, Vec3
     return probability / area_per_uv * (distance2 / cosine);
 }
 
-/// The direction towards a place on an emissive patch with that density.
+/// The direction towards a point on an emissive patch, with that density.
 FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
     float distance = length(to);
     LightDraw drawn = {to, distance, emission, 0.0f};
@@ -107,7 +107,7 @@ FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
     return drawn;
 }
 
-/// Sun or point light that a ray meets within `distance`.
+/// Sun or point light that a ray hits within `distance`.
 FN LightSeen meet_light(LightSourceData source, Vec3 origin, Vec3 direction, float distance) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     LightSeen seen = {zero, 0.0f};

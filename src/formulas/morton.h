@@ -1,19 +1,19 @@
 // Morton codes of 30 and 63 bits: x is the most significant of each triple, so bit p belongs to axis 2 - p
-// mod 3. Only operations that every device rounds alike: a builder on a device has to give the codes of this
-// one.
+// mod 3. Uses only operations that all devices round alike, so that device and host builders give the same
+// codes.
 #ifndef RELIEF_MORTON_H
 #define RELIEF_MORTON_H
 #include "formulas/begin.h"
 
-const uint kMortonBits30 = 10u; ///< an axis
+const uint kMortonBits30 = 10u; ///< per axis
 const uint kMortonBits63 = 21u;
 
 struct MortonCode {
     uint low, high;
 };
 
-/// 1 / m for m in [1, 2), to an error of 1e-7, by Newton's iteration: a quotient may be rounded in several
-/// ways.
+/// 1 / m for m in [1, 2), to an error of 1e-7, by Newton's iteration: devices may round quotients
+/// differently.
 FN float invert_mantissa(float m) {
     EXACT float guess = 1.41176471f - 0.470588235f * m;
     EXACT float first = guess * (2.0f - m * guess);
@@ -22,12 +22,12 @@ FN float invert_mantissa(float m) {
     return third;
 }
 
-/// Cell of `position` in [lower, upper] cut into 2^bits cells; 0 where that is flat or nothing is a number.
-/// Quarters, so that no difference of floats overflows.
+/// Cell of `position` in [lower, upper] cut into 2^bits cells; 0 where the interval is empty or a value is
+/// NaN. Scaled by a quarter, so that no difference of floats overflows.
 FN uint quantise_position(float position, float lower, float upper, uint bits) {
     EXACT float extent = upper * 0.25f - lower * 0.25f;
     EXACT float offset = position * 0.25f - lower * 0.25f;
-    uint exponent = floatBitsToUint(extent) >> 23u; // the sign is its highest bit
+    uint exponent = floatBitsToUint(extent) >> 23u; // its highest bit is the sign
     if (exponent == 0u || exponent > 253u) return 0u;
     float to_mantissa = uintBitsToFloat((254u - exponent) << 23u);
     float cells = float(1u << bits);
@@ -53,7 +53,7 @@ FN Vec3 centre_of_box(Vec3 lower, Vec3 upper) {
     return centre;
 }
 
-/// Of a point in a box; `high` is 0.
+/// Code of a point in a box; `high` is 0.
 FN MortonCode make_morton30(Vec3 point, Vec3 lower, Vec3 upper) {
     uint x = quantise_position(point.x, lower.x, upper.x, kMortonBits30);
     uint y = quantise_position(point.y, lower.y, upper.y, kMortonBits30);

@@ -6,8 +6,8 @@
 
 #include "formulas/begin.h"
 
-/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), with room for divisions that err by 2.5 units in
-/// the last place, as Vulkan allows; and the same slack for a triangle's own t.
+/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), with room for division errors of 2.5 ulp, as
+/// Vulkan allows; also the slack of a triangle's own t.
 const float kBoxSlack = 1.0000015f;
 
 /// Smaller components of a direction (2^-120) count as zero in box tests.
@@ -16,9 +16,9 @@ const float kLeastSpeed = 7.52316384526264005e-37f;
 struct ObjectRay {
     Vec3 origin, direction;
     Vec3 reciprocal;
-    Vec3 margin; ///< by which the origin is moved outward along axes that the ray stands still on
-    uint axis_x, axis_y, axis_z; ///< two minor axes and the major one
-    float shear_x, shear_y;      ///< of the minor axes
+    Vec3 margin;                 ///< outward offset of the origin along axes with zero direction
+    uint axis_x, axis_y, axis_z; ///< the two minor axes and the major one
+    float shear_x, shear_y;      ///< along the minor axes
     float shear_z;               ///< 1 / direction along the major one
 };
 
@@ -32,16 +32,16 @@ FN float margin_of_axis(float speed, float origin) {
     return abs(speed) < kLeastSpeed ? 1e-6f * (abs(origin) + 1e-24f) : 0.0f;
 }
 
-/// The direction is not normalised, so that t means the same in every space.
+/// The direction is not normalised, so t is the same in every space.
 FN ObjectRay make_object_ray(Vec3 origin, Vec3 direction) {
     ObjectRay ray;
     ray.origin = origin;
     ray.direction = direction;
     Vec3 reciprocal = {reciprocal_of_speed(direction.x), reciprocal_of_speed(direction.y),
                        reciprocal_of_speed(direction.z)};
-    // Along an axis that the ray does not move on, 1 / 0 would make 0 * infinity on a box's very face. A
-    // finite factor, and an origin moved outward by more than rounding, let such a ray touch the box and miss
-    // its neighbours.
+    // For a zero direction component 1 / 0 would give 0 * infinity for an origin exactly on a box face. A
+    // finite factor, and an origin offset outward by more than rounding, make such a ray touch the box and
+    // miss its neighbours.
     Vec3 margin = {margin_of_axis(direction.x, origin.x), margin_of_axis(direction.y, origin.y),
                    margin_of_axis(direction.z, origin.z)};
     ray.reciprocal = reciprocal;
@@ -95,12 +95,12 @@ FN Vec3 shear_vertex(ObjectRay ray, Vec3 p) {
 }
 
 struct TriangleHit {
-    float t; ///< infinity: missed
+    float t; ///< infinity: a miss
     float weight_b, weight_c;
 };
 
-/// Corners as sheared. The sign of an edge function is never wrong, only zero, and zero counts as inside; no
-/// fused operations, they would break that.
+/// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
+/// as inside. Fused operations would break this.
 FN TriangleHit intersect_sheared(ObjectRay ray, Vec3 a, Vec3 b, Vec3 c, float t_min, float t_max) {
     EXACT float u = c.x * b.y - c.y * b.x;
     EXACT float v = a.x * c.y - a.y * c.x;

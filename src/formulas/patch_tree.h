@@ -1,6 +1,6 @@
-// Complete quad tree over the cells of a patch or tile: no links, because the way to the next node follows
-// from the number of this one (Harada 2015 keeps a table of them). Nodes stand level by level, in Morton
-// order within one; a node is three words, one an axis: lower code, upper code. Vertices follow, row by row.
+// Complete quadtree over the cells of a patch or tile. No links: the next node follows from the index of the
+// current one (Harada 2015 tabulates them). Nodes are stored level by level, in Morton order within a level;
+// a node is three words, one per axis: lower code, upper code. Vertices follow, row by row.
 #ifndef RELIEF_PATCH_TREE_H
 #define RELIEF_PATCH_TREE_H
 #include "formulas/exact.h"
@@ -8,19 +8,19 @@
 
 #include "formulas/begin.h"
 
-const uint kTreeLevels = 5u;       ///< of a tile, at most
-const uint kTreeHeaderWords = 16u; ///< origin, scale, level, reversed edges; then nothing up to a whole unit
+const uint kTreeLevels = 5u;       ///< maximum for a tile
+const uint kTreeHeaderWords = 16u; ///< origin, scale, level, reversed edges, padding
 const uint kTreeNodeWords = 3u;
-const uint kPoolUnitWords = 16u; ///< trees start at multiples of it
-const uint kCellBits = 25u;      ///< of make_cell_rank
+const uint kPoolUnitWords = 16u; ///< alignment of trees
+const uint kCellBits = 25u;      ///< width of make_cell_rank
 
 // Words of a tree's header.
 const uint kTreeOrigin = 0u;
 const uint kTreeScale = 3u;
 const uint kTreeLevel = 6u;
-const uint kTreeReversed = 7u; ///< a bit an edge: its line runs against the patch's direction
+const uint kTreeReversed = 7u; ///< one bit per edge: its line runs against the patch's winding
 
-/// Nodes of the levels above `level`.
+/// Number of nodes above `level`.
 FN uint count_nodes_above(uint level) { return ((1u << (2u * level)) - 1u) / 3u; }
 
 FN uint first_vertex_word(uint level) {
@@ -32,7 +32,7 @@ FN uint count_tree_units(uint level) {
     return (first_vertex_word(level) + 3u * side * side + kPoolUnitWords - 1u) / kPoolUnitWords;
 }
 
-/// Every second bit of a Morton number of at most ten bits, starting with the lowest: its column.
+/// Column of a Morton index of at most ten bits: every second bit from the lowest.
 FN uint morton_column(uint m) {
     uint x = m & 0x155u;
     x = (x | (x >> 1u)) & 0x133u;
@@ -41,13 +41,13 @@ FN uint morton_column(uint m) {
 }
 FN uint morton_row(uint m) { return morton_column(m >> 1u); }
 
-/// Bits of column and row 2^bits - 1 that walk a level backwards in either direction: number xor mask.
+/// XOR masks that reverse the traversal of a level in column or row direction, for 2^bits columns and rows.
 FN uint make_order_mask(bool is_u_backward, bool is_v_backward) {
     return (is_u_backward ? 0x155u : 0u) | (is_v_backward ? 0x2aau : 0u);
 }
 
-// What rays want of a tree, ORed together: bits 0..5 the levels, then for each edge five bits, one for each
-// number of levels that it is coarser than the patch.
+// Requirements of all rays on a tree, ORed together: bits 0..5 the levels, then five bits per edge, one for
+// each number of levels that the edge is coarser than the patch.
 FN uint make_need(uint level, uint field_levels) {
     uint own = packed_patch_level(field_levels);
     uint need = 1u << level;

@@ -1,5 +1,5 @@
-// Rules of the path tracer that both engines follow: which random numbers a vertex takes, what it reflects
-// with and when a path ends.
+// Path tracer conventions shared by both engines: sample dimensions per vertex, camera rays, Russian
+// roulette.
 #ifndef RELIEF_PATH_H
 #define RELIEF_PATH_H
 #include "formulas/camera.h"
@@ -7,9 +7,9 @@
 
 #include "formulas/begin.h"
 
-const uint kRouletteDepth = 1u; ///< bounces that are never cut short
+const uint kRouletteDepth = 1u; ///< bounces exempt from Russian roulette
 
-// Pairs of dimensions of the sampler.
+// Dimension pairs of the sampler.
 const uint kPixelPair = 0u;
 const uint kLensPair = 1u;
 const uint kFirstBouncePair = 2u;
@@ -19,7 +19,7 @@ const uint kLightPair = 1u;
 const uint kBsdfPair = 2u;
 const uint kRoulettePair = 3u; ///< (roulette, emitter)
 
-/// Pair `kind` of the vertex that `depth` bounces lead to.
+/// Dimension pair `kind` of the vertex after `depth` bounces.
 FN uint find_bounce_pair(uint depth, uint kind) { return kFirstBouncePair + depth * kPairsPerBounce + kind; }
 
 FN Vec2 draw_bounce_pair(uint pixel_seed, uint sample_index, uint depth, uint kind) {
@@ -33,21 +33,21 @@ FN CameraRay aim_camera_ray(CameraFrame camera, Vec2 position, uint pixel_seed, 
     return make_pinhole_ray(camera, position);
 }
 
-/// Ray through a random point of the pixel whose top left corner is given.
+/// Ray through a random point of the pixel with the given top left corner.
 FN CameraRay start_camera_ray(CameraFrame camera, Vec2 corner, uint pixel_seed, uint sample_index) {
     Vec2 position = corner + sobol_pair(pixel_seed, sample_index, kPixelPair);
     return aim_camera_ray(camera, position, pixel_seed, sample_index);
 }
 
-/// What a base colour may be once textures have been multiplied in.
+/// Clamps a base colour after multiplication by textures.
 FN Vec3 limit_color(Vec3 color) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     Vec3 one = {1.0f, 1.0f, 1.0f};
     return max(zero, min(color, one));
 }
 
-/// Dim paths end at random and those that stay make up for them (Arvo and Kirk 1990), from the second vertex
-/// on (Pharr, Jakob, Humphreys 2023, section 13.4).
+/// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr, Jakob, Humphreys 2023, section
+/// 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);

@@ -1,4 +1,4 @@
-// The plane at distance 1 before a camera.
+// The image plane at distance 1 from a camera.
 #if !defined(RELIEF_PICTURE_PLANE_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_PICTURE_PLANE_H

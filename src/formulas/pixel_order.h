@@ -1,11 +1,11 @@
-// The order in which a device takes the pixels of a window: squares of neighbours.
+// Order in which a device processes the pixels of a window: by squares, for coherence.
 #ifndef RELIEF_PIXEL_ORDER_H
 #define RELIEF_PIXEL_ORDER_H
 #include "formulas/exact.h"
 
 #include "formulas/begin.h"
 
-/// Edge of the squares that neighbouring paths come from, so that their rays go the same way.
+/// Side of a square, pixels; rays of one square are coherent.
 const uint kPixelSquare = 8u;
 
 struct PixelPlace {
@@ -13,7 +13,7 @@ struct PixelPlace {
 };
 
 /// Pixel `index` of a window in the order of squares: bands of rows, squares in a band, rows in a square;
-/// those at the right and lower edge are cut.
+/// squares at the right and lower border are clipped.
 FN PixelPlace place_pixel(uint index, uint width, uint height) {
     uint band = index / (kPixelSquare * width);
     uint in_band = index - band * kPixelSquare * width;
@@ -26,7 +26,7 @@ FN PixelPlace place_pixel(uint index, uint width, uint height) {
     return result;
 }
 
-/// The number that place_pixel takes to a pixel.
+/// Inverse of place_pixel.
 FN uint find_pixel_number(uint x, uint y, uint width, uint height) {
     uint band = y / kPixelSquare;
     uint square = x / kPixelSquare;

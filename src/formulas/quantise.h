@@ -1,5 +1,5 @@
-// Boxes of 16 bits a bound: origin + code * scale with a power of two for scale, so that the product is exact
-// and every decoder agrees. Codes are rounded outward and checked with the decoder itself.
+// Boxes quantised to 16 bits per bound: origin + code * scale with a power of two for scale, so that the
+// product is exact and all decoders agree. Codes are rounded outward and verified with the decoder.
 #ifndef RELIEF_QUANTISE_H
 #define RELIEF_QUANTISE_H
 #include "formulas/begin.h"
@@ -9,7 +9,7 @@ FN float decode_bound(float origin, float scale, uint code) {
     return bound;
 }
 
-/// Bits that compare as unsigned numbers as the floats do; and back.
+/// Order-preserving map of floats to unsigned integers, and its inverse.
 FN uint order_float(float x) {
     uint bits = floatBitsToUint(x);
     return bits ^ ((bits & 0x80000000u) != 0u ? 0xffffffffu : 0x80000000u);

@@ -1,23 +1,22 @@
-// Where a camera sees the surface of an object: rectangles of the picture that no ray that can meet it is
-// outside of, with room for every rounding on the way, also where a triangle reaches behind the camera.
+// Conservative screen rectangles of triangles: every ray that can hit the triangle lies inside, all rounding
+// errors included, also where a triangle extends behind the camera.
 #ifndef RELIEF_RASTER_H
 #define RELIEF_RASTER_H
 #include "formulas/begin.h"
 
-/// Roundings of a few dozen operations, in units of the largest number of each sum.
+/// Error bound for a few dozen rounded operations, relative to the largest term of each sum.
 const float kRasterSlack = 4e-6f;
 
 /// A pinhole in the space of an object. A point at v from the origin appears at pixel (dot(v, x), dot(v, y))
 /// / dot(v, w), and w is its distance along the view axis.
 struct ObjectCamera {
-    Vec3 origin; ///< of the object's own rays, bit for bit
+    Vec3 origin; ///< bit-identical to that of object-space rays
     Vec3 x, y, w;
-    Vec3 position_error;  ///< of the three sums for each unit of the largest coordinate of v
-    Vec3 direction_error; ///< and for each unit of w, because rays are rounded too
+    Vec3 position_error;  ///< of the three sums, per unit of the largest coordinate of v
+    Vec3 direction_error; ///< and per unit of w, because rays are rounded too
 };
 
-/// Of CameraFrame, in the space of an object; or what their components there cannot exceed, sums of
-/// magnitudes.
+/// Vectors of CameraFrame in object space; or bounds of their components, as sums of magnitudes.
 struct CameraVectors {
     Vec3 corner, step_x, step_y;
 };
@@ -41,7 +40,8 @@ FN ObjectCamera make_object_camera(Vec3 origin, CameraVectors vectors, CameraVec
     Vec3 position_error = {dot(one, x_bound), dot(one, y_bound), dot(one, w_bound)};
     Vec3 direction_error = {dot(reach, x_bound), dot(reach, y_bound), dot(reach, w_bound)};
     float slack = kRasterSlack * abs(scale);
-    // An object so flat that the side of the camera is lost in rounding: nothing is known of any point.
+    // The object is so flat that rounding hides on which side of the camera a point lies: every point is
+    // unknown.
     if (!(abs(volume) > kRasterSlack * dot(bounds.corner, w_bound))) slack = uintBitsToFloat(0x7f800000u);
     ObjectCamera camera = {
         origin, x * scale, y * scale, w * scale, position_error * slack, direction_error * slack};
@@ -66,7 +66,7 @@ FN bool is_in_front(SeenPoint p) {
 }
 FN bool is_behind(SeenPoint p) { return is_finite(p.at) && is_finite(p.error) && p.at.z < -2.0f * p.error.z; }
 
-/// Pixel coordinates, y downwards; nothing where x0 > x1.
+/// Pixel coordinates, y downwards; empty where x0 > x1.
 struct ScreenBox {
     float x0, y0, x1, y1;
 };
@@ -82,7 +82,7 @@ FN ScreenBox make_empty_box() {
     return box;
 }
 
-/// Least and greatest quotient of value +- error and distance +- distance_error, the latter positive.
+/// Interval quotient of value +- error by distance +- distance_error, the latter positive.
 FN float least_quotient(float value, float error, float distance, float distance_error) {
     float least = value - error;
     return least / (least < 0.0f ? distance - distance_error : distance + distance_error);
@@ -91,7 +91,7 @@ FN float greatest_quotient(float value, float error, float distance, float dista
     return -least_quotient(-value, error, distance, distance_error);
 }
 
-/// With a point in front of the camera.
+/// Extends the rectangle by a point in front of the camera.
 FN ScreenBox add_point(ScreenBox box, SeenPoint p) {
     ScreenBox result = {min(box.x0, least_quotient(p.at.x, p.error.x, p.at.z, p.error.z)),
                         min(box.y0, least_quotient(p.at.y, p.error.y, p.at.z, p.error.z)),
@@ -100,14 +100,15 @@ FN ScreenBox add_point(ScreenBox box, SeenPoint p) {
     return result;
 }
 
-/// One coordinate of a seen point, times its distance before or behind the camera, and that distance.
+/// Homogeneous coordinate of a point, before or behind the camera: one coordinate times distance, and the
+/// distance.
 struct SeenCoordinate {
     float at, error;
     float distance, distance_error;
 };
 
-/// A coordinate where the segment from a point in front to one behind passes the camera, times something
-/// positive: its sign tells which way the segment leaves the picture. 0: unknown.
+/// A coordinate where the segment from a point in front to one behind crosses the camera plane, up to a
+/// positive factor: its sign tells on which side the segment leaves the picture. 0: unknown.
 FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
     float crossing = front.at * behind.distance + behind.at * front.distance;
     float error = front.error * behind.distance + behind.error * front.distance +
@@ -116,7 +117,8 @@ FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
     return abs(crossing) > 2.0f * error ? crossing : 0.0f;
 }
 
-/// With what is in front of the camera of the segment between a point there and one behind it.
+/// Extends the rectangle by the visible part of a segment from a point in front of the camera to one behind
+/// it.
 FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
     float all = uintBitsToFloat(0x7f800000u);
     SeenCoordinate front_x = {front.at.x, front.error.x, front.at.z, front.error.z};
@@ -130,7 +132,7 @@ FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
     return result;
 }
 
-/// Of all triangles between four points.
+/// Rectangle of all triangles between four points.
 FN ScreenBox bound_on_screen(ObjectCamera camera, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
     SeenPoint p[4] = {see_point(camera, a), see_point(camera, b), see_point(camera, c), see_point(camera, d)};
     ScreenBox box = make_empty_box();

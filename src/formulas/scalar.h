@@ -1,5 +1,4 @@
-// The names of GLSL that formulas are written in, for C++ and one lane. What follows a formula is in its own
-// file.
+// GLSL's vocabulary for the scalar C++ instance of the formulas.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +21,7 @@ inline float select(bool condition, float a, float b) { return condition ? a : b
 inline Vec3 select(bool condition, const Vec3& a, const Vec3& b) { return condition ? a : b; }
 inline Vec2 select(bool condition, const Vec2& a, const Vec2& b) { return condition ? a : b; }
 inline uint select(bool condition, uint a, uint b) { return condition ? a : b; }
-/// Whether any lane is true: around what the others do not need.
+/// Whether any lane is true; guards work that inactive lanes do not need.
 inline bool is_any(bool condition) { return condition; }
 inline float abs(float a) { return std::fabs(a); }
 inline float min(float a, float b) { return b < a ? b : a; }
@@ -32,7 +31,7 @@ inline float clamp(float a, float low, float high) { return min(max(a, low), hig
 inline float mix(float a, float b, float f) { return a * (1.0f - f) + b * f; }
 inline uint floatBitsToUint(float a) { return std::bit_cast<uint>(a); }
 inline float uintBitsToFloat(uint a) { return std::bit_cast<float>(a); }
-/// Index of a bit as in GLSL: -1 where there is none.
+/// Bit index as in GLSL: -1 if no bit is set.
 inline int findLSB(uint a) { return a == 0 ? -1 : std::countr_zero(a); }
 inline int findMSB(uint a) { return 31 - std::countl_zero(a); }
 inline int bitCount(uint a) { return std::popcount(a); }

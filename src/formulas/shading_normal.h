@@ -1,4 +1,4 @@
-// The normal that shading sees: of the displaced surface, continuous across cells and patches.
+// Shading normal of the displaced surface, continuous across cells and patches.
 #if !defined(RELIEF_SHADING_NORMAL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SHADING_NORMAL_H
@@ -17,8 +17,8 @@ FN Vec3 interpolate_triangle(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
     return c0 * (Float(1.0f) - at.x) + c1 * (at.x - at.y) + c2 * at.y;
 }
 
-/// Normal of an undisplaced polygon from its vertices' normals, blended, and the cross product of the edges
-/// of the triangle that the point is in.
+/// Normal of an undisplaced polygon, from its interpolated vertex normals and the cross product of the edges
+/// of the triangle that contains the point.
 FN Vec3 make_plain_normal(Vec3 blended, Vec3 plane) {
     Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
     Vec3 normal = make_unit(blended);
@@ -26,7 +26,7 @@ FN Vec3 make_plain_normal(Vec3 blended, Vec3 plane) {
     return select(normal == zero, make_unit(plane), turned);
 }
 
-/// Derivative of what makes up a displaced point, along u or along v.
+/// Derivatives, along u or along v, of the terms of a displaced point.
 struct SurfaceDerivative {
     Vec3 base;         ///< of the position
     Basis frame;       ///< of the frame; it is not orthonormal
@@ -37,8 +37,8 @@ struct SurfaceDerivative {
 /// t on the far side.
 FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, Float s) { return interpolate(q - p, t - r, s); }
 
-/// Ends of the central difference one cell wide about `at`. The uvs run on into the neighbour, except at a
-/// seam, where they would run into another part of the map.
+/// Ends of a central difference one cell wide about `at`. The difference extends into the neighbouring patch,
+/// except at a uv seam, beyond which lies another part of the map.
 FN Vec2 find_difference_ends(Float at, Float half_cell, Bool is_low_seam, Bool is_high_seam) {
     Float low = at - half_cell;
     Float high = at + half_cell;
@@ -47,31 +47,32 @@ FN Vec2 find_difference_ends(Float at, Float half_cell, Bool is_low_seam, Bool i
     return ends;
 }
 
-/// Base derivative in the plane of the interpolated normal, plus the displacement's own.
+/// Base derivative projected into the plane of the interpolated normal, plus the derivative of the
+/// displacement.
 FN Vec3 displace_derivative(SurfaceDerivative along, Vec3 normal) {
     return along.base - normal * dot(normal, along.base) + along.displacement;
 }
 
-/// The same where the displacement d goes through `frame`: what it adds is its own derivative, and the turn
-/// of the frame under it.
+/// The same for a displacement d in `frame`, by the product rule: derivative of d in the frame, plus d in the
+/// derivative of the frame.
 FN Vec3 displace_derivative_through(SurfaceDerivative along, Basis frame, Vec3 d, Vec3 normal) {
     Vec3 base = along.base - normal * dot(normal, along.base);
     Vec3 change = along.displacement;
-    // A normal that grows shorter between the vertices would tilt the surface towards them.
+    // An interpolated normal that shortens between the vertices would tilt the surface.
     Vec3 turn = along.frame.n - normal * dot(normal, along.frame.n);
     return base + frame.t * change.x + frame.b * change.y + frame.n * change.z + along.frame.t * d.x +
            along.frame.b * d.y + turn * d.z;
 }
 
-/// From the displaced derivatives; `normal`, the interpolated one, where they vanish.
+/// Normal from the displaced derivatives; `normal`, the interpolated one, where they are degenerate.
 FN Vec3 make_displaced_normal(Vec3 along_u, Vec3 along_v, Vec3 normal) {
     Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
     Vec3 result = make_unit(cross(along_u, along_v));
     return select(result == zero, normal, result);
 }
 
-/// Shading normal turned just so far that the mirror image of `wo` stays above the geometric surface: no
-/// black pixels at grazing triangles. Both normals on the side of `wo`; unit vectors.
+/// Shading normal bent just far enough that the mirror direction of `wo` stays above the geometric surface,
+/// to avoid black pixels at grazing triangles. Both normals on the side of `wo`; unit vectors.
 FN Vec3 bend_normal(Vec3 shading, Vec3 geometric, Vec3 wo) {
     Vec3 mirrored = shading * (Float(2.0f) * dot(wo, shading)) - wo;
     Float lowest = min(Float(0.9f) * dot(wo, geometric), Float(0.01f));

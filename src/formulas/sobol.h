@@ -1,6 +1,7 @@
-// Random numbers: Owen-scrambled Sobol points as pure functions of (seed, pixel, sample index, dimension
-// pair). Burley 2020, Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0,
-// 2)-sequence of Sobol, shuffled and scrambled on its own. Nothing depends on how many samples there will be.
+// Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair). Burley 2020,
+// Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0, 2)-sequence of Sobol,
+// shuffled and scrambled independently. Samples do not depend on the sample count, so renders can be
+// extended.
 #if !defined(RELIEF_SOBOL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SOBOL_H
@@ -11,7 +12,7 @@ struct UintPair {
     uint x, y;
 };
 
-/// Integer hash of full avalanche (Wellons 2018, hash prospector, lowbias32).
+/// Integer hash with full avalanche (Wellons 2018, hash prospector, lowbias32).
 FN uint hash_uint(uint x) {
     x ^= x >> 16u;
     x *= 0x7feb352du;
@@ -32,7 +33,7 @@ FN uint reverse_bits(uint x) {
     return x;
 }
 
-/// Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the lower ones (Laine and
+/// Owen scrambling of a bit-reversed integer: each bit is flipped by a hash of the lower ones (Laine and
 /// Karras 2011, with the constants of Vegdahl 2021).
 FN uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
@@ -54,7 +55,7 @@ FN uint shift_polynomial(uint x) {
     return x;
 }
 
-/// Seed of one pixel of one picture.
+/// Seed of one pixel for a render seed.
 FN uint make_pixel_seed(uint seed, uint x, uint y) {
     return hash_combine(hash_combine(hash_uint(seed), x), y);
 }
@@ -69,7 +70,7 @@ FN UintPair sobol_bits(uint pixel_seed, uint index, uint pair) {
     return result;
 }
 
-/// Number in [0, 1) from the upper 24 bits, all that a float holds.
+/// Float in [0, 1) from the upper 24 bits, the precision of a float.
 FN Float uint_to_unit(uint bits) { return Float(bits >> 8u) * Float(5.9604644775390625e-8f); }
 
 /// Point in [0, 1)^2 of sample `index` in a pair of dimensions.

@@ -1,4 +1,4 @@
-// From a place on a patch to the point of the surface that shading sees, in any number of lanes.
+// From a position on a patch to the surface point used in shading, in any number of lanes.
 #if !defined(RELIEF_SURFACE_POINT_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SURFACE_POINT_H
@@ -13,8 +13,8 @@ struct CornerWeights {
 /// Point of a micro-triangle, world space.
 struct TrianglePoint {
     Vec3 position;
-    Vec3 normal;       ///< unit length, side of the winding; zero for a triangle that has vanished
-    Float area_per_uv; ///< world area over its share of the patch's (u, v)
+    Vec3 normal;       ///< unit length, oriented by the winding; zero for a degenerate triangle
+    Float area_per_uv; ///< world-space area per area in the patch's (u, v)
 };
 
 /// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`:
@@ -42,16 +42,16 @@ FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, Fl
 FN Float largest_coordinate(Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 FN Float sum_magnitudes(Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
-/// A point is interpolated between corners and transformed, and the ray that leaves it is transformed back:
-/// each step errs by a few units in the last place of the largest number that it adds up. `corner`: largest
-/// coordinate of the corners in object space; `row`: largest sum_magnitudes of the linear part's rows;
-/// `translation` and `position`: their largest coordinates.
+/// Bound of the position error of a point that is interpolated and transformed, and whose spawned ray is
+/// transformed back: each step errs by a few ulp of the largest term. `corner`: largest coordinate of the
+/// corners in object space; `row`: largest sum_magnitudes of the linear part's rows; `translation` and
+/// `position`: their largest coordinates.
 FN Float bound_position_error(Float corner, Float row, Float translation, Float position) {
     const float units = 32.0f * 5.9604644775390625e-8f;
     return Float(units) * (row * corner + translation + position);
 }
 
-/// uv in a displaced patch; corners in their order.
+/// uv in a displaced patch; corners in order.
 FN Vec2 blend_patch_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
     return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) +
            (c3 * (Float(1.0f) - at.x) + c2 * at.x) * at.y;
@@ -64,16 +64,15 @@ FN Vec2 blend_polygon_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
     return select(at.y <= at.x, lower, upper);
 }
 
-/// World-space shading normal from that of the surface, `interpolated`, made unit length and put on the side
-/// of `geometric_normal`.
+/// World-space shading normal: `interpolated`, normalised and oriented to the side of `geometric_normal`.
 FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 geometric_normal) {
     Vec3 normal = make_unit(interpolated);
     normal = select(dot(normal, normal) == Float(0.0f), geometric_normal, normal);
     return select(dot(normal, geometric_normal) < Float(0.0f), -normal, normal);
 }
 
-/// Origin for a ray that leaves a point into `direction`: moved off the surface by the point's error, along
-/// the geometric normal, to the side that the direction is on.
+/// Origin of a ray spawned into `direction`: offset from the surface by the point's error bound, along the
+/// geometric normal, to the side of the direction.
 FN Vec3 offset_origin(Vec3 position, Vec3 normal, Float position_error, Vec3 direction) {
     Float side = select(dot(direction, normal) < Float(0.0f), Float(-1.0f), Float(1.0f));
     return position + normal * (side * position_error);

@@ -1,4 +1,4 @@
-// Which texels a coordinate reads.
+// Addressing of texels.
 #ifndef RELIEF_TEXEL_H
 #define RELIEF_TEXEL_H
 #include "formulas/begin.h"
@@ -8,21 +8,22 @@ const uint kWrapRepeat = 1u;
 const uint kWrapMirror = 2u;
 const uint kWrapBlack = 3u;
 
-/// floor() without the call that it is on instruction sets that have no rounding; whole or not finite stays.
+/// floor() without a library call on instruction sets that lack rounding; integers and non-finite values are
+/// returned unchanged.
 FN float floor_texel(float x) {
     if (!(abs(x) < 8388608.0f)) return x;
     float whole = float(int(x));
     return whole > x ? whole - 1.0f : whole;
 }
 
-/// Column or row that `index` reads in a map of `size` texels; -1 outside of kWrapBlack.
+/// Column or row for `index` in a map of `size` texels; -1 outside with kWrapBlack.
 FN int wrap_texel(int index, int size, uint wrap) {
     if (index >= 0 && index < size) return index;
     if (wrap == kWrapClamp) return index < 0 ? 0 : size - 1;
     if (wrap == kWrapBlack) return -1;
     int period = wrap == kWrapMirror ? 2 * size : size;
     int rest = index % period;
-    // The sign of % of a negative number is C++'s here; GLSL leaves it open.
+    // GLSL leaves % of a negative operand undefined: recompute without one.
     if (index < 0) rest = period - 1 - (-(index + 1)) % period;
     return rest < size ? rest : period - 1 - rest;
 }

@@ -1,19 +1,19 @@
-// Where bilinear look-ups of colour textures read, and what they give.
+// Bilinear look-ups of colour textures.
 #ifndef RELIEF_TEXTURE_H
 #define RELIEF_TEXTURE_H
 #include "formulas/texel.h"
 
 #include "formulas/begin.h"
 
-/// uv in texels from the centre of texel (0, 0); row 0 is v = 1. The whole part goes first: far from zero a
-/// float would have no bits left for the position between texels.
+/// uv in texels from the centre of texel (0, 0); row 0 is v = 1. The integer part is removed first: large uvs
+/// would leave no bits for the position between texels.
 FN Vec2 locate_texture_uv(Vec2 uv, Vec2 size) {
     Vec2 result = {(uv.x - floor_texel(uv.x)) * size.x - 0.5f,
                    (1.0f - (uv.y - floor_texel(uv.y))) * size.y - 0.5f};
     return result;
 }
 
-/// Colour of a texel or a bilinear value: a texture of one or two channels is grey.
+/// Colour of a texel or interpolated value; textures of one or two channels are grey.
 FN Vec3 make_texture_color(uint channel_count, Vec3 channels) {
     Vec3 grey = {channels.x, channels.x, channels.x};
     return select(channel_count < 3u, grey, channels);

@@ -1,4 +1,4 @@
-// From linear radiance to what a screen shows.
+// Tone mapping and the sRGB transfer function.
 #ifndef RELIEF_TONEMAP_H
 #define RELIEF_TONEMAP_H
 #include "formulas/begin.h"
@@ -8,14 +8,14 @@ FN Float bend_filmic(Float x) {
            (x * (Float(0.983729f) * x + Float(0.4329510f)) + Float(0.238081f));
 }
 
-/// Brightness that the curve takes: exposed so that middle grey 0.18 stays 0.18, infinities made finite.
+/// Input of the curve: exposed so that middle grey 0.18 stays 0.18, infinities clamped.
 FN Float expose_filmic(Float x) {
     return min(select(x > Float(0.0f), x, Float(0.0f)), Float(1e6f)) * Float(1.461927f);
 }
 
 /// Filmic tone map of a linear Rec.709 colour into [0, 1], still linear: S. Hill's fit of the ACES reference
-/// and output transforms (BakingLab, 2015). Bright colours fade towards white instead of turning hue.
-/// Negative and not-a-number components count as 0.
+/// and output transforms (BakingLab, 2015). Bright colours desaturate towards white instead of shifting hue.
+/// Negative and NaN components count as 0.
 FN Vec3 tone_map_filmic(Vec3 c) {
     Float r = expose_filmic(c.x);
     Float g = expose_filmic(c.y);

@@ -1,26 +1,28 @@
-// Layouts of the trees that traverse_*.h walk, and what those expect of their includer.
+// Layouts of the trees that traverse_*.h traverse, and the hooks that those expect of their includer.
 //
-// traverse_*.h are no formulas but loops: GLSL includes them after the hooks below are declared, C++ includes
-// them in the body of a class that has the hooks as members (lab/walks/walk_members-inl.h). Hence they are
-// not among the formulas. Each has a state of a few words, in a global variable or member: start_x(root)
-// makes it, walk_x() goes on from it. They move the state on before they visit a leaf; so a leaf that is an
-// instance saves the state and puts that of another tree in its place, and resume_walk() brings the old one
-// back.
+// traverse_*.h are loops, not formulas, and therefore not in this folder: GLSL includes them after declaring
+// the hooks below, C++ includes them in the body of a class with the hooks as members
+// (lab/walks/walk_members-inl.h). Each has a state of a few words, in a global variable or member:
+// start_x(root) initialises it, walk_x() resumes from it. The state is advanced before a leaf is visited, so
+// a leaf that is an instance can save it and start on another tree; resume_walk() restores it.
 //
-// Hooks of all walks:
-// - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the walk.
-// - bool resume_walk(): the tree is done; true: the state is another's now.
+// Hooks of all traversals:
+// - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the
+//   traversal.
+// - bool resume_walk(): called when a tree is finished; true: another state has been restored.
 // - float get_limit(): t_max of the ray, shortened by hits.
-// - void count_box_test(), count_restart(), count_bytes(uint): empty where nobody counts. Bytes are those
+// - void count_box_test(), count_restart(), count_bytes(uint): empty where statistics are off. Bytes are
+//   those
 //   of nodes, links and directories; primitives are counted by visit_leaf.
 //
-// Of walks over boxes:
+// Of traversals of BVHs:
 // - TreeNode load_node(uint node): 32 bytes.
-// - float enter_box(TreeNode node): entry into the box, infinity: missed or beyond the limit. See cross_node.
+// - float enter_box(TreeNode node): entry distance; infinity: missed or beyond the limit. See cross_node.
 // - float enter_whole_box(TreeNode node): the same for t_max before any hit. Restart trail only.
-// - bool is_axis_backward(uint axis): is the direction below zero? For the order of trail and parent links.
+// - bool is_axis_backward(uint axis): whether the direction is negative. For the order of trail and parent
+//   links.
 // - Key: a type, uint or HeapKey, for trees of kTrailLevels32 or 64 levels. Trails and restart trail.
-// - uint find_slot(Key key): where the node of a key lies; siblings follow one another. Trail, pair trail.
+// - uint find_slot(Key key): location of the node with this key; siblings are adjacent. Trail, pair trail.
 // - HeapForm get_heap_form(), HeapBlock load_heap_block(uint), HeapBrick load_heap_brick(uint), for
 //   succinct_heap.h.
 // - uint load_parent(uint node): 4 bytes. Parent links.
@@ -38,21 +40,21 @@
 
 const uint kNoNode = 0xffffffffu;
 
-/// Rounds of one walk; a device may end its loops earlier, and then walk_x() returns false.
+/// Iteration limit of one traversal; a device may end its loops earlier, and then walk_x() returns false.
 const uint kMostRounds = 0xffffffffu;
 
 /// Entries of the full stack, and of the short one (a power of two).
 const uint kTreeStackSize = 128u;
 const uint kShortStackSize = 4u;
 
-/// Where a walk by parent links comes from.
+/// Where a parent-link traversal comes from.
 const uint kFromParent = 0u;
 const uint kFromSibling = 1u;
 const uint kFromChild = 2u;
 
 /// 32 bytes, the bits of relief::BvhNode. Children of an inner node are first and first + 1, the lower one
-/// along the axis first. A leaf's `first` and count are the includer's own, as are the highest four bits of
-/// its word.
+/// along the axis first. A leaf's `first` and count are defined by the includer, as are the highest four bits
+/// of its word.
 struct TreeNode {
     Vec3 lower;
     uint first;
@@ -63,14 +65,14 @@ const uint kNodeBytes = 32u;
 const uint kNodeCountMask = 0x03ffffffu;
 const uint kNodeAxisShift = 26u;
 const uint kNodeAxisMask = 0x0c000000u;
-const uint kEmptySlot = 0xf3ffffffu; ///< word of a heap slot without a node: no walk comes there
+const uint kEmptySlot = 0xf3ffffffu; ///< word of an empty heap slot; never visited
 
 FN bool is_leaf_word(uint word) { return (word & ~kNodeAxisMask) != 0u; }
 FN uint get_word_count(uint word) { return word & kNodeCountMask; }
 FN uint get_word_axis(uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
 FN uint make_inner_word(uint axis) { return axis << kNodeAxisShift; }
 
-/// What enter_box returns for a ray's interval.
+/// Result of enter_box for a ray's interval.
 FN float cross_node(ObjectRay ray, TreeNode node, float t_min, float t_max) {
     BoxInterval interval = cross_box(ray, node.lower, node.upper, t_min, t_max);
     return is_box_met(interval) ? interval.entry : make_infinity();
@@ -130,17 +132,17 @@ struct KdBox {
 };
 const uint kKdBoxBytes = 32u;
 
-/// Part of a ray inside the root's cell. The origin is moved to where the ray enters, and t counts from
-/// there: planes far from the origin would fall together. t of the ray = t + offset.
+/// Part of a ray inside the root's cell. The origin is moved to the entry point and t counts from there,
+/// because planes far from the origin would coincide. t of the ray = t + offset.
 struct KdRay {
     Vec3 origin;
     Vec3 direction;
     float offset;
-    float end; ///< below 0: the cell is missed
+    float end; ///< negative: the cell is missed
 };
 
-/// origin + speed t, rounded as if at once, so that a ray from far away is not shifted: what the product
-/// loses is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
+/// origin + speed t with a single rounding, so that distant rays are not shifted: the rounding error of the
+/// product is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
 FN float move_origin(float origin, float speed, float t) {
     EXACT float product = speed * t;
     EXACT float sum = origin + product;
@@ -157,12 +159,12 @@ FN float move_origin(float origin, float speed, float t) {
     return result;
 }
 
-/// 2 - kBoxSlack. A number by itself: a compiler of shaders works out constants in double precision.
+/// 2 - kBoxSlack. A literal, because shader compilers fold constants in double precision.
 const float kCellSlack = 0.99999845f;
 
 FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t_max) {
     BoxInterval interval = cross_box(ray, lower, upper, t_min, t_max);
-    // Not behind the face: far away, the steps between floats are longer than the cell's margin.
+    // Never beyond the face: far from the origin, the float spacing exceeds the cell's margin.
     EXACT float offset = interval.entry * kCellSlack;
     EXACT float end = interval.exit * kBoxSlack - offset;
     Vec3 origin = {move_origin(ray.origin.x, ray.direction.x, offset),
@@ -182,15 +184,15 @@ FN float cross_plane(KdRay ray, uint axis, float plane) {
     return t;
 }
 
-/// One step down: the side to go to, and where on the ray that side ends.
+/// One step down: the child to visit, and the end of the ray's interval in it.
 struct KdStep {
     uint node;
     float far;
-    uint is_split; ///< 1: the other side follows
+    uint is_split; ///< 1: the other child follows
 };
 
-/// Inner node `node`, which the ray is inside of from `near` to `far`. At near == plane the ray is past it:
-/// that is what lets a walk that starts again at a plane get on.
+/// Descends from inner node `node`, inside of which the ray is from `near` to `far`. At near == plane the ray
+/// counts as beyond the plane: otherwise a traversal that restarts there would not advance.
 FN KdStep step_down(KdRay ray, uint node, KdNode data, float near, float far) {
     uint axis = data.word & 3u;
     float plane = uintBitsToFloat(data.bits);
@@ -212,7 +214,7 @@ FN KdStep step_down(KdRay ray, uint node, KdNode data, float near, float far) {
     return step;
 }
 
-/// Where the ray leaves a cell, by the same operations as cross_plane of its planes.
+/// Exit distance from a cell, with the same operations as cross_plane of its planes.
 FN float leave_cell(KdRay ray, Vec3 lower, Vec3 upper, float far) {
     if (ray.direction.x != 0.0f)
         far = min(far, cross_plane(ray, 0u, ray.direction.x > 0.0f ? upper.x : lower.x));
@@ -223,7 +225,7 @@ FN float leave_cell(KdRay ray, Vec3 lower, Vec3 upper, float far) {
     return far;
 }
 
-/// Whether a walk that has come to `near` lies behind the nearest hit, with room for the rounding of both.
+/// Whether `near` lies beyond the nearest hit, with a margin for the rounding of both.
 FN bool is_kd_walk_over(KdRay ray, float near, float t_max) {
     EXACT float reach = t_max * kBoxSlack;
     EXACT float place = near + ray.offset;

@@ -1,7 +1,6 @@
-// Sine, cosine and their inverses as polynomials, so that one lane and many, and every instruction set, give
-// the same bits, and devices the same up to their own rounding: the libraries behind the usual names differ
-// more, and few have them for many lanes. Coefficients: Moshier 1992, Cephes Mathematical Library (single
-// precision).
+// Sine, cosine and their inverses as polynomials, bit-identical for any number of lanes and instruction set,
+// and equal on devices up to rounding: math libraries differ more, and few are vectorised. Coefficients:
+// Moshier 1992, Cephes Mathematical Library (single precision).
 #if !defined(RELIEF_TRIG_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_TRIG_H
@@ -13,10 +12,10 @@ struct SinCos {
     Float sine, cosine;
 };
 
-/// Of an angle in radians, at most some thousands; to 1e-7.
+/// For angles in radians up to some thousands; error 1e-7.
 FN SinCos find_sin_cos(Float angle) {
     Float quarters = floor(angle * Float(0.63661977236758134f) + Float(0.5f));
-    // Pi / 2 in three parts, so that the first two products are exact.
+    // Cody-Waite reduction: pi / 2 in three parts, so that the first two products are exact.
     Float x = angle - quarters * Float(1.5703125f);
     x = x - quarters * Float(4.837512969970703125e-4f);
     x = x - quarters * Float(7.54978995489188216e-8f);
@@ -35,7 +34,7 @@ FN SinCos find_sin_cos(Float angle) {
     return result;
 }
 
-/// Angle of the point (x, y) from the x axis, in [-pi, pi]; 0 for (0, 0). To 4e-7.
+/// Angle of the point (x, y) from the x axis, in [-pi, pi]; 0 for (0, 0). Error 4e-7.
 FN Float find_angle(Float y, Float x) {
     Float low = min(abs(x), abs(y));
     Float high = max(abs(x), abs(y));
@@ -51,7 +50,7 @@ FN Float find_angle(Float y, Float x) {
     return select(y < Float(0.0f), Float(0.0f) - angle, angle);
 }
 
-/// Angle in [0, pi] of a cosine in [-1, 1]. To 4e-7.
+/// Arc cosine of a value in [-1, 1]. Error 4e-7.
 FN Float find_arc_cosine(Float cosine) {
     Float magnitude = abs(cosine);
     Bool is_far = magnitude > Float(0.5f);

@@ -1,4 +1,4 @@
-// Maps of the unit square onto shapes, with their densities. Local frames have z up.
+// Warps of the unit square to other domains, with their densities. Local frames have z up.
 #if !defined(RELIEF_WARP_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_WARP_H
@@ -8,7 +8,7 @@
 #endif
 #include "formulas/begin.h"
 
-/// Concentric map onto the unit disk (Shirley and Chiu 1997), branch free. Density 1 / pi.
+/// Concentric map onto the unit disk (Shirley and Chiu 1997), branchless. Density 1 / pi.
 FN Vec2 square_to_disk(Vec2 u) {
     Float x = Float(2.0f) * u.x - Float(1.0f);
     Float y = Float(2.0f) * u.y - Float(1.0f);
@@ -31,8 +31,8 @@ FN Vec3 square_to_cosine_hemisphere(Vec2 u) {
 
 FN Float cosine_hemisphere_pdf(Float cos_theta) { return max(cos_theta, Float(0.0f)) * Float(1.0f / kPi); }
 
-/// Directions within the cone about +z whose half angle has cosine 1 - height, uniformly; height 2 is the
-/// whole sphere. The height in place of the cosine keeps narrow cones exact.
+/// Uniform directions in the cone about +z whose half angle has cosine 1 - height; height 2 is the whole
+/// sphere. Passing the height instead of the cosine keeps narrow cones exact.
 FN Vec3 square_to_cone(Vec2 u, Float height) {
     Float drop = u.x * height;
     Float sin_theta = sqrt(max(Float(0.0f), drop * (Float(2.0f) - drop)));

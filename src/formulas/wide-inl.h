@@ -1,6 +1,6 @@
-// Formulas over sixteen lanes: vectors, comparisons and selections over the lanes of lanes-inl.h. Every lane
-// goes through the operations of the one-lane formulas (scalar.h) in their order, hence the same bits.
-// Compiled once per target by Highway; use inside HWY_NAMESPACE only.
+// The formula dialect over sixteen lanes: vectors, comparisons and selections on the types of lanes-inl.h.
+// Each lane performs the operations of the scalar instance (scalar.h) in the same order, so results are
+// bit-identical. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
 #if defined(RELIEF_MATH_WIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_WIDE_INL_H
 #undef RELIEF_MATH_WIDE_INL_H
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE::wide {
 
-/// One truth value a lane.
+/// One boolean per lane.
 struct Bool {
     hn::Mask<Float::D> part[Float::kParts];
 };
@@ -34,7 +34,7 @@ RELIEF_WIDE_COMPARE(operator>=, Ge)
 RELIEF_WIDE_COMPARE(operator==, Eq)
 #undef RELIEF_WIDE_COMPARE
 
-/// Lanes whose number is not 0.
+/// Lanes with a nonzero value.
 HWY_INLINE Bool is_set(const float* aligned) {
     Bool r;
     const Float value = Float::load(aligned), zero(0.0f);
@@ -94,12 +94,12 @@ HWY_INLINE Float copy_sign(const Float& size, const Float& sign) {
     return r;
 }
 
-// As in scalar.h: the first operand where neither is less, nan included.
+// As in scalar.h: the first operand where neither is less, NaN included.
 HWY_INLINE Float min(const Float& a, const Float& b) { return select(b < a, b, a); }
 HWY_INLINE Float max(const Float& a, const Float& b) { return select(a < b, b, a); }
 HWY_INLINE Float clamp(const Float& a, const Float& low, const Float& high) { return min(max(a, low), high); }
 
-/// One 32-bit number a lane; arithmetic wraps around.
+/// One 32-bit unsigned integer per lane; arithmetic wraps.
 struct Uint {
     using D = hn::RebindToUnsigned<Float::D>;
     hn::Vec<D> part[Float::kParts];
@@ -116,7 +116,7 @@ struct Uint {
     HWY_INLINE void store(uint32_t* aligned) const {
         for (size_t p = 0; p < Float::kParts; ++p) hn::Store(part[p], D(), aligned + p * Float::kLanes);
     }
-    /// The whole part of numbers in [0, 2^31); of others any number.
+    /// Truncates values in [0, 2^31); undefined for others.
     HWY_INLINE explicit Uint(const Float& value) {
         for (size_t p = 0; p < Float::kParts; ++p)
             part[p] = hn::BitCast(D(), hn::ConvertTo(hn::RebindToSigned<D>(), value.part[p]));
@@ -126,7 +126,7 @@ struct Uint {
         for (const auto& p : part) all = all && hn::AllTrue(D(), hn::Eq(p, hn::Zero(D())));
         return all;
     }
-    /// Of numbers below 2^31.
+    /// For values below 2^31.
     HWY_INLINE explicit operator Float() const {
         Float r;
         for (size_t p = 0; p < Float::kParts; ++p)
@@ -174,7 +174,7 @@ HWY_INLINE Uint select(const Bool& condition, const Uint& a, const Uint& b) {
     return r;
 }
 
-/// base[index] in every lane; indices below 2^31.
+/// Gathers base[index] in every lane; indices below 2^31.
 HWY_INLINE Float gather(const float* base, const Uint& index) {
     Float r;
     for (size_t p = 0; p < Float::kParts; ++p)
@@ -218,7 +218,7 @@ HWY_INLINE Vec3 select(const Bool& condition, const Vec3& a, const Vec3& b) {
     return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
 }
 
-/// normalize of math/vec.h for the lanes in `which`, one by one.
+/// normalize of math/vec.h, lane by lane, for the lanes in `which`.
 HWY_INLINE void normalize_extreme(const Vec3& a, LaneMask which, Vec3& unit) {
     alignas(64) float in[3][16], out[3][16];
     a.x.store(in[0]), a.y.store(in[1]), a.z.store(in[2]);

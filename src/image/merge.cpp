@@ -16,10 +16,10 @@ namespace {
 const char* const kSamplesKey = "relief:samples";
 const char* const kInterruptedKey = "relief:interrupted"; ///< pixels lack some of these samples
 
-/// One part with its sample range and where its counts stand.
+/// One part with its sample range and the channel of its sample counts.
 struct Part {
     const Image* image = nullptr;
-    size_t index = 0; ///< in the order given, for messages
+    size_t index = 0; ///< position in the input, for messages
     int first = 0, last = 0;
     std::optional<size_t> samples_channel, alpha_channel;
 };
@@ -173,7 +173,7 @@ double compute_mean_of_hits(const std::vector<PartPixel>& pixels, size_t channel
     return weight > 0 ? sum / weight : 0;
 }
 
-/// The part whose first hit is nearest; among equal depths the lowest id wins, as in a film.
+/// The part whose first hit is nearest; ties go to the lowest id, as in Film.
 const PartPixel& find_nearest(const std::vector<PartPixel>& pixels, size_t depth_channel, size_t id_channel) {
     return *std::min_element(pixels.begin(), pixels.end(), [&](const PartPixel& a, const PartPixel& b) {
         const float x = a.values[depth_channel], y = b.values[depth_channel];
@@ -188,7 +188,7 @@ float find_id(const std::vector<PartPixel>& pixels, std::optional<size_t> depth_
     return 0;
 }
 
-/// How each channel of the result comes from the same channel of the parts.
+/// Rule that combines a channel of the parts.
 struct ChannelRules {
     explicit ChannelRules(const Image& image) : depth_channel(image.find_channel("depth.Z")) {
         for (size_t c = 0; c < image.channels.size(); ++c) {

@@ -73,7 +73,7 @@ Box transform_box(const Affine& m, const Box& box) {
             high += std::max(a, b);
             size += std::max(std::fabs(a), std::fabs(b));
         }
-        // A point transformed in float arithmetic is off by at most a few units of the largest partial sum.
+        // Transforming a point in float arithmetic errs by at most a few ulp of the largest partial sum.
         const double slack = 8 * 0x1p-24 * size + 1e-37;
         set_component(result.lower, axis, float(low - slack));
         set_component(result.upper, axis, float(high + slack));
@@ -96,7 +96,7 @@ Affine make_scale(const Vec3f& factors) {
 Affine make_rotation_degrees(const Vec3f& degrees) {
     const auto make_axis_rotation = [](int axis, double angle) {
         const double radians = angle * std::numbers::pi / 180;
-        // Right angles come out exact, so that turned scenes keep their closed edges and flat boxes.
+        // Right angles are exact, so that rotated scenes keep watertight edges and flat boxes.
         const double quarter = angle / 90;
         const bool is_right_angle = quarter == std::floor(quarter);
         const float c = float(is_right_angle ? std::round(std::cos(radians)) : std::cos(radians));

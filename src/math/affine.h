@@ -25,10 +25,10 @@ Affine compose(const Affine& outer, const Affine& inner);
 /// Determinant of the linear part; negative for a mirror.
 float compute_determinant(const Affine& m);
 
-/// Inverse, computed in double precision; nothing for a singular or non-finite map.
+/// Inverse, computed in double precision; nullopt for a singular or non-finite map.
 std::optional<Affine> invert(const Affine& m);
 
-/// Box of the transformed box, widened by the rounding of the transform.
+/// Conservative bounds of the transformed box, rounding of the transform included.
 Box transform_box(const Affine& m, const Box& box);
 
 Affine make_translation(const Vec3f& offset);

@@ -17,9 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t kChannels = 4;
 constexpr size_t kMostLanes = 16;
 
-/// Calls extend(values) for registers of lanes of D that cover every row: whole texels, so that a lane is
-/// always of one channel. What does not fill a register at the end of a row is read together with what is
-/// before it.
+/// Calls extend(values) for vectors of D that cover every row: whole texels, so that each lane belongs to one
+/// channel. The remainder of a row is covered by a vector that overlaps the one before.
 template <class D, class Value, class Extend>
 HWY_INLINE void visit_registers(D d, const TexelRows<Value>& texels, Extend extend) {
     const size_t count = kChannels * texels.columns, lanes = hn::Lanes(d);
@@ -31,7 +30,7 @@ HWY_INLINE void visit_registers(D d, const TexelRows<Value>& texels, Extend exte
     }
 }
 
-/// Least and greatest of the lanes of each channel.
+/// Reduces lanes to the minimum and maximum of each channel.
 template <class D, class V, class T = hn::TFromD<D>>
 HWY_INLINE void join_lanes(D d, V low, V high, T (&least)[kChannels], T (&greatest)[kChannels]) {
     alignas(64) T lows[kMostLanes], highs[kMostLanes];
@@ -43,7 +42,7 @@ HWY_INLINE void join_lanes(D d, V low, V high, T (&least)[kChannels], T (&greate
     }
 }
 
-/// Whole numbers in the order of the halves with these bits; the map is its own inverse.
+/// Maps the bits of halves to integers in the same order; an involution.
 constexpr int16_t make_key(uint16_t half) { return int16_t(half ^ ((half & 0x8000u) != 0 ? 0x7fffu : 0u)); }
 
 template <class D> Extrema join_halves(D d, const TexelRows<uint16_t>& texels) {
@@ -68,7 +67,7 @@ template <class D> Extrema join_halves(D d, const TexelRows<uint16_t>& texels) {
 
 template <class D> Extrema join_floats(D d, const TexelRows<float>& texels) {
     auto low = hn::LoadU(d, texels.first), high = low;
-    auto doubt = hn::Zero(d); // or NaN, after NaN or infinity
+    auto doubt = hn::Zero(d); // NaN after a NaN or infinity
     visit_registers(d, texels, [&](const float* values) {
         const auto value = hn::LoadU(d, values);
         low = hn::Min(low, value), high = hn::Max(high, value);

@@ -1,4 +1,4 @@
-// Least and greatest values of many texels, four to sixteen numbers at a time, as the machine has registers.
+// SIMD minimum and maximum of texels, four to sixteen values at a time.
 #pragma once
 
 #include <array>
@@ -7,19 +7,19 @@
 
 namespace relief {
 
-/// columns x rows texels of four channels; `stride` values from row to row.
+/// columns x rows texels of four channels; rows are `stride` values apart.
 template <class Value> struct TexelRows {
     const Value* first;
-    size_t stride, columns, rows; ///< neither columns nor rows is 0
+    size_t stride, columns, rows; ///< columns and rows are > 0
 };
 
 /// Of the first three channels.
 struct Extrema {
     std::array<float, 3> low, high;
-    bool is_finite; ///< else one of the values is NaN or infinite, and the others are of no use
+    bool is_finite; ///< false: a value is NaN or infinite, and the results are invalid
 };
 
-/// Of halves, given by their bits.
+/// For halves, given as bits.
 Extrema find_extrema(const TexelRows<uint16_t>& texels);
 Extrema find_extrema(const TexelRows<float>& texels);
 

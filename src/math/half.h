@@ -1,4 +1,4 @@
-// IEEE 754 binary16 bits to float, exactly, and back to the nearest.
+// IEEE 754 binary16 to float, exact, and back, rounded to nearest.
 #pragma once
 
 #include <bit>
@@ -16,14 +16,14 @@ inline float half_to_float(uint16_t half) {
     return std::bit_cast<float>(sign | (special != 0 ? special : std::bit_cast<uint32_t>(scaled)));
 }
 
-/// Nearest to a finite value, ties to even; beyond the range the largest finite half.
+/// Rounds a finite value to nearest, ties to even; values out of range become the largest finite half.
 inline uint16_t float_to_half(float value) {
     const uint32_t bits = std::bit_cast<uint32_t>(value), sign = (bits >> 16) & 0x8000u;
     const uint32_t magnitude = bits & 0x7fffffffu;
     if (magnitude >= 0x477fe000u) return uint16_t(sign | 0x7bffu);
     if (magnitude < 0x38800000u) {
         // Below the normal halves the sum with 0.5 rounds to multiples of 2^-24, the spacing of the
-        // denormals.
+        // subnormals.
         const float shifted = std::bit_cast<float>(magnitude) + 0.5f;
         return uint16_t(sign | (std::bit_cast<uint32_t>(shifted) - 0x3f000000u));
     }

@@ -1,5 +1,5 @@
-// Arithmetic of 2- and 3-vectors over any lane type T (float, or a register of floats).
-// The order of operations is part of the contract: shared edges are watertight because of it.
+// Arithmetic of 2- and 3-vectors over any lane type T (float, or a register of floats). The order of
+// operations is part of the contract: watertight shared edges depend on it.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Device memory of a cast: rays and hits, what passes between its stages, and the counters.
+// Device buffers of a cast: rays, hits, intermediate results of its stages, and counters.
 #pragma once
 
 #include "vulkan/device/commands.h"
@@ -13,13 +13,13 @@ class CastBuffers {
 
     void bind(BindingTable& bindings) const;
 
-    /// Makes room for as many trees; records of trees that are there already are kept.
+    /// Grows the tree records to `count`; existing records are kept.
     void reserve_trees(const Device& device, uint32_t count, Commands& commands, BindingTable& bindings);
     uint32_t tree_capacity() const { return tree_capacity_; }
-    /// Trees that can have pairs at once: places of each bin of builds.
+    /// Maximum number of trees with pairs at a time; the size of each build bin.
     uint32_t job_capacity() const { return job_capacity_; }
 
-    /// The rays of the next round become those of this one.
+    /// Makes the rays of the next round the active ones.
     void swap_active(BindingTable& bindings);
 
     Buffer rays, hits, active, next_active, cursors, candidates, pairs, sorted_pairs, histogram, trees,
@@ -30,10 +30,10 @@ class CastBuffers {
     uint32_t tree_capacity_ = 0, job_capacity_ = 0;
 };
 
-/// One entry of `arguments`.
+/// Size of one entry of `arguments`.
 inline constexpr uint64_t kArgumentBytes = scalar::kArgumentWords * sizeof(uint32_t);
 
-/// Patches whose tiles can be asked for at once; more ask again.
+/// Patches whose tiles can be requested at a time; further ones are requested again.
 inline constexpr uint32_t kRequestCapacity = 4096;
 
 } // namespace relief::vulkan

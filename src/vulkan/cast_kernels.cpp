@@ -16,32 +16,31 @@ namespace {
 constexpr uint32_t kAll = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t kGroup = 64; ///< invocations of kernels without barriers
 
-/// Mesa's lavapipe ends the loops of an invocation without a word after 65535 rounds in all. A ray visits at
-/// most the 1365 nodes of a tree; with a build before them 32 rays stay below.
+/// Mesa's lavapipe silently ends the loops of an invocation after 65535 iterations in total. A ray visits at
+/// most the 1365 nodes of a tree; 32 rays after a build stay below the limit.
 constexpr uint32_t kSafePairsPerLane = 32;
 
-/// Lanes that work on one tree of each bin. A program that runs lanes one after another keeps the state of a
-/// group at every barrier: small groups are the fast ones there.
+/// Lanes per tree in each bin. Software devices run lanes one after another and save the state of the group
+/// at every barrier, so small groups are faster there.
 std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
     if (is_cpu) return {4, 8, 8};
     return {4, 16, 64};
 }
 
-/// Steps in which stacks grow, so that scenes of similar depth share a kernel. One entry stands
-/// for none.
+/// Granularity of stack sizes, so that scenes of similar depth share a kernel. Size 1 means no stack.
 constexpr uint32_t kStackStep = 8;
 
-/// The deepest trees of each bin.
+/// Maximum tree level of each bin.
 constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
 
-/// Whether trees of a scene are in a bin; `is_coarser`: or coarser ones of the same patches.
+/// Whether the scene has trees in a bin; `is_coarser`: coarser trees of the same patches count as well.
 bool has_trees(uint32_t tree_levels, bool is_coarser, uint32_t bin) {
     if (is_coarser && tree_levels != 0) tree_levels = 2 * std::bit_floor(tree_levels) - 1;
     const uint32_t first = bin == 0 ? 0 : kDeepest[bin - 1] + 1;
     return tree_levels >> first & ((2u << (kDeepest[bin] - first)) - 1);
 }
 
-/// A kernel that walks trees: a dispatch, or fragments over the full screen.
+/// A traversal kernel: a compute shader or a full-screen fragment shader.
 Kernel make_walk(const Device& device, RenderMethod method, const TraversalKernel& kernel,
                  std::vector<uint32_t> constants) {
     if (method != RenderMethod::fragment)

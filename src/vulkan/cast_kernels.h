@@ -1,4 +1,4 @@
-// The kernels of a cast, specialised for the device, the leaf and the form of the bottom level.
+// The kernels of a cast, specialised for the device, the leaf kind and the form of the patch tree kernels.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 namespace relief::vulkan {
 
 struct CastKernels {
-    /// `stack_size`: entries for scene trees and tiles.
+    /// `stack_size`: entries needed for scene trees and tile directories.
     CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
                 const TracerConfig& config, uint32_t stack_size);
 
-    /// The fused form leaves pairs of large trees to `leftover`; only devices that bound the loops of an
-    /// invocation have any.
+    /// The fused form leaves excess pairs of large trees to `leftover`; only on devices that limit the loops
+    /// of an invocation.
     bool is_fused, has_leftover = false;
     uint32_t fused_group_count = 0, fused_jobs_per_group = 0;
     scalar::ArgumentsPush arguments_push; ///< for prepare_arguments
 
     Kernel scene_traversal, find_jobs, prepare_arguments, bottom_cache, patch_traversal, bottom_fused,
         leftover, commit_round, finish_hits;
-    /// Of the bins that trees of the scene can be in; none of the fused form.
+    /// One per bin that trees of the scene can fall into; none in the fused form.
     std::array<std::optional<Kernel>, scalar::kBuildBinCount> bottom_build;
 };
 

@@ -35,7 +35,7 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
     return result;
 }
 
-/// Emissive patches, then the ranges of their instances.
+/// Emissive patches, followed by the ranges of their instances.
 std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table) {
     std::vector<scalar::EmitterData> result;
     for (uint32_t k = 0; k < table.size(); ++k)
@@ -58,7 +58,7 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     }
     std::vector<float> cumulative = std::move(distribution.rows);
     cumulative.insert(cumulative.end(), distribution.columns.begin(), distribution.columns.end());
-    // As large as the image that it is of, and counted with it: no geometry.
+    // As large as its image and counted with it, not as geometry.
     environment_ =
         make_table(device, "environment", TexelFormat::r32_float, cumulative, Purpose::displacement);
 

@@ -1,4 +1,4 @@
-// Materials and lights in device memory, for the kernels of the path tracer.
+// Materials and lights in device memory, for the path tracing kernels.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ class DeviceLights {
     DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
 
     void bind(BindingTable& bindings) const;
-    /// Fills in what kernels are told about lights; the rest of `push` stays.
+    /// Fills in the light parameters of `push`; the rest is unchanged.
     void describe(scalar::PathPush& push) const;
 
   private:

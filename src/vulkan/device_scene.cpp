@@ -35,7 +35,7 @@ uint32_t pack_kind(uint32_t kind, uint32_t count) { return kind << scalar::kNode
 
 } // namespace
 
-/// What becomes texel buffers.
+/// Host copies of the texel buffers.
 struct DeviceScene::Arrays {
     std::vector<Vec3f> positions;
     std::vector<Vec2f> uvs;
@@ -114,7 +114,7 @@ void DeviceScene::add_map(const Surface& surface) {
     data.wrap = uint32_t(map.wrap);
     data.flip_v = map.flip_v;
     data.is_tangent = map.is_tangent;
-    // Tiles of a map follow one another, so those that another map has too are listed again.
+    // Tiles of a map must be consecutive, so tiles shared with another map are listed again.
     data.first_tile = uint32_t(tables_.textures.size());
     data.tile_count = uint32_t(map.tiles.size());
     for (uint32_t mip = 0; mip <= (map.is_filtered ? scalar::kMaxMip : 0); ++mip)
@@ -180,7 +180,7 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
     root_ = arrays.append_tree(instances, [&](const BvhNode& node) {
         return std::pair(instances.primitive_ids[node.first], pack_kind(scalar::kNodeInstance, 1));
     });
-    // Nearest first, each step down leaves one sibling behind.
+    // Front-to-back traversal pushes one sibling per level.
     stack_size_ = uint32_t(compute_depth(instances) + arrays.deepest_surface + 4);
     node_count_ = arrays.nodes.size();
 }
@@ -191,7 +191,7 @@ void DeviceScene::add_walk(const SceneWalk& walk, Arrays& arrays) {
     for (const uint8_t has_patches : walk.has_patches)
         arrays.surface_roots.push_back(has_patches ? 0 : kNone);
     root_ = walk.has_instances ? 0 : kNone;
-    stack_size_ = 1; // walks have no use for it; tiles add theirs
+    stack_size_ = 1; // these traversals need no stack; tile directories add theirs
     node_count_ = arrays.nodes.size();
 }
 

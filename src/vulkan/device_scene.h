@@ -17,24 +17,25 @@
 
 namespace relief::vulkan {
 
-/// Every displaced and plain surface, and every texture of maps, materials and the environment. Immutable
-/// once made. Throws Error{out_of_memory} with the byte count for what the device cannot hold.
+/// All surfaces and all textures of maps, materials and the environment. Immutable once built. Throws
+/// Error{out_of_memory} with the byte count if the device cannot hold the scene.
 class DeviceScene {
   public:
-    /// `walk` takes the place of the engine's own trees, unless it is null. Read while the scene is made.
+    /// `walk`, unless null, replaces the engine's own trees. Read during construction only.
     DeviceScene(const Device& device, const PreparedScene& scene, const SceneWalk* walk = nullptr);
 
     void bind(BindingTable& bindings) const;
 
-    /// Node of the tree of instances; scalar::kNone without anything to be seen.
+    /// Root of the tree of instances; scalar::kNone for an empty scene.
     uint32_t root() const { return root_; }
-    /// Number of the first patch of a surface among all; trees of tiles are numbered from patch_count() on.
+    /// Index of the first patch of a surface among all patches; trees of tiles are numbered from
+    /// patch_count() on.
     uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
     uint32_t patch_count() const { return patch_count_; }
-    /// The kernel that walks the scene trees, and the entries that its stack needs for them.
+    /// The scene traversal kernel, and the stack entries that it needs.
     const TraversalKernel& traversal_kernel() const { return traversal_kernel_; }
     uint32_t stack_size() const { return stack_size_; }
-    /// Bit k: patches, or tiles of finer ones, have level k.
+    /// Bit k: there are patches, or tiles of finer patches, of level k.
     uint32_t tree_levels() const { return tree_levels_; }
     uint32_t node_count() const { return uint32_t(node_count_); }
     const Buffer& nodes() const { return nodes_; }

@@ -11,9 +11,9 @@ namespace relief::vulkan {
 namespace {
 
 constexpr uint64_t kUnitBytes = scalar::kPoolUnitWords * sizeof(uint32_t);
-constexpr uint64_t kLeastBytes = uint64_t(1) << 20;    ///< a few of the largest trees
-constexpr uint64_t kWorkingBytes = uint64_t(64) << 20; ///< of a pool that keeps nothing
-constexpr uint32_t kBudgetShare = 4;                   ///< a wave may fill one part in so many
+constexpr uint64_t kLeastBytes = uint64_t(1) << 20;    ///< room for a few of the largest trees
+constexpr uint64_t kWorkingBytes = uint64_t(64) << 20; ///< size of the pool without a cache
+constexpr uint32_t kBudgetShare = 4;                   ///< a wave may fill 1 / kBudgetShare of the pool
 
 } // namespace
 
@@ -46,7 +46,7 @@ void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, 
 }
 
 void PatchTreeCache::end_wave(const scalar::CounterData& counters) {
-    // What was refused at the end of the wave moved the head all the same.
+    // Allocations refused at the end of the wave advanced the counter as well.
     const uint32_t limit = head_ + (is_kept_ ? capacity_ / kBudgetShare : capacity_);
     head_ = std::min(counters.pool_head, limit);
 }

@@ -1,5 +1,5 @@
-// The pool of patch trees: a ring that is filled on and on. Places are numbered for ever; what lies more
-// than the pool's size behind is gone. The counterpart of cpu/patch_trees/patch_tree_cache.h; its look-up is
+// The patch tree cache: a ring buffer. Addresses increase monotonically; trees more than the ring's size
+// behind the head are overwritten. Counterpart of cpu/patch_trees/patch_tree_cache.h; looked up by
 // shaders/bottom_cache.comp.
 #pragma once
 
@@ -10,24 +10,22 @@
 
 namespace relief::vulkan {
 
-/// One thread at a time.
+/// Not thread safe.
 class PatchTreeCache {
   public:
-    /// `cap_bytes` 0: trees serve one wave of jobs only, and the pool is working memory. Throws
-    /// Error{out_of_memory}.
-    /// `last_head`: units after which places are numbered afresh and all trees are forgotten.
+    /// `cap_bytes` 0: trees live for one wave of jobs, and the pool is only working memory. Throws
+    /// Error{out_of_memory}. `last_head`: address, in units, after which addresses restart and all trees are
+    /// discarded.
     PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
 
     void bind(BindingTable& bindings) const;
 
-    /// Before the jobs of a chunk of rays are found, whose records it may clear: `trees` are those of all
-    /// trees.
+    /// Call before the jobs of a chunk of rays are collected. May clear the records of all trees in `trees`.
     void begin_chunk(const Buffer& trees, Commands& commands);
 
-    /// Fills in what a wave of jobs is told. Records what must be done before it; `trees` are the records of
-    /// all trees.
+    /// Fills in the push constants of a wave of jobs and records the commands that precede it.
     void begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands);
-    /// `pool_head` as the wave left it.
+    /// Takes over `pool_head` after the wave.
     void end_wave(const scalar::CounterData& counters);
 
   private:
@@ -35,7 +33,7 @@ class PatchTreeCache {
     bool is_kept_;
     uint32_t last_head_;
     uint32_t capacity_; ///< units
-    uint32_t head_ = 0; ///< units filled so far
+    uint32_t head_ = 0; ///< next address, units
     uint32_t wave_ = 0;
 };
 

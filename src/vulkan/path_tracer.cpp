@@ -76,7 +76,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
 
 void PathTracer::make_buffers() {
     const Device& device = tracer_.device();
-    // First hits by drawing borrow what only shading needs.
+    // Rasterised first hits reuse buffers that only shading needs.
     const bool is_lent = settings_.experiment.method == RenderMethod::hybrid;
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
     points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
@@ -115,7 +115,7 @@ void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples)
     const Timer timer;
     add_to_film(film, pixels, samples.count);
     film_s_ += timer.seconds();
-    // Not before: a batch that an error ends is traced again, and its rays count once.
+    // Only now: after an error the batch is traced again, and its rays must count once.
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
 }
 
@@ -160,7 +160,7 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     commands.dispatch(film_, pixels.count, push);
 }
 
-/// Light that rays met, the surfaces that they hit, what is drawn there.
+/// Emission seen by rays, surface points, light and BSDF sampling.
 PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
     Commands& commands = tracer_.commands();
     commands.begin_stage(Stage::shade);

@@ -1,5 +1,5 @@
-// Path tracing of a batch of pixels on the device: all paths of one sample advance together, kernel by
-// kernel. The counterpart of cpu/path_tracer.h, with the same random numbers and formulas.
+// Wavefront path tracing of a batch of pixels on the device: all paths of one sample advance together, kernel
+// by kernel. Counterpart of cpu/path_tracer.h, with the same random numbers and formulas.
 #pragma once
 
 #include <cstdint>
@@ -26,24 +26,24 @@ struct SampleRange {
     int first = 0, count = 1;
 };
 
-/// One thread at a time. All of it is synchronous.
+/// Not thread safe; all calls are synchronous.
 class PathTracer {
   public:
-    /// Binds its tables to the tracer's bindings. A pass holds half as many paths as the tracer has places
-    /// for rays. The tracer must outlive it. Throws Error{out_of_memory}.
+    /// Binds its buffers to the tracer's bindings. Its capacity is half the tracer's ray capacity. The tracer
+    /// must outlive it. Throws Error{out_of_memory}.
     PathTracer(Tracer& tracer, const RenderSettings& settings);
 
-    /// Paths that are traced at once.
+    /// Paths traced at a time.
     uint32_t capacity() const { return capacity_; }
 
     /// Adds samples to the film. Sample k of a pixel depends on (seed, pixel, k) only. Any number of pixels
-    /// and samples; multiples of capacity() and kSamplesPerLaunch are best.
+    /// and samples; multiples of capacity() and kSamplesPerLaunch are most efficient.
     void trace_samples(Film& film, PixelRange pixels, SampleRange samples);
 
-    /// Rays by kind and casts by depth, of whole batches.
+    /// Adds rays by kind and casts by depth, of completed batches.
     void add_statistics(Statistics& statistics) const;
 
-    /// Samples of a pixel that are summed up on the device, in single precision.
+    /// Samples per pixel summed on the device, in single precision.
     static constexpr int kSamplesPerLaunch = 16;
 
   private:
@@ -66,9 +66,9 @@ class PathTracer {
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_,
         shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
-    std::unique_ptr<Rasteriser> rasteriser_;          ///< of the hybrid method
-    std::vector<CastStatistics> casts_, batch_casts_; ///< of whole batches; of the one under way
-    double film_s_ = 0;                               ///< of the host, for sums that come back
+    std::unique_ptr<Rasteriser> rasteriser_;          ///< hybrid method only
+    std::vector<CastStatistics> casts_, batch_casts_; ///< of completed batches; of the current one
+    double film_s_ = 0;                               ///< on the host, adding sums to the film
 };
 
 } // namespace relief::vulkan

@@ -29,7 +29,7 @@ uint64_t RadixSort::histogram_words(uint64_t capacity) const {
 }
 
 uint32_t RadixSort::count_passes(uint32_t key_bits) {
-    // An even number, so that the last one ends where the first began.
+    // Even, so that the result ends in the input buffer.
     return (key_bits + 2 * kLargestDigitBits - 1) / (2 * kLargestDigitBits) * 2;
 }
 
@@ -41,7 +41,7 @@ void RadixSort::record(Commands& commands, uint64_t capacity, uint32_t key_bits,
     const uint32_t digit_bits = (key_bits + passes - 1) / passes;
     const uint64_t invocations = count_tiles(capacity) * kSortGroupSize;
     for (uint32_t pass = 0; pass < passes; ++pass) {
-        // With 1 bit there is nothing left for the second pass, which moves the pairs back.
+        // With 1 key bit the second pass has no digit left and only copies the pairs back.
         const uint32_t shift = std::min(pass * digit_bits, key_bits);
         const uint32_t width = std::min(digit_bits, key_bits - shift);
         const SortPush push{counter_word, uint32_t(capacity), std::min(shift, 31u), (1u << width) - 1,

@@ -1,4 +1,4 @@
-// Sorts pairs by their first word on the device: stable, so that the result does not depend on timing.
+// Sorts pairs by their first word on the device. Stable, hence deterministic.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace relief::vulkan {
 
-/// Least significant digit first, four bits a pass (Satish et al. 2009, Designing Efficient Sorting
+/// Least significant digit first, four bits per pass (Satish et al. 2009, Designing Efficient Sorting
 /// Algorithms for Manycore GPUs). The device must outlive it.
 class RadixSort {
   public:
     explicit RadixSort(const Device& device);
 
-    /// Words that the buffer bound at kBindHistogram must have to sort `capacity` pairs.
+    /// Required words of the buffer at kBindHistogram to sort `capacity` pairs.
     uint64_t histogram_words(uint64_t capacity) const;
 
-    /// Passes over all pairs, each of which reads them twice and writes them once.
+    /// Number of passes; each reads all pairs twice and writes them once.
     static uint32_t count_passes(uint32_t key_bits);
 
     /// Sorts the first counters[counter_word] pairs of kBindPairs, at most `capacity`, by the lowest
     /// `key_bits` (0 to 32) of their first word; higher bits must be 0. The result is in kBindPairs;
-    /// kBindSortedPairs, as large, and kBindHistogram are overwritten. `counter_word` is an index of a word
-    /// of kBindCounters.
+    /// kBindSortedPairs, of the same size, and kBindHistogram are overwritten. `counter_word` is an index of
+    /// a word of kBindCounters.
     void record(Commands& commands, uint64_t capacity, uint32_t key_bits, uint32_t counter_word) const;
 
   private:

@@ -14,7 +14,7 @@ namespace relief::vulkan {
 namespace {
 
 constexpr uint32_t kGroupSize = 64;
-/// A draw has less than 2^32 vertices, and ranks of triangles need a bit more than numbers of cells.
+/// A draw has less than 2^32 vertices, and triangle ranks need one bit more than cell indices.
 constexpr uint32_t kMostCells = 1u << 26;
 
 static_assert(sizeof(scalar::RasterItem) == 24);
@@ -24,7 +24,7 @@ Kernel make_kernel(const Device& device, const char* shader) {
     return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
 }
 
-/// Rows of the window that a range of pixels in the order of squares touches.
+/// Rows of the window touched by a range of pixels in place_pixel order.
 void set_rows(const scalar::CameraPush& camera, scalar::RasterPush& push) {
     const uint64_t band_pixels = uint64_t(scalar::kPixelSquare) * camera.width;
     const uint32_t last_pixel = camera.first_pixel + camera.count - 1;
@@ -69,7 +69,7 @@ CastStatistics Rasteriser::first_hits(const scalar::CameraPush& camera) {
 
 void Rasteriser::draw_wave(const Wave& wave, scalar::RasterPush push) {
     Commands& commands = tracer_.commands();
-    commands.run(); // what reads the items of the wave before
+    commands.run(); // finishes the readers of the previous wave's items
     buffers_.items->upload(wave.items);
     push.item_count = uint32_t(wave.items.size());
     push.vertex_count = wave.vertex_count;
@@ -78,7 +78,7 @@ void Rasteriser::draw_wave(const Wave& wave, scalar::RasterPush push) {
     commands.dispatch(resolve_, push.count, push);
 }
 
-/// As many items from the cursor on as there is room for; none after the last one.
+/// As many items from the cursor on as fit; none after the last one.
 Rasteriser::Wave Rasteriser::take_wave(Cursor& cursor) const {
     const PreparedScene& scene = tracer_.scene();
     Wave wave;
@@ -92,7 +92,7 @@ Rasteriser::Wave Rasteriser::take_wave(Cursor& cursor) const {
     return wave;
 }
 
-/// As many rows of the patch as there is room for; false without room for one.
+/// Adds as many rows of the patch as fit; false if none does.
 bool Rasteriser::append_item(Cursor& cursor, Wave& wave) const {
     const Instance& instance = tracer_.scene().instances[cursor.instance];
     const bool is_displaced = tracer_.scene().surfaces[instance.surface].has_displacement;

@@ -1,4 +1,4 @@
-// Rays of other programs on the device: spans in, hits out, in batches.
+// Ray queries of other programs on the device: spans in, hits out, in batches.
 #pragma once
 
 #include <span>
@@ -8,18 +8,18 @@
 
 namespace relief::vulkan {
 
-/// One thread at a time. Binds its lists whenever it is called, so that it can share a tracer.
+/// Not thread safe. Binds its lists on every call, so that it can share a tracer.
 class RayBatch {
   public:
     /// The tracer must outlive it. Throws Error{out_of_memory}.
     explicit RayBatch(Tracer& tracer);
 
-    /// Spans of equal length, any length; `mask` as for Engine.
+    /// Spans of equal, arbitrary length; `mask` as for Engine.
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask);
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask);
 
   private:
-    /// Rays of one batch, at most capacity_ of them.
+    /// One batch of at most capacity_ rays.
     void upload(std::span<const Ray> rays);
 
     Tracer& tracer_;

@@ -1,5 +1,5 @@
-// A traversal of the scene that takes the place of the engine's own on a device. The laboratory (src/lab) has
-// those of papers 2 and 3.
+// A scene traversal that replaces the engine's own on a device. The laboratory (src/lab) provides those of
+// papers 2 and 3.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,17 @@ struct NodeTexels {
 };
 static_assert(sizeof(NodeTexels) == 32);
 
-/// A shader with its SPIR-V; empty: the one of that name in vulkan/shaders.
+/// A shader with its SPIR-V; empty SPIR-V: the shader of that name in vulkan/shaders.
 struct TraversalKernel {
     std::string shader;
     std::span<const uint32_t> compute, fragment;
 };
 
-/// Trees and the kernel that walks them.
+/// Scene trees and the kernel that traverses them.
 struct SceneWalk {
     std::vector<NodeTexels> nodes;    ///< for kBindNodes
     std::vector<uint32_t> words;      ///< for kBindPrimitiveIds
-    std::vector<uint8_t> has_patches; ///< one a surface
+    std::vector<uint8_t> has_patches; ///< one per surface
     bool has_instances = false;
     TraversalKernel kernel;
 };

@@ -1,4 +1,4 @@
-// What casts rays, cut to what the device has room for: fewer rays at once take longer, but change nothing.
+// A tracer sized to the device's memory: a smaller ray capacity is slower, but does not change results.
 #pragma once
 
 #include <functional>
@@ -11,30 +11,30 @@
 
 namespace relief::vulkan {
 
-/// Places for rays: what is wished for, and the least with which work is worth while.
+/// Ray capacity: preferred, and the minimum that is still useful.
 struct RayPlaces {
     uint32_t wished, least;
 };
 
-/// A tracer and the worker that feeds it. One thread at a time.
+/// A tracer and the worker that feeds it. Not thread safe.
 template <class Worker> class Station {
   public:
     using MakeTracer = std::function<std::unique_ptr<Tracer>(uint32_t rays)>;
     using MakeWorker = std::function<std::unique_ptr<Worker>(Tracer&)>;
 
     Station() = default;
-    /// Halves the places until tracer and worker fit. Throws Error{out_of_memory} when the least do not.
+    /// Halves the capacity until tracer and worker fit. Throws Error{out_of_memory} if the minimum does not.
     Station(RayPlaces places, MakeTracer make_tracer, MakeWorker make_worker)
         : least_(places.least), make_tracer_(std::move(make_tracer)), make_worker_(std::move(make_worker)) {
         make(places.wished);
     }
 
-    /// False before it is made and after run() has thrown for lack of memory.
+    /// False when default constructed, and after run() has thrown for lack of memory.
     explicit operator bool() const { return worker_ != nullptr; }
 
-    /// Runs work(Worker&). When memory runs out on the way (patch trees, tiles), it is run again on a
-    /// station made afresh, which has forgotten what filled the memory, or, where that does not help, on half
-    /// of one.
+    /// Runs work(Worker&). If memory runs out on the way (patch trees, tiles), retries with a new tracer and
+    /// worker, which frees the memory accumulated so far; if no work has succeeded at this capacity, with
+    /// half of it.
     template <class Work> void run(const Work& work) {
         for (;;) {
             try {
@@ -51,7 +51,7 @@ template <class Worker> class Station {
         }
     }
 
-    /// What tracers and workers did so far.
+    /// Adds the statistics of all tracers and workers so far.
     void add_statistics(Statistics& statistics) const {
         Statistics current;
         if (tracer_) tracer_->add_statistics(current);
@@ -85,12 +85,12 @@ template <class Worker> class Station {
     }
 
     uint32_t rays_ = 0, least_ = 0;
-    bool is_proven_ = false; ///< has done some work with these places
+    bool is_proven_ = false; ///< some work has succeeded at this capacity
     MakeTracer make_tracer_;
     MakeWorker make_worker_;
     std::unique_ptr<Tracer> tracer_;
     std::unique_ptr<Worker> worker_;
-    Statistics retired_; ///< work of tracers and workers that made room
+    Statistics retired_; ///< statistics of discarded tracers and workers
 };
 
 } // namespace relief::vulkan

@@ -1,4 +1,4 @@
-// All texels of a scene in two buffers, one a precision: no device needs to index an array of images.
+// All texels of a scene in two buffers, one per precision, so that devices need not index arrays of images.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,10 @@ namespace relief::vulkan {
 
 class TexelStore {
   public:
-    /// Reserves a place for the texels; they are copied when the buffers are made.
+    /// Reserves space for the texels; they are copied when the buffers are created.
     scalar::TextureData add(std::shared_ptr<const Texture> texture);
 
-    /// rgba32_float, rgba16_float. Throw Error{out_of_memory} when there are more texels than the device can
-    /// address.
+    /// rgba32_float, rgba16_float. Throw Error{out_of_memory} for more texels than the device can address.
     Buffer make_float_buffer(const Device& device) const;
     Buffer make_half_buffer(const Device& device) const;
 

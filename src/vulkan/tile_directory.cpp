@@ -18,11 +18,11 @@ namespace {
 
 constexpr uint32_t kTileCells = 1u << scalar::kTreeLevels;
 constexpr size_t kFirstTableSize = 64;
-constexpr size_t kMostNewTiles = size_t(1) << 18; ///< made at once
+constexpr size_t kMostNewTiles = size_t(1) << 18; ///< per call
 
 } // namespace
 
-/// Boxes of the tiles of one patch, row by row.
+/// Bounds of the tiles of one patch, row by row.
 struct TileDirectories::Boxes {
     uint32_t side; ///< tiles
     std::vector<Box> boxes;
@@ -52,7 +52,7 @@ void TileDirectories::bind(BindingTable& bindings) const {
 
 void TileDirectories::build(std::span<const scalar::RequestData> requests, Commands& commands,
                             BindingTable& bindings) {
-    // Many rays ask for the same; sorted, so that the numbers of the tiles do not depend on who asked first.
+    // Removes duplicates; sorted, so that tile indices do not depend on the order of requests.
     std::map<std::pair<uint32_t, uint32_t>, scalar::RequestData> unique;
     for (const scalar::RequestData& request : requests) {
         const uint32_t surface = scene_.instances[request.instance].surface;
@@ -62,7 +62,7 @@ void TileDirectories::build(std::span<const scalar::RequestData> requests, Comma
     new_nodes_.clear();
     const uint32_t first_node = node_count_;
     const size_t first_tile = tiles_.size();
-    const size_t most_tiles = tiles_.size() + kMostNewTiles; // what is left out asks again
+    const size_t most_tiles = tiles_.size() + kMostNewTiles; // the remaining requests are repeated
     for (const auto& [key, request] : unique) {
         if (tiles_.size() >= most_tiles) break;
         const Boxes boxes = compute_boxes(request);
@@ -86,7 +86,7 @@ TileDirectories::Boxes TileDirectories::compute_boxes(const scalar::RequestData&
     const PatchLevels levels = unpack_levels(request.levels);
     Boxes boxes{1u << (levels.patch - scalar::kTreeLevels), {}};
     boxes.boxes.resize(size_t(boxes.side) * boxes.side);
-    // Neither box holds the other, and the tile lies in both.
+    // Neither box contains the other; the tile lies in their intersection.
     const Box whole = compute_patch_box(surface, request.patch_index);
     parallel_for("tile_boxes", boxes.boxes.size(), 4, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
@@ -107,7 +107,7 @@ uint32_t TileDirectories::append_tree(const Boxes& boxes, uint32_t first_tree) {
     return root;
 }
 
-/// Fills node `place` of new_nodes_ with the tiles of a square (x, y, side): halves by columns, then by rows.
+/// Fills node `place` of new_nodes_ with the tiles of a square (x, y, side), split by columns, then by rows.
 void TileDirectories::append_node(const Boxes& boxes, uint32_t place, uint32_t first_tree,
                                   const std::array<uint32_t, 3>& square) {
     const auto [x, y, side] = square;

@@ -1,5 +1,5 @@
-// Patches above level 5 are worked in tiles of 32 x 32 cells. The tree over the tiles of a patch is made by
-// the host when a ray asks for it first: only what rays look at is ever bounded.
+// Patches above level 5 are split into tiles of 32 x 32 cells. The host builds the tree over the tiles of a
+// patch on first request by a ray, so that only tiles near rays are ever bounded.
 #pragma once
 
 #include <span>
@@ -13,23 +13,23 @@
 
 namespace relief::vulkan {
 
-/// One thread at a time. Directories are kept as long as this lives; after an error it is of no more use.
+/// Not thread safe. Directories live as long as this object, which is unusable after an error.
 class TileDirectories {
   public:
     TileDirectories(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
 
     void bind(BindingTable& bindings) const;
 
-    /// Makes the directories asked for that are not there yet and binds the buffers that grew.
+    /// Builds the requested directories that do not exist yet and rebinds buffers that grew.
     void build(std::span<const scalar::RequestData> requests, Commands& commands, BindingTable& bindings);
 
-    /// Tiles so far: their trees are numbered from DeviceScene::patch_count() on.
+    /// Number of tiles; their trees are numbered from DeviceScene::patch_count() on.
     uint32_t tile_count() const { return uint32_t(tiles_.size()); }
-    /// Entries of the hash table - 1.
+    /// Size of the hash table - 1.
     uint32_t directory_mask() const { return uint32_t(table_.size()) - 1; }
-    /// True when a patch may have tiles at all.
+    /// Whether any patch may have tiles.
     bool is_needed() const { return finest_level_ > int(scalar::kTreeLevels); }
-    /// Entries that a ray's stack needs beyond those of the scene trees.
+    /// Stack entries that a ray needs beyond those of the scene trees.
     uint32_t stack_size() const {
         return is_needed() ? 2 * (uint32_t(finest_level_) - scalar::kTreeLevels) + 2 : 0;
     }
@@ -50,9 +50,9 @@ class TileDirectories {
     const DeviceScene& device_scene_;
     int finest_level_ = 0;
     std::vector<scalar::TileRecord> tiles_;
-    std::vector<scalar::DirectoryData> table_; ///< open addressing, a power of two
+    std::vector<scalar::DirectoryData> table_; ///< open addressing; the size is a power of two
     uint32_t directory_count_ = 0;
-    std::vector<NodeTexels> new_nodes_; ///< made in this call
+    std::vector<NodeTexels> new_nodes_; ///< built in this call
     uint32_t node_count_ = 0;           ///< on the device
     uint64_t node_capacity_ = 0;
     Buffer nodes_, tile_buffer_, table_buffer_;

@@ -29,13 +29,13 @@ using scalar::CounterData;
 
 constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(uint32_t);
 
-/// One ray of a later round must find room for all that it offers.
+/// A ray of a later round needs room for all candidates that it offers.
 TracerConfig with_room_for_a_ray(TracerConfig config) {
     config.pair_capacity = std::max(config.pair_capacity, scalar::kMostSlots);
     return config;
 }
 
-/// What was done over the whole render.
+/// Totals over the whole render.
 struct Totals {
     uint64_t pairs = 0, pairs_with_hit = 0, reused = 0;
     std::array<uint64_t, scalar::kTreeLevels + 1> built{};
@@ -145,7 +145,7 @@ CastStatistics Tracer::Implementation::cast(const Buffer& list, uint32_t count) 
     return result;
 }
 
-/// After an error, what was recorded must not stand in the way of the next cast.
+/// After an error, discard recorded commands that would disturb the next cast.
 CastStatistics Tracer::Implementation::cast_or_discard(const Buffer& list, uint32_t count) {
     try {
         return cast(list, count);
@@ -155,9 +155,9 @@ CastStatistics Tracer::Implementation::cast_or_discard(const Buffer& list, uint3
     }
 }
 
-/// One round of all active rays; returns how many stay active.
+/// One round of all active rays; returns the number of rays that stay active.
 uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
-    // Few rays need a second round, and some of them many: those offer more at a time.
+    // Few rays need a second round, but some of those need many: they offer more candidates per round.
     push.slots = push.round == 0 ? config.slots : std::min(2 * config.slots, scalar::kMostSlots);
     const uint32_t chunk = std::max(1u, config.pair_capacity / push.slots);
     clear(offsetof(CounterData, next_active_count), sizeof(uint32_t));
@@ -189,7 +189,7 @@ void Tracer::Implementation::traverse_scene() {
     commands.dispatch(kernels.scene_traversal, push.count, push);
 }
 
-/// Makes the tiles that rays asked for; true: the traversal must be run again.
+/// Builds the tiles requested by rays; true: the traversal must be repeated.
 bool Tracer::Implementation::build_directories() {
     read_counters();
     if (counters.request_count == 0) return false;
@@ -210,7 +210,7 @@ void Tracer::Implementation::sort_pairs() {
                                push);
 }
 
-/// Jobs in waves, as many at a time as the pool has room for; then the rays take their hits.
+/// Runs the jobs in waves, each as large as the pool allows, then commits the hits.
 void Tracer::Implementation::trace_waves() {
     uint32_t pairs_done = 0, jobs_done = 0;
     do {
@@ -245,7 +245,7 @@ void Tracer::Implementation::build_and_trace() {
                                kArgumentBytes * scalar::kArgumentsJobs, push);
     if (kernels.is_fused) return run_fused();
     commands.dispatch(kernels.prepare_arguments, 1, kernels.arguments_push);
-    // Each launch costs a device something, even where it has nothing to do.
+    // Launches have a cost even if they have no work.
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin)
         if (kernels.bottom_build[bin])
             commands.dispatch_indirect(*kernels.bottom_build[bin], buffers.arguments,
@@ -255,7 +255,7 @@ void Tracer::Implementation::build_and_trace() {
                                kArgumentBytes * scalar::kArgumentsPairs, push);
 }
 
-/// Resident groups work off the queue of jobs; a device that bounds loops gets as many launches as it takes.
+/// Persistent groups process the job queue; devices that limit loops need several launches.
 void Tracer::Implementation::run_fused() {
     commands.begin_stage(Stage::bottom_traversal);
     if (kernels.fused_jobs_per_group == std::numeric_limits<uint32_t>::max()) {
@@ -274,8 +274,7 @@ void Tracer::Implementation::run_fused() {
                                    kArgumentBytes * scalar::kArgumentsPairs, push);
 }
 
-/// Every ray walked to its end, every pair traced, every job served: a device that drops work must not go
-/// unnoticed.
+/// Checks that every ray, pair and job was completed, to detect devices that drop work.
 void Tracer::Implementation::check_nothing_lost(uint32_t pairs_done, uint32_t jobs_done) const {
     if (pairs_done == counters.pair_count && jobs_done == counters.job_count && counters.rays_lost == 0)
         return;

@@ -1,5 +1,5 @@
-// Rays against the scene on the device: rounds of upper traversal, sort, patch trees and bottom traversal
-// until no ray has anything left in front of its hit. The counterpart of cpu/tracer.h.
+// Ray casting on the device: rounds of scene traversal, sort, patch tree build and patch traversal, until no
+// ray has candidates left in front of its hit. Counterpart of cpu/tracer.h.
 #pragma once
 
 #include <memory>
@@ -12,20 +12,20 @@
 
 namespace relief::vulkan {
 
-/// What changes how work is cut, never what comes out.
+/// How work is partitioned; never changes the result.
 struct TracerConfig {
-    uint32_t ray_capacity = 1u << 20; ///< entries of rays and hits; lists hold as many
-    uint32_t slots = 4; ///< nearest patches that a ray offers in its first round, [1, 8]; twice as many later
+    uint32_t ray_capacity = 1u << 20; ///< capacity of the ray and hit buffers and of lists
+    uint32_t slots =
+        4; ///< nearest candidates that a ray offers in its first round, [1, 8]; twice as many later
     uint32_t pair_capacity =
-        1u << 22; ///< pairs of ray and patch at once, >= slots; fewer: more chunks of rays
-    uint32_t pool_restart_units = 1u << 31; ///< of trees built, after which the pool forgets all of them
-    uint32_t fused_group_count = 0;         ///< resident groups of the fused form; 0: what fills the device
-    uint32_t fused_jobs_per_group =
-        0;                        ///< trees that such a group takes in one launch; 0: as many as are safe
-    bool may_see_coarser = false; ///< rays may have a bias; those of a render have none
+        1u << 22; ///< capacity for pairs of ray and patch, >= slots; a smaller one means more chunks of rays
+    uint32_t pool_restart_units = 1u << 31; ///< units of trees built, after which the pool discards all trees
+    uint32_t fused_group_count = 0;    ///< persistent groups of the fused form; 0: enough to fill the device
+    uint32_t fused_jobs_per_group = 0; ///< trees per group and launch; 0: as many as are safe
+    bool may_see_coarser = false;      ///< rays may have an LOD bias; those of a render have none
 };
 
-/// One thread at a time. All of it is synchronous.
+/// Not thread safe; all calls are synchronous.
 class Tracer {
   public:
     /// Device and scene must outlive it. Throws Error{out_of_memory}.
@@ -33,12 +33,12 @@ class Tracer {
            const RenderSettings& settings, const TracerConfig& config);
     ~Tracer();
 
-    /// Nearest hits of the first `count` rays that `list` names (numbers into kBindRays), into kBindHits.
+    /// Nearest hits of the first `count` rays of `list` (indices into kBindRays), into kBindHits.
     CastStatistics closest_hits(const Buffer& list, uint32_t count);
-    /// Whether anything is in the way: HitData::instance is kNone where nothing is.
+    /// Any hit: HitData::instance is kNone for unoccluded rays.
     CastStatistics any_hits(const Buffer& list, uint32_t count);
 
-    /// Of all rays from now on: instances are met whose mask shares a bit. Everything to begin with.
+    /// Visibility mask of all subsequent rays: instances are hit whose mask shares a bit. Initially all bits.
     void set_visibility_mask(uint32_t mask);
 
     BindingTable& bindings();
@@ -50,12 +50,12 @@ class Tracer {
     Buffer& rays();
     const Buffer& hits() const;
     const TracerConfig& config() const;
-    /// CounterData; path_count and shadow_count belong to whoever shades.
+    /// CounterData; path_count and shadow_count are for the caller's shading kernels.
     const Buffer& counter_buffer() const;
-    /// Runs what was recorded and fetches the counters.
+    /// Submits the recorded commands, waits and reads the counters.
     const scalar::CounterData& read_counters();
 
-    /// What was done so far: pairs, trees, bytes.
+    /// Adds pairs, trees and bytes so far.
     void add_statistics(Statistics& statistics) const;
 
   private:

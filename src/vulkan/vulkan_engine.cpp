@@ -1,4 +1,4 @@
-// The Vulkan engine: passes over the picture, batch by batch; rays for other programs.
+// The Vulkan engine: passes over the picture, batch by batch, and ray queries.
 #include "vulkan/vulkan_engine.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace vulkan {
 namespace {
 
 constexpr uint32_t kMostPaths = 1u << 20;
-constexpr uint32_t kLeastPaths = 1u << 12; ///< below it a device has no room for a picture
+constexpr uint32_t kLeastPaths = 1u << 12; ///< with less, the device has too little memory to render
 constexpr uint32_t kRaysOfABatch = 1u << 17;
 constexpr uint32_t kSlots = 4;
 
@@ -35,7 +35,7 @@ class VulkanEngine final : public Engine {
           device_(std::move(device)),
           device_scene_(*device_, *scene_, walk ? &*walk : nullptr) {}
 
-    /// Texels and trees lie on the device, as they were uploaded.
+    /// Unsupported: texels and trees on the device are immutable.
     bool apply_changes(std::span<const SurfaceChange>) override { return false; }
     bool render(Film& film, RenderObserver* observer) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override;
@@ -62,7 +62,7 @@ class VulkanEngine final : public Engine {
     double set_up_s_ = 0, first_image_s_ = 0;
 };
 
-/// Of `rays` places one in `share` is cast at a time.
+/// Casts 1 / `share` of the `rays` capacity at a time.
 std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share) const {
     TracerConfig config;
     config.ray_capacity = rays;
@@ -71,7 +71,7 @@ std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share)
     return std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
 }
 
-/// Before the hybrid method draws into a window.
+/// Checks the limits of the hybrid method for a window.
 void VulkanEngine::require_drawable(const Window& window) const {
     const uint32_t most = device_->max_draw_size();
     if (settings_.experiment.method != RenderMethod::hybrid ||
@@ -88,7 +88,7 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
     const Timer set_up;
     // Every path has a ray and a shadow ray.
-    paths_ = {}; // makes room
+    paths_ = {}; // frees its memory
     paths_ = {{2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
                2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths))},
               [this](uint32_t rays) { return make_tracer(rays, 2); },
@@ -111,7 +111,7 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
     return true;
 }
 
-/// False after a cancellation.
+/// False if cancelled.
 bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* observer) {
     const Window& window = film.window();
     const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
@@ -158,7 +158,7 @@ void VulkanEngine::add_statistics(Statistics& statistics) const {
     statistics.engine = "vulkan";
     statistics.device = device_->description().name;
     statistics.isa = device_->description().driver;
-    // Making kernels and buffers is no part of a frame.
+    // Creating kernels and buffers does not count as frame time.
     statistics.prepare_s += set_up_s_;
     statistics.render_s -= set_up_s_;
     statistics.first_image_s += first_image_s_;

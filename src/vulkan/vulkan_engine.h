@@ -12,8 +12,8 @@ namespace relief {
 
 namespace vulkan {
 
-/// `walk` takes the place of the engine's own traversal of the scene, unless it is empty. Throws
-/// Error{out_of_memory} for a scene that the device cannot hold.
+/// `walk`, unless empty, replaces the engine's own scene traversal. Throws Error{out_of_memory} for a scene
+/// that the device cannot hold.
 std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
                                        std::shared_ptr<const PreparedScene> scene,
                                        const RenderSettings& settings,
@@ -21,8 +21,8 @@ std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
 
 } // namespace vulkan
 
-/// The same on the device that the settings name. Throws Error{device_missing} too: no driver, no such
-/// device, or one that lacks what is named.
+/// The same on the device that the settings name. Also throws Error{device_missing}: no driver, no such
+/// device, or required features that it lacks.
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings,
                                            const std::optional<vulkan::SceneWalk>& walk = {});

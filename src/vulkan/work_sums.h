@@ -1,4 +1,4 @@
-// Sums of what was done: rays, pairs, trees, seconds.
+// Accumulates statistics: rays, pairs, trees, seconds.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace relief::vulkan {
 
-/// Adds a cast to the one of its depth and kind, or in its place: by depth, shadow rays last.
+/// Adds a cast to the entry of its depth and kind, or inserts one; ordered by depth, shadow rays last.
 void add_cast(std::vector<CastStatistics>& casts, const CastStatistics& cast);
 
-/// Adds counts, stage times and casts; nothing about the scene, the device or memory.
+/// Adds counts, stage times and casts, but nothing about scene, device or memory.
 void add_work(Statistics& sum, const Statistics& work);
 
 } // namespace relief::vulkan

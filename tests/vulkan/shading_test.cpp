@@ -77,7 +77,7 @@ TEST_F(ShadingKernels, start_the_camera_rays_of_a_window) {
             scalar::start_camera_ray(push.camera, {float(x), float(y)}, seed, push.sample_index);
         ASSERT_LT(compare(rays[k].origin, ray.origin), 1e-5f) << k;
         ASSERT_LT(compare(rays[k].direction, ray.direction), 1e-5f) << k;
-        ASSERT_TRUE(std::isinf(rays[k].t_max) && rays[k].bias == 0);
+        ASSERT_TRUE(std::isinf(rays[k].t_max) && rays[k].lod_bias == 0);
         ASSERT_EQ(compare(paths[k].throughput, {1, 1, 1}), 0);
     }
 }
@@ -183,7 +183,7 @@ bool is_like(const scalar::RayData& a, const scalar::RayData& b) {
     const bool same_end =
         std::isinf(b.t_max) ? std::isinf(a.t_max) : std::fabs(a.t_max - b.t_max) < 1e-3f * b.t_max;
     return compare(a.origin, b.origin) < 1e-4f && compare(a.direction, b.direction) < 1e-3f && same_end &&
-           a.t_min == b.t_min && a.bias == b.bias;
+           a.t_min == b.t_min && a.lod_bias == b.lod_bias;
 }
 
 TEST_F(ShadingKernels, draw_the_lights_that_the_cpu_engine_draws) {

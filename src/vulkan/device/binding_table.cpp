@@ -11,7 +11,7 @@
 namespace relief::vulkan {
 namespace {
 
-/// What shaders declare, in the order of vulkan/layout/bindings.h from kFirstTexelBinding on.
+/// Texel formats as declared in shaders, in the order of vulkan/layout/bindings.h from kFirstTexelBinding on.
 constexpr std::array<TexelFormat, scalar::kTexelBindingCount> kTexelFormats = {
     TexelFormat::rgba32_uint,  // nodes
     TexelFormat::r32_float,    // positions
@@ -66,7 +66,7 @@ const Buffer& find_unbound(const BindingTable::Implementation& table, TexelForma
                          [&](const Buffer& buffer) { return buffer.internals().config.format == format; });
 }
 
-/// What ggx_table.h reads in C++.
+/// The table of formulas/ggx_table.h.
 Buffer make_albedos(const Device& device) {
     std::vector<Vec2f> entries(scalar::kGgxEntryCount);
     for (uint32_t i = 0; i < entries.size(); ++i) entries[i] = scalar::read_ggx_table(i);

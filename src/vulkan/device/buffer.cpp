@@ -11,7 +11,7 @@
 namespace relief::vulkan {
 namespace {
 
-/// Smallest buffer: one texel of the widest format.
+/// Minimum buffer size: one texel of the widest format.
 constexpr uint64_t kLeastBytes = 16;
 
 vk::Format to_vulkan(TexelFormat format) {
@@ -40,7 +40,7 @@ uint64_t round_up(uint64_t bytes) {
     return (std::max<uint64_t>(bytes, 1) + kLeastBytes - 1) / kLeastBytes * kLeastBytes;
 }
 
-/// Texel buffers may be larger than what one storage binding reaches.
+/// Texel buffers may exceed the range of a storage binding.
 uint64_t find_largest(const Device::Implementation& device, TexelFormat format) {
     if (format == TexelFormat::none) return device.max_buffer_bytes;
     const uint64_t texels = uint64_t(device.limits.maxTexelBufferElements) * texel_bytes(format);

@@ -1,4 +1,4 @@
-// Device memory with a name and a purpose: every byte is counted, and what does not fit is refused with its
+// Device buffers with a name and a purpose: every byte is accounted for, and allocation failures report the
 // size.
 #pragma once
 
@@ -28,40 +28,40 @@ uint32_t texel_bytes(TexelFormat format);
 
 struct BufferConfig {
     std::string name;   ///< debug name, and for messages
-    uint64_t bytes = 0; ///< 0 is allowed and makes the smallest buffer there is
+    uint64_t bytes = 0; ///< 0 is allowed and creates a buffer of the minimum size
     Purpose purpose = Purpose::ray_buffers;
-    TexelFormat format = TexelFormat::none; ///< other than none: may also be read as a uniform texel buffer
-    bool is_indirect = false;               ///< holds arguments of indirect dispatches
+    TexelFormat format = TexelFormat::none; ///< other than none: also usable as a uniform texel buffer
+    bool is_indirect = false;               ///< usable for indirect arguments
     bool is_host_visible = false;           ///< mapped and coherent: for counters that the host polls
 };
 
-/// A storage buffer. Movable; frees its memory at the end of its life, which the device must outlive.
+/// A storage buffer. Movable; frees its memory on destruction. The device must outlive it.
 class Buffer {
   public:
     Buffer() noexcept;
-    /// Throws Error{out_of_memory} with the byte count when the device has no room for it, and when it is
-    /// larger than one buffer may be.
+    /// Throws Error{out_of_memory} with the byte count if the device has too little memory, or if the size
+    /// exceeds the limit of one buffer.
     Buffer(const Device& device, const BufferConfig& config);
     ~Buffer();
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
 
-    uint64_t byte_count() const; ///< asked for
+    uint64_t byte_count() const; ///< as requested
     explicit operator bool() const { return implementation_ != nullptr; }
 
-    /// Copies host memory to bytes [offset, + data.size()), through staging memory where needed; waits.
+    /// Copies host memory to bytes [offset, + data.size()), through staging memory where needed; blocks.
     void upload(std::span<const std::byte> data, uint64_t offset = 0);
     template <class T> void upload(const std::vector<T>& values, uint64_t offset = 0) {
         upload(std::as_bytes(std::span(values)), offset);
     }
-    /// Copies bytes [offset, + data.size()) to the host; waits.
+    /// Copies bytes [offset, + data.size()) to the host; blocks.
     void download(std::span<std::byte> data, uint64_t offset = 0) const;
     template <class T> std::vector<T> download(size_t count, uint64_t offset = 0) const {
         std::vector<T> values(count);
         download(std::as_writable_bytes(std::span(values)), offset);
         return values;
     }
-    /// Host-visible buffers only; valid after a submission that was waited for.
+    /// Mapped memory; host-visible buffers only. Valid after a completed submission.
     void* mapped() const;
 
     struct Implementation;

@@ -16,7 +16,7 @@
 namespace relief::vulkan {
 namespace {
 
-/// Changes of stage that one submission may have; one more runs what was recorded.
+/// Maximum stage changes per submission; one more submits the recorded commands.
 constexpr uint32_t kMarkCount = 256;
 
 constexpr DrawSize kScreen = {scalar::kScreenColumns * scalar::kFragmentSquare,
@@ -56,9 +56,9 @@ struct Commands::Implementation {
     const BindingTable::Implementation& bindings;
     vk::raii::CommandPool pool = nullptr;
     vk::raii::CommandBuffer buffer = nullptr;
-    vk::raii::QueryPool queries = nullptr; ///< on devices with timestamps that are no CPU
+    vk::raii::QueryPool queries = nullptr; ///< on non-CPU devices with timestamps
     std::optional<Stage> stage = {};
-    std::vector<std::optional<Stage>> marks = {}; ///< what follows each timestamp of this submission
+    std::vector<std::optional<Stage>> marks = {}; ///< stage after each timestamp of this submission
     std::set<std::string> kernel_names = {};      ///< of this submission
     bool is_recording = false;
     std::array<double, kStageCount> seconds{};
@@ -96,9 +96,10 @@ void Commands::Implementation::mark(std::optional<Stage> next) {
     marks.push_back(next);
 }
 
-/// Before every command: starts a command buffer, notes a change of stage, and waits for what came before.
+/// Called before every command: begins the command buffer, writes a timestamp at a stage change, and records
+/// the memory barrier.
 void Commands::Implementation::prepare() {
-    // The last mark belongs to the end of the submission.
+    // The last mark is reserved for the end of the submission.
     if (is_recording && marks.size() + 1 == kMarkCount && marks.back() != stage) run();
     if (!is_recording) start();
     record_barrier(buffer, device.shader_stages);

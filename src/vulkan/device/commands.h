@@ -1,5 +1,4 @@
-// Records dispatches and draws and runs them: one queue, one submission at a time, the time of each stage
-// taken.
+// Records and runs dispatches and draws: one queue, one submission at a time, timed per stage.
 #pragma once
 
 #include <array>
@@ -12,8 +11,8 @@
 
 namespace relief::vulkan {
 
-/// Parts of a frame whose time is told apart; names follow the keys of `stage_s`;
-/// from tree_boxes on those of trees that are built and walked for themselves.
+/// Timed stages of a frame; names follow the keys of `stage_s`. From tree_boxes on: stages of tree builds and
+/// traversals outside of renders.
 enum class Stage {
     top_traversal,
     sort,
@@ -34,8 +33,8 @@ struct DrawSize {
     uint32_t width = 0, height = 0; ///< pixels, at most Device::max_draw_size() each
 };
 
-/// One thread at a time. Every call after a dispatch sees what that dispatch wrote: a full memory barrier
-/// stands between any two of them.
+/// Not thread safe. A full memory barrier separates any two commands, so each sees the writes of those
+/// before.
 class Commands {
   public:
     Commands(const Device& device, const BindingTable& bindings);
@@ -43,24 +42,24 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// What follows counts as `stage`. On a device that is a CPU this runs what was recorded so far, because
-    /// timestamps there do not cover short work.
+    /// Subsequent commands count as `stage`. On a CPU device this submits the commands recorded so far,
+    /// because its timestamps do not resolve short work.
     void begin_stage(Stage stage);
 
-    /// ceil(invocations / group size) groups, in two dimensions above 65535; kernels number their groups by
-    /// gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x and leave out what is beyond the end. A
-    /// kernel that is drawn with kFullScreen gets as many fragments and numbers them alike
+    /// Dispatches ceil(invocations / group size) groups, in two dimensions above 65535; kernels compute the
+    /// group index as gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x and must skip excess
+    /// invocations. A kernel drawn with kFullScreen gets as many fragments, indexed alike
     /// (shaders/kernel.glsl).
     template <class Push> void dispatch(const Kernel& kernel, uint64_t invocations, const Push& push) {
         dispatch_bytes(kernel, invocations, std::as_bytes(std::span(&push, 1)));
     }
-    /// Sizes are read at `offset` bytes of `arguments` (made with is_indirect): group counts x, y, z; for a
-    /// kernel that is drawn, those of a draw kArgumentDrawWord words further on.
+    /// Reads the size at `offset` bytes of `arguments` (created with is_indirect): group counts x, y, z; for
+    /// a kernel that is drawn, the arguments of a draw, kArgumentDrawWord words further on.
     template <class Push>
     void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset, const Push& push) {
         dispatch_indirect_bytes(kernel, arguments, offset, std::as_bytes(std::span(&push, 1)));
     }
-    /// Draws vertices of a kernel's own vertex shader as triangles over `size` pixels.
+    /// Draws triangles with the kernel's own vertex shader over `size` pixels.
     template <class Push>
     void draw(const Kernel& kernel, DrawSize size, uint32_t vertex_count, const Push& push) {
         draw_bytes(kernel, size, vertex_count, std::as_bytes(std::span(&push, 1)));
@@ -69,14 +68,14 @@ class Commands {
     void fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value);
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset, uint64_t bytes);
 
-    /// Runs what was recorded and waits. Throws Error{device_missing} when the device is lost, naming what
-    /// ran.
+    /// Submits the recorded commands and waits. Throws Error{device_missing}, naming the kernels, if the
+    /// device is lost.
     void run();
 
-    /// Forgets what was recorded and not run, after an error on the way.
+    /// Discards recorded commands after an error.
     void discard();
 
-    /// Seconds of each stage over all runs so far.
+    /// Accumulated seconds of each stage.
     const std::array<double, kStageCount>& stage_seconds() const;
     uint64_t dispatch_count() const;
 

@@ -26,7 +26,7 @@ void require_usable(const DeviceDescription& device) {
         "update its driver, choose another with device.index, or use device.engine = cpu");
 }
 
-/// Discrete cards first, then what is built in, programs last.
+/// Discrete GPUs first, then integrated ones, software implementations last.
 int rank_type(vk::PhysicalDeviceType type) {
     switch (type) {
     case vk::PhysicalDeviceType::eDiscreteGpu:
@@ -73,7 +73,7 @@ vk::raii::PhysicalDevice choose_device(const vk::raii::Instance& instance, const
     return std::move(devices[chosen]);
 }
 
-/// Groups of 256 that a device holds at once; where the driver does not tell, enough for a large one.
+/// Resident groups of 256 invocations; if the driver does not report it, enough for a large device.
 uint32_t count_resident_groups(const vk::raii::PhysicalDevice& device, bool is_cpu) {
     constexpr uint32_t kGroupsPerUnit = 8;
     constexpr uint32_t kUnitsOfALargeGpu = 128;
@@ -173,7 +173,7 @@ void save_pipeline_cache(const Device::Implementation& d) {
         const std::vector<uint8_t> data = d.pipeline_cache.getData();
         if (data.size() != d.loaded_cache_bytes) write_pipeline_cache(d.config.pipeline_cache, data);
     } catch (const vk::SystemError&) {
-        // A lost device keeps no pipelines; the next run compiles them again.
+        // Saving fails on a lost device; the next run compiles the pipelines again.
     }
 }
 

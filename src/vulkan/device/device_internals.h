@@ -1,5 +1,5 @@
-// Vulkan's side of Device: the objects that all kernels and buffers share. Included by the files behind
-// device.h, buffer.h, kernel.h and commands.h only, because Vulkan's headers are slow to compile.
+// Vulkan objects behind Device, shared by all kernels and buffers. Included only by the implementations of
+// device.h, buffer.h, kernel.h and commands.h, because Vulkan's headers are slow to compile.
 #pragma once
 
 #include <functional>
@@ -27,18 +27,18 @@ struct Device::Implementation {
         device.setDebugUtilsObjectNameEXT(
             {Handle::objectType, reinterpret_cast<uint64_t>(plain), name.c_str()});
     }
-    /// Runs a recorded command buffer and waits. `describe` says what ran, for a lost device.
+    /// Submits a recorded command buffer and waits. `describe` names its contents if the device is lost.
     void submit_and_wait(const vk::raii::CommandBuffer& commands,
                          const std::function<std::string()>& describe);
-    /// Records with `record`, runs and waits; for copies.
+    /// Records with `record`, submits and waits; for copies.
     void run_once(const char* what, const std::function<void(const vk::raii::CommandBuffer&)>& record);
-    /// Staging memory of kStagingBytes, made when first asked for.
+    /// Staging memory of kStagingBytes, created on first use.
     Buffer::Implementation& staging();
 
     static constexpr uint64_t kStagingBytes = 16u << 20;
 
     Config config;
-    std::unique_ptr<MessageLog> messages; ///< null when not validated
+    std::unique_ptr<MessageLog> messages; ///< null without validation
     Instance instance;
     vk::raii::PhysicalDevice physical = nullptr;
     DeviceDescription description;
@@ -47,9 +47,9 @@ struct Device::Implementation {
     uint64_t max_allocation_bytes = 0; ///< of a buffer of any kind
     uint32_t resident_group_count = 0;
     float timestamp_period_s = 0; ///< 0: the queue has none
-    uint64_t timestamp_mask = 0;  ///< of the bits that a timestamp has
+    uint64_t timestamp_mask = 0;  ///< valid bits of a timestamp
     uint32_t family = 0;
-    vk::ShaderStageFlags shader_stages = vk::ShaderStageFlagBits::eCompute; ///< that kernels may have
+    vk::ShaderStageFlags shader_stages = vk::ShaderStageFlagBits::eCompute; ///< available to kernels
     vk::raii::Device device = nullptr;
     vk::raii::Queue queue = nullptr;
     vk::raii::PipelineCache pipeline_cache = nullptr;
@@ -74,11 +74,10 @@ struct Buffer::Implementation {
     vk::raii::BufferView texels = nullptr; ///< only with a format
 };
 
-/// The device's memory barrier between any two commands: shaders of these stages, transfer and indirect
-/// arguments.
+/// Memory barrier between any two commands: shaders of these stages, transfer and indirect arguments.
 void record_barrier(const vk::raii::CommandBuffer& commands,
                     vk::ShaderStageFlags shaders = vk::ShaderStageFlagBits::eCompute);
-/// What the device wrote becomes visible to the host after the fence.
+/// Makes device writes visible to the host after the fence.
 void record_host_barrier(const vk::raii::CommandBuffer& commands, vk::ShaderStageFlags shaders);
 
 } // namespace relief::vulkan

@@ -1,4 +1,4 @@
-// What Relief needs of a device, and which devices there are.
+// Required device features and limits, and the list of devices.
 #include <algorithm>
 #include <string>
 
@@ -48,7 +48,7 @@ void require_limits(const vk::PhysicalDeviceLimits& limits, std::vector<std::str
     require(limits.maxTexelBufferElements, kLeastTexelCount, "maxTexelBufferElements");
 }
 
-/// For the methods that draw, beyond what all need.
+/// Additional requirements of the methods fragment and hybrid.
 std::vector<std::string> find_missing_to_draw(const vk::raii::PhysicalDevice& device) {
     std::vector<std::string> missing;
     const auto chain = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();

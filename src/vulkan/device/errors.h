@@ -1,4 +1,4 @@
-// Failures of Vulkan as errors of the library: what was tried, on which device, and what to do.
+// Translates Vulkan failures into library errors: operation, device and hint.
 #pragma once
 
 #include <string>
@@ -12,10 +12,11 @@ namespace relief::vulkan {
 
 inline constexpr const char* kUseCpu = "use device.engine = cpu";
 
-/// Error{device_missing} for a lost or absent device, Error{out_of_memory} for memory, else Error{failed}.
+/// Error{device_missing} for a lost or absent device, Error{out_of_memory} for failed allocations, else
+/// Error{failed}.
 [[noreturn]] void throw_vulkan_error(std::string_view operation, const vk::SystemError& error);
 
-/// Returns what `call` returns; an exception of Vulkan leaves as relief::Error that names the operation.
+/// Returns the result of `call`; rethrows a Vulkan exception as a relief::Error that names the operation.
 template <class Call> decltype(auto) check_vulkan(std::string_view operation, const Call& call) {
     try {
         return call();

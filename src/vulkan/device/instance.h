@@ -1,5 +1,5 @@
-// The Vulkan instance with or without validation, and what each physical device offers. Included by the files
-// behind device.h only.
+// The Vulkan instance with or without validation, and queries of physical devices. Included by the
+// implementation of device.h only.
 #pragma once
 
 #include <mutex>
@@ -13,7 +13,7 @@
 
 namespace relief::vulkan {
 
-/// Warnings and errors of the validation layer. Any thread may add.
+/// Warnings and errors of the validation layer. Thread safe.
 class MessageLog {
   public:
     void add(std::string message);
@@ -24,7 +24,7 @@ class MessageLog {
     std::vector<std::string> messages_;
 };
 
-/// An instance and what it was made with.
+/// An instance with the objects that it depends on.
 struct Instance {
     vk::raii::Context context;
     vk::raii::Instance handle = nullptr;
@@ -36,17 +36,17 @@ struct Instance {
 /// which must outlive the instance. Throws Error{device_missing} without a loader, a driver or the layer.
 Instance make_instance(MessageLog* log);
 
-/// What list_devices() tells of one device.
+/// The entry of list_devices() for one device.
 DeviceDescription describe_device(const vk::raii::PhysicalDevice& device, uint32_t index);
 
-/// Whether the device offers an extension of this name.
+/// Whether the device supports an extension.
 bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name);
 
-/// The family of queues that computes: with the fewest other abilities where there are several. Nothing
-/// without one.
+/// The queue family with compute; of several the one with the fewest other capabilities. nullopt if there is
+/// none.
 std::optional<uint32_t> find_compute_family(const vk::raii::PhysicalDevice& device);
 
-/// The first family that computes and draws.
+/// The first queue family with compute and graphics.
 std::optional<uint32_t> find_drawing_family(const vk::raii::PhysicalDevice& device);
 
 } // namespace relief::vulkan

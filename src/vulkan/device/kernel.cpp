@@ -31,8 +31,7 @@ vk::raii::ShaderModule make_module(const Device::Implementation& device, const s
     return module;
 }
 
-/// Points of the full screen, or triangles of either winding, without attachments; where they lie is set when
-/// they are drawn.
+/// Points or triangles of either winding, without attachments; viewport and scissor are dynamic.
 vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
                                        const vk::PipelineShaderStageCreateInfo& fragment_stage) {
     const vk::raii::ShaderModule module =
@@ -80,7 +79,7 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
     return pipeline;
 }
 
-/// The device's, or one of its own for a shader of somebody else.
+/// The device's cached pipeline, or an own one for external SPIR-V.
 std::shared_ptr<const vk::raii::Pipeline>
 find_pipeline(Device::Implementation& device, const KernelConfig& config, std::span<const uint32_t> code) {
     const auto make = [&] { return make_pipeline(device, config, code); };

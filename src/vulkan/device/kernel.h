@@ -1,5 +1,5 @@
-// Pipelines over one common set of bindings (vulkan/layout/bindings.h), so that buffers are bound once for
-// all: compute shaders, and fragment shaders that write nothing but buffers.
+// Pipelines with one common set layout (vulkan/layout/bindings.h), so that buffers are bound once for all:
+// compute shaders, and fragment shaders that write buffers only.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ struct KernelConfig {
     std::string shader; ///< file in shaders/ without its suffix, e.g. "bottom_build"
     /// Specialization constants 0, 1, 2, ...; constant 0 is the work-group size of every kernel.
     std::vector<uint32_t> constants;
-    /// SPIR-V of a shader that is not in shaders/; empty: the one of that name. Read while the kernel is
-    /// made.
+    /// SPIR-V of a shader that is not in shaders/; empty: the one of that name. Read during construction
+    /// only.
     std::span<const uint32_t> code = {};
-    /// Not empty: `shader` is a fragment shader, drawn over the triangles of this vertex shader; the device
-    /// must have been made for a method that draws. With kFullScreen a launch is what a dispatch is to a
-    /// compute shader, in groups of kFragmentGroup.
+    /// If not empty, `shader` is a fragment shader drawn with this vertex shader, which requires a device
+    /// created for the method fragment or hybrid. With kFullScreen a launch corresponds to a compute dispatch
+    /// with groups of kFragmentGroup.
     std::string vertex_shader = {};
 };
 
 inline constexpr const char* kFullScreen = "full_screen";
 inline constexpr uint32_t kFragmentGroup = 64;
 
-/// One compiled shader with its constants. A device compiles each of its shaders once for the same constants,
-/// however many kernels there are of it. The device must outlive it.
+/// One compiled shader with its constants. Kernels with the same shader and constants share one pipeline per
+/// device. The device must outlive it.
 class Kernel {
   public:
     Kernel() noexcept;
@@ -49,7 +49,7 @@ class Kernel {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// The buffers that kernels see, by binding number. A buffer bound as texels must have a format.
+/// The buffers bound to kernels, by binding number. A buffer bound as texels must have a format.
 class BindingTable {
   public:
     explicit BindingTable(const Device& device);
@@ -57,12 +57,12 @@ class BindingTable {
     BindingTable(BindingTable&&) noexcept;
     BindingTable& operator=(BindingTable&&) noexcept;
 
-    /// Binds all of `buffer`; not while a submission that uses the table is on its way. Numbers from
-    /// kFirstTexelBinding on are uniform texel buffers, those below storage buffers. What is never bound
-    /// holds a small buffer of zeros.
+    /// Binds the whole `buffer`; not during a submission that uses the table. Numbers from kFirstTexelBinding
+    /// on are uniform texel buffers, those below storage buffers. Unbound numbers refer to a small buffer of
+    /// zeros.
     void bind(uint32_t binding, const Buffer& buffer);
 
-    /// As if nothing had been bound: needed before a buffer goes whose place nothing else takes.
+    /// Unbinds a buffer, as is required before one is destroyed without a replacement.
     void clear();
 
     struct Implementation;

@@ -1,5 +1,5 @@
-// Vulkan's side of Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp, commands.cpp
-// and tests only.
+// Vulkan objects behind Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp, commands.cpp and
+// tests only.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct Kernel::Implementation {
 
 struct BindingTable::Implementation {
     Device::Implementation* device = nullptr;
-    std::vector<Buffer> unbound; ///< zeros: one for storage, one for each format of texels
+    std::vector<Buffer> unbound; ///< zeros: one for storage, one per texel format
     Buffer albedos;              ///< always bound at kBindAlbedos
     vk::raii::DescriptorPool pool = nullptr;
     vk::raii::DescriptorSet set = nullptr;

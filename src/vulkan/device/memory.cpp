@@ -12,7 +12,7 @@ namespace relief::vulkan {
 namespace {
 
 constexpr uint64_t kLargestBlock = 64u << 20;
-/// A small heap is not used up by one block.
+/// Smaller blocks on small heaps.
 constexpr uint64_t kBlocksPerHeap = 16;
 
 uint64_t align_up(uint64_t value, uint64_t alignment) {
@@ -48,7 +48,7 @@ uint32_t MemoryAllocator::choose_type(uint32_t type_bits, MemoryPlace place) con
     const vk::MemoryPropertyFlags wanted = place == MemoryPlace::device
                                                ? vk::MemoryPropertyFlags(Flag::eDeviceLocal)
                                                : Flag::eHostVisible | Flag::eHostCoherent;
-    // The largest heap: a window into device memory that the host sees can be a heap of its own.
+    // The largest heap: a host-visible window into device memory may be a separate heap.
     const auto rank = [&](uint32_t type) {
         const vk::MemoryType& t = properties_.memoryTypes[type];
         const bool is_cached = place == MemoryPlace::host && (t.propertyFlags & Flag::eHostCached);

@@ -1,5 +1,5 @@
-// Device memory in blocks, parts of which become buffers. Counts every byte and never asks a heap for more
-// than it has. Included by the files behind device.h only.
+// Suballocation of device memory from blocks. Accounts for every byte and never exceeds the size of a heap.
+// Included by the implementation of device.h only.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ struct MemoryBlock {
     vk::raii::DeviceMemory memory = nullptr;
     uint32_t type = 0;
     uint64_t bytes = 0;
-    std::byte* mapped = nullptr;             ///< null where the host cannot reach it coherently
-    std::map<uint64_t, uint64_t> free_spans; ///< offset to bytes; no two touch
+    std::byte* mapped = nullptr;             ///< null if not host-coherent
+    std::map<uint64_t, uint64_t> free_spans; ///< offset to bytes; coalesced
 };
 
-/// Part of a block that one buffer has.
+/// Part of a block that belongs to one buffer.
 struct MemorySpan {
     std::list<MemoryBlock>::iterator block;
     uint64_t offset = 0, bytes = 0;
@@ -33,7 +33,7 @@ struct MemorySpan {
     std::byte* mapped() const { return block->mapped ? block->mapped + offset : nullptr; }
 };
 
-/// Any thread may call.
+/// Thread safe.
 class MemoryAllocator {
   public:
     MemoryAllocator(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device);
@@ -44,11 +44,11 @@ class MemoryAllocator {
         MemoryPlace place = MemoryPlace::device;
         Purpose purpose = Purpose::ray_buffers;
     };
-    /// Throws Error{out_of_memory} with what was asked for and what there is.
+    /// Throws Error{out_of_memory} with the requested and the available bytes.
     MemorySpan allocate(const Request& request);
     void release(const MemorySpan& span);
 
-    /// What one more allocation of device memory may have.
+    /// Maximum bytes of one more allocation of device memory.
     uint64_t available_bytes() const;
     uint64_t allocated_bytes(Purpose purpose) const;
     uint64_t peak_bytes(Purpose purpose) const;

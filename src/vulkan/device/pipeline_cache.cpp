@@ -11,7 +11,7 @@
 namespace relief::vulkan {
 namespace {
 
-/// Drivers are to check the rest, but a file cut short has been seen to crash one: the own trailer tells.
+/// Drivers should validate the rest, but truncated files have crashed one: our own trailer detects them.
 struct Trailer {
     uint64_t byte_count, hash;
 };
@@ -51,7 +51,7 @@ std::vector<uint8_t> read_pipeline_cache(const std::filesystem::path& path,
 void write_pipeline_cache(const std::filesystem::path& path, const std::vector<uint8_t>& data) noexcept {
     try {
         if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-        // Processes that end at the same time must not write the same temporary file.
+        // Processes that end at the same time must not share a temporary file.
         std::filesystem::path temporary = path;
         temporary += "." + std::to_string(std::random_device()()) + ".tmp";
         const Trailer trailer{data.size(), hash_bytes(data.data(), data.size())};
@@ -63,7 +63,7 @@ void write_pipeline_cache(const std::filesystem::path& path, const std::vector<u
         if (file) std::filesystem::rename(temporary, path, error);
         if (!file || error) std::filesystem::remove(temporary, error);
     } catch (const std::exception&) {
-        // Nothing is lost but time: the next run compiles again.
+        // Not an error: the next run compiles again.
     }
 }
 

@@ -1,4 +1,4 @@
-// Compiled pipelines kept in a file between runs. Included by the files behind device.h only.
+// Compiled pipelines stored in a file between runs. Included by the implementation of device.h only.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,12 @@
 
 namespace relief::vulkan {
 
-/// Bytes of a cache file if it was written for this device and driver; empty for any other file or none.
+/// Contents of a cache file written for this device and driver; empty for any other or missing file.
 std::vector<uint8_t> read_pipeline_cache(const std::filesystem::path& path,
                                          const vk::PhysicalDeviceProperties& device);
 
-/// Replaces the file in one step. A file that cannot be written is left as it was: the cache only saves time.
+/// Replaces the file atomically. A file that cannot be written is left unchanged without an error: the cache
+/// only saves time.
 void write_pipeline_cache(const std::filesystem::path& path, const std::vector<uint8_t>& data) noexcept;
 
 } // namespace relief::vulkan

@@ -1,4 +1,4 @@
-// The pipelines of a device, each compiled once, however many tracers use it. Part of device_internals.h.
+// The pipelines of a device, each compiled once and shared by all tracers. Part of device_internals.h.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace relief::vulkan {
 
-/// Thread safe, one compilation at a time. Pipelines stay until the store goes, also where a tracer is made
-/// anew because memory ran out; kernels share them with it. A template, so that it knows nothing of Vulkan.
+/// Thread safe, one compilation at a time. Pipelines live as long as the store, so a tracer recreated after
+/// memory ran out reuses them. A template, so that it does not depend on Vulkan.
 template <class Pipeline> class PipelineStore {
   public:
-    /// Shader, vertex shader, constants: as in KernelConfig, of shaders that belong to the build.
+    /// Shader, vertex shader, constants: as in KernelConfig, for shaders of the build.
     using Key = std::tuple<std::string, std::string, std::vector<uint32_t>>;
 
-    /// The pipeline of `key`; make() is called where there is none yet. What it throws, this throws,
-    /// and asks again the next time.
+    /// The pipeline of `key`, created by make() if there is none. Exceptions of make() propagate; the next
+    /// call tries again.
     template <class Make> std::shared_ptr<const Pipeline> find_or_make(Key key, const Make& make) {
         const std::lock_guard lock(mutex_);
         std::shared_ptr<const Pipeline>& place = pipelines_[std::move(key)];

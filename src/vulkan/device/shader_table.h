@@ -7,7 +7,7 @@
 
 namespace relief::vulkan {
 
-/// SPIR-V of shaders/NAME.comp, .vert or .frag, or of a variant of one; empty when there is none.
+/// SPIR-V of shaders/NAME.comp, .vert or .frag, or of a variant; empty if there is none.
 std::span<const uint32_t> find_shader(std::string_view name);
 
 } // namespace relief::vulkan

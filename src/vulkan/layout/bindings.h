@@ -1,12 +1,12 @@
-// Numbers that kernels and the host agree on: bindings, sizes, markers. Crossing structs are in
-// device_scene.h, device_rays.h and device_paths.h.
+// Constants shared by kernels and host: bindings, sizes, markers. Shared structs are in device_scene.h,
+// device_rays.h and device_paths.h.
 #ifndef RELIEF_BINDINGS_H
 #define RELIEF_BINDINGS_H
 #include "formulas/constants.h"
 
 #include "formulas/begin.h"
 
-// Storage buffers. No stage may see more than 31 of them on the smallest device that is supported.
+// Storage buffers. The smallest supported device allows 31 per stage.
 const uint kBindInstances = 0u;     ///< InstanceData
 const uint kBindSurfaces = 1u;      ///< SurfaceData
 const uint kBindMaps = 2u;          ///< MapData
@@ -27,60 +27,60 @@ const uint kBindTrees = 16u;        ///< TreeRecord
 const uint kBindPool = 17u;         ///< uint: the patch trees
 const uint kBindNearest = 18u;      ///< uint64: (distance, rank) of each ray in this round
 const uint kBindCounters = 19u;     ///< CounterData
-const uint kBindJobs = 20u;         ///< uint: trees that have pairs in this round
-const uint kBindBuilds = 21u;       ///< uint: trees that are to be built, in bins by size
+const uint kBindJobs = 20u;         ///< uint: trees with pairs in this round
+const uint kBindBuilds = 21u;       ///< uint: trees to be built, binned by size
 const uint kBindArguments = 22u;    ///< uint: sizes of indirect launches, kArgumentWords each
-const uint kBindRequests = 23u;     ///< RequestData: patches whose tiles are asked for
+const uint kBindRequests = 23u;     ///< RequestData: patches whose tiles are requested
 const uint kBindPaths = 24u;        ///< PathData
 const uint kBindPoints = 25u;       ///< SurfacePointData
 const uint kBindFilm = 26u;         ///< float: sums of each pixel
-const uint kBindPathList = 27u;     ///< uint: paths on their way
-const uint kBindNextPathList = 28u; ///< uint: those that go on
+const uint kBindPathList = 27u;     ///< uint: active paths
+const uint kBindNextPathList = 28u; ///< uint: paths active at the next depth
 const uint kBindShadowList = 29u;   ///< uint: rays towards lights
 const uint kBindDirectories = 30u;  ///< DirectoryData: hash table of the tiles of patches above level 5
 const uint kStorageBindingCount = 31u;
 
-// First hits by drawing borrow what only shading needs.
-const uint kBindRasterVertices = kBindPoints;      ///< float: three a vertex
+// Rasterised first hits reuse buffers that only shading needs.
+const uint kBindRasterVertices = kBindPoints;      ///< float: three per vertex
 const uint kBindRasterItems = kBindShadowList;     ///< RasterItem
 const uint kBindRasterNearest = kBindNextPathList; ///< uint64: (distance, rank) of each path's ray
 
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
-const uint kBindNodes = 32u;        ///< rgba32ui: two a node
-const uint kBindPositions = 33u;    ///< r32f: three a vertex
+const uint kBindNodes = 32u;        ///< rgba32ui: two per node
+const uint kBindPositions = 33u;    ///< r32f: three per vertex
 const uint kBindUvs = 34u;          ///< rg32f
 const uint kBindFrames = 35u;       ///< rg32ui: PackedFrame
 const uint kBindQuads = 36u;        ///< rgba32ui
 const uint kBindDominants = 37u;    ///< r32ui
-const uint kBindVertexTiles = 38u;  ///< r32ui: four a word
+const uint kBindVertexTiles = 38u;  ///< r32ui: four per word
 const uint kBindOverrides = 39u;    ///< rgba32ui: patch edge, first, second, 0
 const uint kBindOverrideBits = 40u; ///< r32ui; also the mips of patches
-const uint kBindLevels = 41u;       ///< r32ui: pack_levels, one a patch of an instance
-const uint kBindPrimitiveIds = 42u; ///< r32ui: polygons in the order of the leaves
+const uint kBindLevels = 41u;       ///< r32ui: pack_levels, one per patch of an instance
+const uint kBindPrimitiveIds = 42u; ///< r32ui: polygons in leaf order
 const uint kBindFloatTexels = 43u;  ///< rgba32f: maps and textures
 const uint kBindHalfTexels = 44u;   ///< rgba16f: maps and textures
 const uint kBindEnvironment = 45u;  ///< r32f: cumulative distributions
 const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emissive patches
-const uint kBindAlbedos = 47u;      ///< rg32f: ggx_table.h; every table of bindings holds it
+const uint kBindAlbedos = 47u;      ///< rg32f: ggx_table.h; bound in every table
 const uint kTexelBindingCount = 16u;
 
 // Indirect launches, in the order of kBindArguments.
 const uint kArgumentsPairs = 0u;
 const uint kArgumentsJobs = 1u;
-const uint kArgumentsBuilds = 2u; ///< and the following, one a bin
+const uint kArgumentsBuilds = 2u; ///< and the following, one per bin
 const uint kArgumentCount = 6u;
 
-// Bins of trees to be built, by the lanes that a tree is worth: up to 2 x 2 cells, up to 8 x 8, more.
+// Bins of trees to be built, by lanes per tree: up to 2 x 2 cells, up to 8 x 8, more.
 const uint kBuildBinCount = 3u;
 
-// Words of one entry of kBindArguments: group counts, nothing, then the same work as a full-screen draw.
+// Words of one entry of kBindArguments: group counts, padding, then the same work as a full-screen draw.
 const uint kArgumentWords = 8u;
 const uint kArgumentDrawWord = 4u;
 
-// Fragments in place of work groups: a square of fragments does what a group of as many invocations does. The
-// screen is as large as every device allows.
-const uint kFragmentSquare = 8u;  ///< pixels a side
+// Fragments in place of work groups: a square of fragments corresponds to a group of as many invocations. The
+// framebuffer size is supported by every device.
+const uint kFragmentSquare = 8u;  ///< pixels per side
 const uint kScreenColumns = 256u; ///< squares
 const uint kScreenRows = 512u;    ///< squares
 

@@ -1,5 +1,5 @@
-// Paths on a device: what they carry between the kernels of one depth. Path p has ray p; its shadow ray is
-// ray capacity + p. Scalar block layout, members of 4 bytes.
+// Path state on a device, between the kernels of one depth. Path p has ray p; its shadow ray is ray capacity
+// + p. Scalar block layout, members of 4 bytes.
 #ifndef RELIEF_DEVICE_PATHS_H
 #define RELIEF_DEVICE_PATHS_H
 #include "formulas/camera.h"
@@ -10,15 +10,15 @@
 /// One sample of one pixel.
 struct PathData {
     Vec3 throughput;
-    float bsdf_pdf; ///< with which its ray was drawn
-    Vec3 previous;  ///< the vertex that the ray left
+    float bsdf_pdf; ///< density with which its ray was sampled
+    Vec3 previous;  ///< the vertex that the ray started at
     uint pixel_seed;
     Vec3 radiance;
     float cost;        ///< rays so far
-    Vec3 contribution; ///< of its shadow ray, if nothing is in the way
+    Vec3 contribution; ///< of its shadow ray, if unoccluded
 };
 
-/// A hit made ready for shading, world space; normals on the viewer's side.
+/// A surface point for shading, world space; normals on the viewer's side.
 struct SurfacePointData {
     Vec3 position;
     float position_error;
@@ -30,7 +30,7 @@ struct SurfacePointData {
     uint is_flipped; ///< the viewer is on the side opposite to the winding
 };
 
-/// Sums over the samples of one pixel in one launch. All but radiance, squares and cost are of first hits.
+/// Sums over the samples of one pixel in one launch. All but radiance, squares and cost refer to first hits.
 struct FilmSumsData {
     Vec3 radiance;
     Vec3 squares; ///< of radiance
@@ -38,12 +38,12 @@ struct FilmSumsData {
     float hit_count;
     Vec3 shading_normal, geometric_normal, position, albedo;
     Vec2 uv;
-    float depth; ///< least
-    uint id;     ///< of the least depth: 1 + instance; the lowest among equals; 0: nothing was hit
+    float depth; ///< minimum
+    uint id;     ///< of the nearest hit: 1 + instance, the lowest among ties; 0: no hit
 };
 
-/// Emissive patch `index`: of 2^24 equal parts of [0, 1), the count of those that draw it or one before it.
-/// The random number has 24 bits, so that integers decide as the sums themselves, in double precision, would.
+/// Emissive patch `index`: cumulative probability in units of 2^-24. Random numbers have 24 bits, so the
+/// integer comparison selects the same patch as the sums in double precision.
 struct EmitterData {
     uint end;
     uint probability; ///< bits of a float
@@ -59,9 +59,9 @@ struct CameraPush {
     uint sample_index, seed;
 };
 
-/// What the other kernels of a depth are told.
+/// Push constants of the other kernels of a depth.
 struct PathPush {
-    uint count; ///< paths of the list, or shadow rays, or pixels
+    uint count; ///< of the path list, shadow rays or pixels
     uint capacity;
     uint depth, last_depth;
     uint sample_index;

@@ -1,19 +1,19 @@
-// First hits by drawing: what passes between the kernels of vulkan/rasteriser.h. Scalar block layout,
-// members of 4 bytes.
+// Rasterised first hits: structs shared by the kernels of vulkan/rasteriser.h. Scalar block layout, members
+// of 4 bytes.
 #ifndef RELIEF_DEVICE_RASTER_H
 #define RELIEF_DEVICE_RASTER_H
 #include "formulas/begin.h"
 
-/// Whole rows of cells of one patch, whose vertices and cells are numbered row by row. Items stand in the
-/// order of (instance, patch, row), so that the numbers of cells are ranks among hits at one distance.
+/// Whole rows of cells of one patch; vertices and cells are numbered row by row. Items are sorted by
+/// (instance, patch, row), so that cell indices break ties between hits at one distance.
 struct RasterItem {
     uint instance, patch_index;
-    uint levels; ///< packed, bias 0; 0 for polygons
+    uint levels; ///< packed, without LOD bias; 0 for polygons
     uint first_row;
     uint first_vertex, first_cell; ///< in the wave
 };
 
-/// Corners of a cell are drawn as one rectangle of two triangles.
+/// Vertices drawn per cell: one rectangle of two triangles.
 const uint kRasterVertices = 6u;
 
 /// A wave of items, and the pixels of a batch, in the order of place_pixel, as those of CameraPush.
@@ -21,7 +21,7 @@ struct RasterPush {
     Vec3 origin, corner, step_x, step_y; ///< of the camera
     uint x0, y0, width, height;
     uint first_pixel, count;
-    uint first_row, row_count; ///< rows of the window that are drawn
+    uint first_row, row_count; ///< drawn rows of the window
     uint item_count, vertex_count;
 };
 

@@ -1,4 +1,4 @@
-// Rays, hits and pairs as device kernels pass them on. Scalar block layout, members of 4 bytes.
+// Rays, hits and pairs exchanged by device kernels. Scalar block layout, members of 4 bytes.
 #ifndef RELIEF_DEVICE_RAYS_H
 #define RELIEF_DEVICE_RAYS_H
 #include "formulas/sobol.h"
@@ -11,13 +11,13 @@ struct RayData {
     float t_min;
     Vec3 direction;
     float t_max;
-    uint bias; ///< surface M_bias is seen
+    uint lod_bias; ///< number of levels by which patches are coarser
 };
 
-/// Nearest hit so far. Any-hit rays only tell `instance`: kNone while nothing is in the way, else 0.
+/// Nearest hit so far. Any-hit rays only set `instance`: kNone if unoccluded, else 0.
 struct HitData {
-    float t;          ///< infinity: nothing
-    uint instance;    ///< kNone: nothing
+    float t;          ///< infinity: no hit
+    uint instance;    ///< kNone: no hit
     uint patch_index; ///< of the surface
     float u, v;       ///< on the patch
     uint cell;        ///< make_cell_rank: (j, i, is_upper) at the patch's own level
@@ -30,27 +30,27 @@ FN uint cell_column(uint cell) { return cell >> 1u & 0xfffu; }
 FN uint cell_row(uint cell) { return cell >> 13u & 0xfffu; }
 FN uint cell_is_upper(uint cell) { return cell & 1u; }
 
-/// How far a ray has come in the order of its patches: (entry, instance, tree). The next round offers what
-/// follows.
+/// Progress of a ray through its candidates, ordered by (entry, instance, tree). The next round offers those
+/// that follow.
 struct CursorData {
     float entry;
     uint instance, tree;
 };
 
-/// A patch, or tile of one, that a ray may meet.
+/// A patch or tile that a ray may hit.
 struct CandidateData {
     uint instance, tree;
     uint patch_index;
     uint levels; ///< packed, as this ray sees the patch
-    float entry; ///< where the ray meets its box
+    float entry; ///< entry distance into its box
 };
 
-/// A patch above level 5 whose tiles a ray asks for.
+/// A patch above level 5 whose tiles a ray requests.
 struct RequestData {
     uint instance, patch_index, levels;
 };
 
-/// Bits that tell which patches were asked for.
+/// Size of the bit set of requested patches.
 const uint kRequestBits = 65536u;
 
 /// Entry of the hash table of directories: the tree over the tiles of a patch at given levels.
@@ -64,61 +64,61 @@ FN uint hash_directory(uint patch_number, uint levels) {
     return hash_combine(hash_uint(patch_number), levels);
 }
 
-/// Patches that a ray may offer in one round.
+/// Maximum candidates that a ray offers per round.
 const uint kMostSlots = 8u;
 
-/// What the kernels of a cast are told.
+/// Push constants of the kernels of a cast.
 struct CastPush {
-    uint first, count;   ///< part of the active rays that is worked on
-    uint round;          ///< 0: rays start afresh
-    uint slots;          ///< nearest patches that a ray offers, at most kMostSlots
-    uint is_any;         ///< anything in the way ends the ray
-    uint is_repeated;    ///< only rays that wait for tiles
-    uint wave;           ///< number of this wave of jobs
+    uint first, count;   ///< range of the active rays
+    uint round;          ///< 0: rays start from the root
+    uint slots;          ///< nearest candidates that a ray offers, at most kMostSlots
+    uint is_any;         ///< any-hit query
+    uint is_repeated;    ///< process only rays that wait for tiles
+    uint wave;           ///< index of this wave of jobs
     uint pool_start;     ///< pool_head when the wave began
-    uint pool_budget;    ///< units that the wave may fill
+    uint pool_budget;    ///< units available to the wave
     uint pool_capacity;  ///< units
-    uint is_cached;      ///< trees of earlier waves may serve
-    uint root;           ///< node of the tree of instances; kNone: nothing to be seen
-    uint patch_count;    ///< trees below are patches, from there on tiles
+    uint is_cached;      ///< trees of earlier waves may be reused
+    uint root;           ///< root of the tree of instances; kNone: empty scene
+    uint patch_count;    ///< lower tree indices are patches, others tiles
     uint directory_mask; ///< entries of the hash table - 1
     uint request_limit;
-    uint is_ray_lod;      ///< levels by the ray's own distance
+    uint is_ray_lod;      ///< levels from the ray's own distance
     float pixel_angle;    ///< of a cell at distance 1
-    uint builds_stride;   ///< places of each bin
-    uint visibility_mask; ///< instances are entered that share a bit
+    uint builds_stride;   ///< capacity of each bin
+    uint visibility_mask; ///< only instances that share a bit are visited
 };
 
-/// A patch tree: what rays want of it in this round, and where in the pool it is.
+/// A patch tree: requirements of the rays of this round, and its place in the pool.
 struct TreeRecord {
     uint begin, end; ///< its pairs, sorted
-    uint need;       ///< make_need of all of them; zero between rounds
-    uint coverage;   ///< what the tree in the pool serves; 0: there is none
-    uint address;    ///< in units of the pool, counted on for ever
+    uint need;       ///< make_need of all pairs; zero between rounds
+    uint coverage;   ///< needs met by the tree in the pool; 0: no tree
+    uint address;    ///< in units of the pool, increasing monotonically
     uint ready_wave; ///< wave of jobs in which its pairs may be traced
-    uint build_wave; ///< and in which it was, or is to be, built
+    uint build_wave; ///< wave in which it was, or will be, built
 };
 
-/// What kernels count; zeroed by the host where it says so.
+/// Counters of kernels, cleared by the host.
 struct CounterData {
-    uint pair_count;            ///< of this round
-    uint job_count;             ///< trees of this round
-    uint next_active_count;     ///< rays of the next round
-    uint deferred_count;        ///< jobs that found no room in the pool and wait for the next wave
-    uint request_count;         ///< patches whose tiles are asked for
-    uint rays_lost;             ///< whose walk the device ended: a proof, as those below
-    uint pool_head;             ///< next free place of the pool, in units; grows for ever, modulo 2^32
-    uint next_job;              ///< queue of the persistent kernel
+    uint pair_count;        ///< of this round
+    uint job_count;         ///< trees of this round
+    uint next_active_count; ///< rays of the next round
+    uint deferred_count;    ///< jobs without room in the pool, deferred to the next wave
+    uint request_count;     ///< patches whose tiles are requested
+    uint rays_lost; ///< rays whose traversal the device cut short; for consistency checks, as are those below
+    uint pool_head; ///< next free address of the pool, in units, modulo 2^32
+    uint next_job;  ///< queue of the persistent kernel
     uint build_count[3];        ///< jobs to be built, by bin
-    uint pairs_done, jobs_done; ///< of this wave: proofs that nothing was lost
+    uint pairs_done, jobs_done; ///< of this wave; checked against the expected counts
     uint pairs_with_hit;
     uint reused;
-    uint built[6];   ///< trees, by level
-    uint path_count; ///< paths that go on
+    uint built[6];   ///< trees built, by level
+    uint path_count; ///< paths active at the next depth
     uint shadow_count;
 };
 
-/// Launches to be sized: invocations a group, and trees a group in each bin of builds.
+/// Push constants of prepare_arguments: invocations per group, and trees per group in each build bin.
 struct ArgumentsPush {
     uint group_size;
     uint builds_per_group[3];

@@ -4,16 +4,16 @@
 #include "formulas/begin.h"
 
 const uint kSortGroupSize = 256u;
-const uint kSortItemCount = 8u; ///< of one invocation
+const uint kSortItemCount = 8u; ///< per invocation
 const uint kSortTileSize = 2048u;
 const uint kSortDigitCount = 16u;
 
 /// Push constants of one pass.
 struct SortPush {
-    uint counter_word; ///< of kBindCounters: how many pairs there are
-    uint capacity;     ///< no more are sorted
+    uint counter_word; ///< word of kBindCounters with the number of pairs
+    uint capacity;     ///< maximum number of pairs
     uint shift, mask;  ///< digit = key >> shift & mask
-    uint is_back;      ///< from sorted pairs to pairs, not the other way
+    uint is_back;      ///< from sorted pairs to pairs, else the reverse
 };
 
 #include "formulas/end.h"

@@ -1,4 +1,4 @@
-// Light of the environment, suns and point lights that rays meet by themselves.
+// Emission of the environment, suns and point lights hit by camera and bounce rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -8,7 +8,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// Each light weighted against its chance of being drawn from the vertex that the ray left.
+/// Each light is MIS-weighted against next-event estimation at the previous vertex.
 vec3 gather_light(PathData path, vec3 direction, float distance) {
     vec3 sum = vec3(0.0);
     float total = total_irradiance(push.source_count, path.previous);

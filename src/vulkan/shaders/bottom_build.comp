@@ -1,4 +1,4 @@
-// The split form of the bottom level, first half: trees of one bin, one or several a work group.
+// Split form, build kernel: patch trees of one bin, one or several per work group.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

@@ -1,9 +1,9 @@
-// Builds the patch tree of one job with several lanes of a work group: vertices, bounds, leaves, then one level
-// after another upwards (Harada 2015, listing 1.2). Every lane of the group must call these functions, also those
-// without a job, because there are barriers between the levels.
+// Builds the patch tree of one job with several lanes of a work group: vertices, bounds, leaves, then bottom-up level
+// by level (Harada 2015, listing 1.2). All lanes of the group must call these functions, even without a job, because of
+// the barriers between levels.
 //
-// Vertices are stored as they are before edges move: a shallower surface, or one with coarser edges, finds its own
-// among them. Boxes of boundary nodes also hold the samples that edges move to, at every level.
+// Vertices are stored before edge samples are snapped, so that coarser levels and coarser edges find their vertices
+// among them. Boxes of boundary nodes also bound the snapped samples of every level.
 #ifndef RELIEF_BOTTOM_BUILD_GLSL
 #define RELIEF_BOTTOM_BUILD_GLSL
 
@@ -12,8 +12,8 @@
 #include "formulas/quantise.h"
 #include "formulas/patch_tree.h"
 
-layout(constant_id = 1) const uint kLanes = 8; ///< that work on one tree
-layout(constant_id = 2) const uint kDeepest = 5; ///< level of the trees built here, at most
+layout(constant_id = 1) const uint kLanes = 8; ///< lanes per tree
+layout(constant_id = 2) const uint kDeepest = 5; ///< maximum level of the trees built here
 
 #define POOL_DECLARED
 layout(scalar, set = 0, binding = kBindPool) coherent buffer Pool { uint pool[]; };
@@ -27,12 +27,12 @@ struct BuildJob {
     uint coverage;
     SurfaceData s;
     uint patch_index;
-    uint levels; ///< packed, at which vertices are evaluated
+    uint levels; ///< packed levels at which vertices are evaluated
     uint cell_x, cell_y;
     uint reversed;
 };
 
-/// The job of a tree that has pairs in this round: the first of them names an instance of its surface.
+/// The job of a tree with pairs in this round; its first pair determines the instance.
 BuildJob make_build_job(uint tree, uint patch_count, uint pool_capacity) {
     BuildJob job;
     job.is_real = true;
@@ -142,7 +142,7 @@ void extend_by_moved(BuildJob job, TreeSpace space, uvec4 i_j_edge_level, inout 
     }
 }
 
-/// What coarser edges move the corners of node (x, y) of a level to.
+/// Extends a box by the snapped corners of node (x, y) of a level, for all coarser edges.
 void extend_boundary(BuildJob job, TreeSpace space, uvec2 node, uint level, inout CodeBox box) {
     if ((job.coverage & ~63u) == 0u) return;
     uint n = 1u << level;
@@ -165,7 +165,7 @@ CodeBox find_leaf_box(BuildJob job, TreeSpace space, uvec2 cell) {
     return box;
 }
 
-/// Union of the children as they are quantised.
+/// Union of the quantised children.
 CodeBox find_inner_box(BuildJob job, uint level, uint number) {
     uint children = job.base + kTreeHeaderWords + kTreeNodeWords * (count_nodes_above(level + 1u) + 4u * number);
     CodeBox box = CodeBox(uvec3(0xffffu), uvec3(0u));
@@ -196,7 +196,7 @@ void wait_for_group() {
     barrier();
 }
 
-/// `place`: of the job among those of the group; `lane`: of this invocation among the job's.
+/// `place`: index of the job in the group; `lane`: index of this invocation in the job.
 void build_tree(BuildJob job, uint place, uint lane) {
     reset_bounds(place, lane);
     wait_for_group();

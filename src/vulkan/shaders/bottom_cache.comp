@@ -1,6 +1,6 @@
-// One job: is its tree in the pool, deep enough and not about to be overwritten? If not, it gets a place. The pool
-// is a ring that is filled on and on; a tree lives until the ring comes round. What finds no room in this wave
-// keeps its need and waits for the next one.
+// One job: looks up its tree in the pool; if it is missing, too coarse or about to be overwritten, allocates space. The
+// pool is a ring buffer; a tree lives until it is overwritten. A job without room in this wave keeps its needs and is
+// deferred to the next one.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -21,7 +21,7 @@ bool does_cover(uint coverage, uint need) {
     return (need & ~coverage & ~kLevelBits) == 0u;
 }
 
-/// Place of `units` units in one piece; kNone: this wave has no room left.
+/// Allocates `units` contiguous units; kNone: no room left in this wave.
 uint allocate(uint units) {
     for (uint attempt = 0u; attempt < 4u; ++attempt) {
         uint address = atomicAdd(counters.pool_head, units);

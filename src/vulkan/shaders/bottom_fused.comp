@@ -1,13 +1,13 @@
-// The fused form of the bottom level (Harada 2015, algorithm 1): work groups stay and take trees from a queue;
-// each builds its tree with all lanes, then gives a ray to every lane.
+// Fused form (Harada 2015, algorithm 1): persistent work groups take trees from a queue; each builds its tree with all
+// lanes, then traces one ray per lane.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/bottom_build.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"
 
-layout(constant_id = 5) const uint kMostPairs = 0xffffffffu; ///< that a group traces of one tree
-layout(constant_id = 6) const uint kMostJobs = 0xffffffffu;  ///< that a group takes
+layout(constant_id = 5) const uint kMostPairs = 0xffffffffu; ///< pairs that a group traces per tree
+layout(constant_id = 6) const uint kMostJobs = 0xffffffffu;  ///< jobs that a group takes
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
@@ -15,7 +15,7 @@ shared uint shared_job;
 
 void work_on(uint tree) {
     TreeRecord record = trees[tree];
-    if (record.ready_wave != push.wave) return; // the same for all lanes
+    if (record.ready_wave != push.wave) return; // uniform over the group
     BuildJob job = make_build_job(tree, push.patch_count, push.pool_capacity);
     job.is_real = record.build_wave == push.wave;
     if (job.is_real) build_tree(job, 0u, gl_LocalInvocationID.x);

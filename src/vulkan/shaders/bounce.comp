@@ -1,4 +1,4 @@
-// The next ray of each path, or its end.
+// Samples the next ray of each path, or terminates it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -7,7 +7,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// Sets the next ray; false where the path ends.
+/// Sets the next ray; false if the path terminates.
 bool continue_path(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
@@ -27,7 +27,7 @@ bool continue_path(uint path_index, HitData hit) {
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
-    RayData next = {origin, 0.0, direction, make_infinity(), ray.bias};
+    RayData next = {origin, 0.0, direction, make_infinity(), ray.lod_bias};
     rays[path_index] = next;
     return true;
 }

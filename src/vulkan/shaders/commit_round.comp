@@ -1,5 +1,5 @@
-// The end of a round for one ray: takes over what the bottom level found if it is nearer, moves the cursor behind
-// the patches that were offered, and leaves the ray active while there may be something in front of its hit.
+// End of a round for one ray: commits a nearer hit from the patch trees, advances the cursor beyond the offered
+// candidates, and keeps the ray active while there may be candidates in front of its hit.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -44,7 +44,7 @@ void main() {
     uint ray_index = active_rays[push.first + place];
     take_hit(ray_index, place);
     CandidateData last = candidates[place * push.slots + push.slots - 1u];
-    if (last.instance == kNone) return; // all patches were offered
+    if (last.instance == kNone) return; // all candidates were offered
     HitData best = hits[ray_index];
     if (best.instance != kNone && (push.is_any != 0u || last.entry > best.t * kBoxSlack)) return;
     cursors[ray_index] = CursorData(last.entry, last.instance, last.tree);

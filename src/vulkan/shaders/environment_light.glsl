@@ -1,5 +1,5 @@
-// The environment as a light: radiance by direction, and directions drawn by brightness. The table holds the
-// cumulative probabilities of the rows, then those of the cells of each row.
+// Environment light: radiance by direction, and importance sampling of directions. The table holds the cumulative
+// distribution of the rows, then that of the cells of each row.
 #ifndef RELIEF_ENVIRONMENT_LIGHT_GLSL
 #define RELIEF_ENVIRONMENT_LIGHT_GLSL
 
@@ -10,7 +10,7 @@
 
 layout(set = 0, binding = kBindEnvironment) uniform samplerBuffer environment_table;
 
-/// A direction drawn, with its place in the image; density per solid angle.
+/// A sampled direction with its position in the image; density per solid angle.
 struct EnvironmentDraw {
     vec3 direction;
     float pdf;
@@ -22,7 +22,7 @@ float load_cumulative(uint first, uint index) { return texelFetch(environment_ta
 /// First entry of the cells of a row.
 uint find_row(EnvironmentData e, uint row) { return e.cells_y + 1u + row * (e.cells_x + 1u); }
 
-/// Interval of a cumulative distribution of `count` intervals that u falls into; never one of zero width.
+/// Interval of a cumulative distribution of `count` intervals that contains u; never one of zero width.
 uint find_interval(uint first, uint count, float u) {
     uint low = 0u;
     uint high = count - 1u;
@@ -60,7 +60,7 @@ EnvironmentDraw draw_environment_direction(EnvironmentData e, vec2 u) {
     return drawn;
 }
 
-/// Radiance at a place of the image.
+/// Radiance at a position in the image.
 vec3 environment_radiance_at(EnvironmentData e, vec2 position) {
     return e.texture_index == kNone ? e.scale : fetch_latlong(e.texture_index, position) * e.scale;
 }
@@ -69,7 +69,7 @@ vec3 environment_radiance(EnvironmentData e, vec3 direction) {
     return environment_radiance_at(e, locate_in_environment(e, direction));
 }
 
-/// Density with which a direction is drawn.
+/// Sampling density of a direction.
 float environment_pdf(EnvironmentData e, vec3 direction) {
     if (e.texture_index == kNone) return sphere_pdf();
     vec2 position = locate_in_environment(e, direction);

@@ -1,4 +1,4 @@
-// The extensions that every shader is written with.
+// Extensions required by all shaders.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require

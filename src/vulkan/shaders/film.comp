@@ -1,4 +1,4 @@
-// Adds what each path brought to the sums of its pixel.
+// Adds the result of each path to the sums of its pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

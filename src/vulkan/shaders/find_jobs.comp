@@ -1,5 +1,5 @@
-// The sorted pairs as jobs: where the pairs of each tree begin and end, and what its rays want of it, the finest
-// level and how far edges are coarser.
+// Groups the sorted pairs into jobs: range of pairs per tree, and the needs of its rays, which are the finest level and
+// how much coarser edges are.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

@@ -1,4 +1,4 @@
-// Where on its patch a hit lies: the micro-triangle is evaluated again, because its tree may be gone by now.
+// Computes the patch (u, v) of a hit. Re-evaluates the micro-triangle, because its tree may have been overwritten.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -30,7 +30,7 @@ void main() {
     if (hit.instance == kNone) return;
     InstanceData instance = instances[hit.instance];
     SurfaceData s = surfaces[instance.surface];
-    if (s.map == kNone) return; // a polygon knows already
+    if (s.map == kNone) return; // already set for polygons
     uvec2 cell = uvec2(cell_column(hit.cell), cell_row(hit.cell));
     vec2 within = vec2(0.5);
     if (kIsBoxLeaf == 0u) {

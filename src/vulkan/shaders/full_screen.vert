@@ -1,6 +1,6 @@
-// The screen in squares, for fragments that stand for the invocations of a kernel (GRAPP 2019, section 3.3, fragment
-// shaders): a point as large as a square takes the place of a work group. Not two triangles: along their common edge
-// fragments that only complete blocks would run as well, and lavapipe's loops wait for those.
+// The framebuffer in squares, for fragments that act as the invocations of a kernel (GRAPP 2019, section 3.3, fragment
+// shaders): a point as large as a square replaces a work group. Not two triangles: helper invocations would run along
+// their shared edge, and lavapipe's loops wait for those.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "formulas/lang.h"

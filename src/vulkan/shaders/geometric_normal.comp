@@ -1,4 +1,4 @@
-// Geometric normals of hits, on the side of the winding, for programs that bring their own rays.
+// Geometric normals of hits, oriented by the winding, for ray queries.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

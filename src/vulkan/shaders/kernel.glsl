@@ -1,11 +1,11 @@
-// What every kernel begins with: its size as specialization constant 0, and the number of an invocation. With
-// FULL_SCREEN the same kernel is a fragment shader: see full_screen.vert.
+// Common prologue of kernels: group size as specialization constant 0, and the invocation index. With FULL_SCREEN the
+// same kernel is a fragment shader: see full_screen.vert.
 #include "vulkan/shaders/extensions.glsl"
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"
 
 #ifdef FULL_SCREEN
-/// Number of this fragment: squares row by row, and the fragments of a square, as neighbours of a work group.
+/// Index of this fragment: squares row by row, then the fragments of a square, like the invocations of a work group.
 uint invocation_index() {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     uvec2 square = pixel / kFragmentSquare;
@@ -16,7 +16,7 @@ uint invocation_index() {
 #else
 layout(local_size_x_id = 0) in;
 
-/// Number of this invocation in a launch of one or two dimensions.
+/// Index of this invocation in a launch of one or two dimensions.
 uint invocation_index() {
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;

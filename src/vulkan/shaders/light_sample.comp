@@ -1,5 +1,4 @@
-// Light at a vertex: what the surface gives off by itself, and next-event estimation, whose shadow ray is traced
-// later.
+// Light at a vertex: emission of the surface, and next-event estimation, whose shadow ray is traced later.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -10,7 +9,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-/// A light drawn for one vertex.
+/// A light sampled for one vertex.
 struct DrawnLight {
     LightDraw light;
     bool is_surface;
@@ -20,20 +19,20 @@ struct DrawnLight {
 DrawnLight draw_from_environment(vec3 normal, vec2 u) {
     EnvironmentDraw drawn = draw_environment_direction(push.environment, u);
     DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0)};
-    // Half of the directions lead into the surface: the image is not read for them.
+    // Early out without reading the image: half of the directions point into the surface.
     if (!(drawn.pdf > 0.0) || dot(drawn.direction, normal) <= 0.0) return result;
     result.light.weight = environment_radiance_at(push.environment, drawn.position) * (1.0 / drawn.pdf);
     result.light.pdf = drawn.pdf;
     return result;
 }
 
-DrawnLight draw_from_emitters(vec3 position, uint bias, float u_emitter, vec2 u) {
+DrawnLight draw_from_emitters(vec3 position, uint lod_bias, float u_emitter, vec2 u) {
     uint emitter = find_emitter(push.emitter_count, u_emitter);
     uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, 0u, emitter);
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
     bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
-    CellPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, bias);
+    CellPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, lod_bias);
     vec3 to = point.triangle.position - position;
     float pdf =
         emitter_density(load_emitter_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
@@ -43,23 +42,24 @@ DrawnLight draw_from_emitters(vec3 position, uint bias, float u_emitter, vec2 u)
     return result;
 }
 
-DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint bias, float u_emitter, vec2 u) {
+DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint lod_bias, float u_emitter, vec2 u) {
     if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, u);
-    if (source.kind == kSourceEmitters) return draw_from_emitters(at.position, bias, u_emitter, u);
+    if (source.kind == kSourceEmitters) return draw_from_emitters(at.position, lod_bias, u_emitter, u);
     DrawnLight result = {draw_sun(source, u), false, vec3(0.0)};
     if (source.kind == kSourcePoint) result.light = draw_point_light(source, at.position, u);
     return result;
 }
 
-/// Draws one light by its estimated irradiance, then a direction towards it; density 0: nothing.
-DrawnLight draw_light(SurfacePointData at, uint bias, vec2 pick_and_emitter, vec2 u) {
+/// Selects one light in proportion to its estimated irradiance, then samples a direction towards it; density 0: no
+/// sample.
+DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
     float total = total_irradiance(push.source_count, at.position);
     float target = pick_and_emitter.x * total;
     uint picked = 0u;
     float estimate = estimate_irradiance(sources[0], at.position);
     for (float running = estimate; running <= target && picked + 1u < push.source_count; running += estimate)
         estimate = estimate_irradiance(sources[++picked], at.position);
-    DrawnLight drawn = draw_from(sources[picked], at, bias, pick_and_emitter.y, u);
+    DrawnLight drawn = draw_from(sources[picked], at, lod_bias, pick_and_emitter.y, u);
     if (!(total > 0.0) || dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
     float probability = estimate / total;
     drawn.light.pdf *= probability;
@@ -67,7 +67,7 @@ DrawnLight draw_light(SurfacePointData at, uint bias, vec2 pick_and_emitter, vec
     return drawn;
 }
 
-/// Density with which draw_light from the vertex before would have found this point.
+/// Density with which draw_light at the previous vertex would have sampled this point.
 float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
     if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
     uint first = find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x;
@@ -83,10 +83,10 @@ vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emis
     return path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));
 }
 
-RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint bias) {
+RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias) {
     vec3 origin =
         offset_origin(point.position, point.geometric_normal, point.position_error, drawn.light.direction);
-    RayData ray = {origin, 0.0, drawn.light.direction, drawn.light.distance, bias};
+    RayData ray = {origin, 0.0, drawn.light.direction, drawn.light.distance, lod_bias};
     if (drawn.is_surface) {
         vec3 to = drawn.end - origin;
         ray.t_max = length(to) * (1.0 - 1e-6);
@@ -95,14 +95,14 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint bias) {
     return ray;
 }
 
-/// Sets the shadow ray and what it brings; false where it would bring nothing. The last vertex has no bounce ray
-/// that could find the light as well: full weight there.
+/// Sets the shadow ray and its contribution; false if that is zero. The last vertex has no bounce ray that could also
+/// hit the light, so the MIS weight is 1 there.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    DrawnLight drawn = draw_light(point, ray.bias, vec2(pick.x, last.y), u);
+    DrawnLight drawn = draw_light(point, ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
@@ -112,11 +112,11 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, Materi
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
     paths[path_index].contribution = contribution;
     paths[path_index].cost = path.cost + 1.0;
-    rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.bias);
+    rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.lod_bias);
     return true;
 }
 
-/// True where there is a shadow ray.
+/// True if there is a shadow ray.
 bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];

@@ -1,4 +1,4 @@
-// All that gives light, for next-event estimation and for the rays that find a light by themselves.
+// All light sources, for next-event estimation and for rays that hit a light.
 #ifndef RELIEF_LIGHTS_GLSL
 #define RELIEF_LIGHTS_GLSL
 
@@ -20,7 +20,7 @@ float total_irradiance(uint source_count, vec3 position) {
 
 float load_emitter_probability(uint emitter) { return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y); }
 
-/// Emissive patch that a random number draws.
+/// Emissive patch selected by a random number.
 uint find_emitter(uint emitter_count, float u) {
     uint part = uint(u * kEmitterParts);
     uint low = 0u;
@@ -35,7 +35,7 @@ uint find_emitter(uint emitter_count, float u) {
     return low;
 }
 
-/// Last range whose component (0: first emitter, 1: instance) is not above `value`. Both rise over the ranges.
+/// Last range whose component (0: first emitter, 1: instance) is at most `value`. Both increase over the ranges.
 uvec2 find_emitter_range(uint emitter_count, uint range_count, uint component, uint value) {
     uint low = 0u;
     uint high = range_count - 1u;

@@ -1,4 +1,4 @@
-// A stack of nodes with the distances at which the ray enters them: the nearer child of a node goes on top.
+// Traversal stack of nodes with their entry distances; the nearer child is pushed last.
 #ifndef RELIEF_NODE_STACK_GLSL
 #define RELIEF_NODE_STACK_GLSL
 

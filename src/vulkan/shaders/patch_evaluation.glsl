@@ -1,10 +1,11 @@
-// Vertices of a displaced patch: the operations of evaluate_vertex (surface/patch/patch_samples.cpp) on formulas/displace.h.
+// Vertices of a displaced patch: the same operations as evaluate_vertex (surface/patch/patch_samples.cpp), with the
+// formulas of formulas/displace.h.
 #ifndef RELIEF_PATCH_EVALUATION_GLSL
 #define RELIEF_PATCH_EVALUATION_GLSL
 
 #include "vulkan/shaders/scene.glsl"
 
-/// What is interpolated over a patch; the frame is zero unless the map is tangent.
+/// Attributes interpolated over a patch; the frame is zero unless the map is in tangent space.
 struct VertexData {
     vec3 position;
     vec2 uv;
@@ -36,7 +37,7 @@ VertexData load_vertex(SurfaceData s, uint vertex) {
     return data;
 }
 
-/// Texel for a bilinear fetch; the black outside counts as no displacement.
+/// Texel for a bilinear fetch; outside with kWrapBlack there is no displacement.
 vec3 load_wrapped_texel(TextureData texture_data, MapData map, int column, int row) {
     return column < 0 || row < 0 ? map.midlevel : load_texel(texture_data, uint(column), uint(row)).xyz;
 }
@@ -48,7 +49,7 @@ vec3 decode_displacement(MapData map, vec3 value) {
                 decode_row(raw.x, raw.y, raw.z, map.row2.x, map.row2.y, map.row2.z));
 }
 
-/// Displacement at a local uv of copy `mip` of a tile, bilinear; zero where the tile has no map.
+/// Bilinear displacement at a local uv of mip level `mip` of a tile; zero for a missing tile.
 vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     if (tile >= map.tile_count) return vec3(0.0);
     TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
@@ -56,7 +57,7 @@ vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     int height = int(texture_data.height);
     precise float x = uv.x * float(width) - 0.5;
     precise float y = (map.flip_v != 0u ? uv.y : 1.0 - uv.y) * float(height) - 0.5;
-    // Beyond 2^30 texels a float is far from naming one.
+    // Beyond 2^30 a float does not resolve texels.
     float x0 = clamp(floor_texel(x), -1073741824.0, 1073741760.0);
     float y0 = clamp(floor_texel(y), -1073741824.0, 1073741760.0);
     precise float fx = x - x0;
@@ -75,7 +76,7 @@ vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     return decode_displacement(map, value);
 }
 
-/// The displaced point of interpolated values, by copy `mip` of the map.
+/// Displaces interpolated attributes by mip level `mip` of the map.
 vec3 displace(SurfaceData s, VertexData base, uint mip) {
     if (s.map == kNone) return base.position;
     MapData map = maps[s.map];
@@ -181,7 +182,7 @@ struct EdgeLine {
     bool is_reversed;
 };
 
-/// Ends of the line at a seam: those of the side that is lower numbered.
+/// Ends of the line at a uv seam: those of the side with the lower index.
 uvec2 find_override(SurfaceData s, uint patch_edge) {
     uint low = s.first_override;
     uint high = s.first_override + s.override_count - 1u;
@@ -211,7 +212,7 @@ EdgeLine find_edge_line(SurfaceData s, uvec4 quad, uint patch_index, uint edge) 
     return EdgeLine(first, second, false);
 }
 
-/// A bit for each edge whose line runs against the patch's direction.
+/// One bit per edge whose line runs against the patch's winding.
 uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
     uint reversed = 0u;
     for (uint edge = 0u; edge < 4u; ++edge)
@@ -219,8 +220,8 @@ uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
     return reversed;
 }
 
-/// What a sample of the boundary is interpolated from: the ends of a line and the place between them. A corner is
-/// its dominant vertex alone.
+/// Interpolation of a boundary sample: the ends of a line and the position between them. A corner uses its dominant
+/// vertex only.
 struct LinePlace {
     uint first, second;
     float s;
@@ -234,7 +235,7 @@ LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
     return LinePlace(vertex, vertex, 0.0, kNone, kNone, kMipCorners + k);
 }
 
-/// A sample of edge i_j_edge.z that is not a corner before it moves.
+/// A sample of edge i_j_edge.z, not a corner, before snapping.
 LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uvec3 i_j_edge) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;
@@ -248,7 +249,7 @@ LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint pack
                      control + (line.is_reversed ? 0u : 1u), kMipEdges + edge);
 }
 
-/// A sample of the boundary before it is displaced.
+/// A boundary sample before displacement.
 VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace place) {
     VertexData first = load_vertex(s, place.first);
     VertexData second = load_vertex(s, place.second);
@@ -260,7 +261,7 @@ VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace
     return base;
 }
 
-/// Sample (i, j) of a patch whose corners are at hand.
+/// Sample (i, j) of a patch with loaded corners.
 vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packed_levels, uint i, uint j) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;

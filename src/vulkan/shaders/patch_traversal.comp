@@ -1,11 +1,11 @@
-// The split form of the bottom level, second half: one invocation a pair. After the fused form it takes the pairs
-// that a group leaves when a tree has very many.
+// Split form, traversal kernel: one invocation per pair. After the fused form it traces the excess pairs of trees with
+// very many.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"
 
-layout(constant_id = 5) const uint kFirstPair = 0; ///< of each tree: those before are traced already
+layout(constant_id = 5) const uint kFirstPair = 0; ///< per tree: earlier pairs have been traced already
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 

@@ -1,6 +1,6 @@
-// One ray in the patch tree of one patch or tile: nodes in the order of their Morton numbers, turned so that the
-// ray meets near ones first; no stack and no links, since the tree is complete (Harada 2015, listing 1.1, whose
-// table of links follows from the numbers). A ray that sees the patch at a lower level stops early.
+// Traversal of the tree of one patch or tile: nodes in Morton order, mirrored so that near ones come first; no stack
+// and no links, since the tree is complete (Harada 2015, listing 1.1, whose link table follows from the indices). Rays
+// that see the patch at a lower level stop there.
 #ifndef RELIEF_PATCH_TRAVERSAL_GLSL
 #define RELIEF_PATCH_TRAVERSAL_GLSL
 
@@ -12,12 +12,12 @@
 layout(scalar, set = 0, binding = kBindPool) readonly buffer Pool { uint pool[]; };
 #endif
 
-layout(constant_id = 4) const uint kIsBoxLeaf = 0; ///< a micro-quad is hit where the ray enters its box
+layout(constant_id = 4) const uint kIsBoxLeaf = 0; ///< a micro-quad is hit at the entry into its box
 
-/// A tree with a ray inside.
+/// State of a ray in a tree.
 struct PatchVisit {
     uint base;
-    uint tree_level, ray_level; ///< of the tree, and at which the ray sees it
+    uint tree_level, ray_level; ///< of the tree, and as seen by the ray
     uint levels;                ///< packed, of the whole patch
     uint reversed;
     uint cell_x, cell_y; ///< first cell of a tile
@@ -63,7 +63,7 @@ void intersect_micro_quad(inout PatchVisit visit, uint i, uint j) {
     if (kIsBoxLeaf != 0u) {
         BoxInterval interval = cross_box(visit.ray, min(min(p00, p10), min(p11, p01)),
                                          max(max(p00, p10), max(p11, p01)), visit.t_min, visit.t);
-        // A ray that begins inside a box leaves it unhit, so that it cannot meet the quad that it starts on.
+        // A box that contains the ray's origin is not hit, to avoid self-intersection.
         if (is_box_met(interval) && interval.entry > visit.t_min)
             offer_micro_hit(visit, interval.entry, make_cell_rank(column, row, 0u));
         return;
@@ -89,7 +89,7 @@ bool is_node_met(PatchVisit visit, uint node) {
     return is_box_met(cross_box(visit.ray, lower, upper, visit.t_min, visit.t));
 }
 
-/// Numbers of the nodes xor this walk them nearest first where the patch is not folded.
+/// XOR mask for node indices; front-to-back order unless the patch is folded.
 uint choose_order(PatchVisit visit) {
     uint n = 1u << visit.ray_level;
     vec3 corner = read_tree_vertex(visit, 0u, 0u);
@@ -98,12 +98,12 @@ uint choose_order(PatchVisit visit) {
     return make_order_mask(dot(along_u, visit.ray.direction) < 0.0, dot(along_v, visit.ray.direction) < 0.0);
 }
 
-/// False where a device ends the loop before all is done, as lavapipe does after 65535 rounds: no node is visited
-/// twice, so none of the ways out below is left untaken.
+/// False if the device ended the loop early, as lavapipe does after 65535 iterations. The iteration bound itself is
+/// never reached, because no node is visited twice.
 bool walk_tree(inout PatchVisit visit, bool is_any) {
     uint order = choose_order(visit);
     uint level = 0u;
-    uint place = 0u; // in the order of the walk, within the level
+    uint place = 0u; // index in traversal order within the level
     for (uint visited = 0u; visited < count_nodes_above(kTreeLevels + 1u); ++visited) {
         uint number = place ^ (order & ((1u << (2u * level)) - 1u));
         if (is_node_met(visit, count_nodes_above(level) + number)) {
@@ -115,7 +115,7 @@ bool walk_tree(inout PatchVisit visit, bool is_any) {
             intersect_micro_quad(visit, morton_column(number), morton_row(number));
             if (is_any && visit.has_hit) return true;
         }
-        // The next one on this level, or of the nearest ancestor that has one.
+        // The next sibling on this level, or of the nearest ancestor that has one.
         ++place;
         uint up = min(uint(findLSB(place)) >> 1u, level);
         place >>= 2u * up;
@@ -125,7 +125,7 @@ bool walk_tree(inout PatchVisit visit, bool is_any) {
     return false;
 }
 
-/// Rank among the patches that the ray offers in this round: by (instance, patch), tiles of one patch alike.
+/// Rank among the ray's candidates of this round by (instance, patch); tiles of one patch share a rank.
 uint find_slot_rank(uint candidate_index, uint slots) {
     CandidateData own = candidates[candidate_index];
     uint first = candidate_index / slots * slots;
@@ -153,7 +153,7 @@ PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint pa
         visit.cell_x = tile.cell_x;
         visit.cell_y = tile.cell_y;
         visit.ray_level = kTreeLevels;
-        visit.has_moved_edges = false; // built as they are
+        visit.has_moved_edges = false; // applied when the tile was built
     }
     for (uint k = 0u; k < 3u; ++k) {
         visit.origin[k] = uintBitsToFloat(pool[visit.base + kTreeOrigin + k]);
@@ -166,7 +166,7 @@ PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint pa
     return visit;
 }
 
-/// Traces one pair, whose tree is in the pool.
+/// Traces one pair; its tree must be in the pool.
 void trace_pair(uvec2 pair, CastPush push) {
     uint place = pair.y / push.slots;
     float t = nearest_distance(nearest[place]);

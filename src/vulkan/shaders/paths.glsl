@@ -1,4 +1,4 @@
-// Paths as the kernels of the path tracer see them.
+// Path state for the path tracing kernels.
 #ifndef RELIEF_PATHS_GLSL
 #define RELIEF_PATHS_GLSL
 
@@ -31,7 +31,7 @@ layout(scalar, set = 0, binding = kBindShadowList) buffer ShadowList { uint shad
 
 bool is_hit(HitData hit) { return hit.instance != kNone; }
 
-/// The surface as seen from one direction: what it scatters, in a frame of its own.
+/// The BSDF for one outgoing direction, in a local frame.
 struct Scattering {
     Basis basis;
     vec3 wo_local;

@@ -1,4 +1,4 @@
-// Sizes of the launches that follow, as work groups and as full-screen draws, from what was counted on the device.
+// Sizes of subsequent launches, as work groups and as full-screen draws, from counters on the device.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -19,7 +19,7 @@ void write_groups(uint place, uint items, uint items_per_group) {
     arguments[word] = rows > 1u ? kMostGroups : groups;
     arguments[word + 1u] = rows;
     arguments[word + 2u] = groups > 0u ? 1u : 0u;
-    uint draw = word + kArgumentDrawWord; // vertices, instances, and the first of each
+    uint draw = word + kArgumentDrawWord; // vertex count, instance count, and the first of each
     arguments[draw] = groups;
     arguments[draw + 1u] = 1u;
     arguments[draw + 2u] = arguments[draw + 3u] = 0u;

@@ -1,5 +1,5 @@
-// First hits by drawing (GRAPP 2019, section 3.3, hybrid shading), made exact: docs/decisions/hybrid-by-exact-raster.md.
-// A wave of items, and their vertices row by row.
+// Rasterised first hits (GRAPP 2019, section 3.3, hybrid shading), made exact:
+// docs/decisions/hybrid-by-exact-raster.md. A wave of items with their vertices, row by row.
 #ifndef RELIEF_RASTER_GLSL
 #define RELIEF_RASTER_GLSL
 
@@ -9,7 +9,7 @@
 layout(scalar, push_constant) uniform Push { RasterPush push; };
 layout(scalar, set = 0, binding = kBindRasterItems) readonly buffer Items { RasterItem items[]; };
 
-/// Cells a row, and vertices less one.
+/// Cells per row; one less than vertices per row.
 uint count_columns(RasterItem item) { return 1u << packed_patch_level(item.levels); }
 
 /// The item that a cell of the wave belongs to.
@@ -26,7 +26,7 @@ uint find_item(uint number) {
     return low;
 }
 
-/// A cell of an item, which counts its own rows.
+/// A cell of an item, with rows relative to the item.
 struct RasterCell {
     RasterItem item;
     uint column, row;

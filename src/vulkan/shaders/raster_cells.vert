@@ -1,4 +1,4 @@
-// A cell as the rectangle of all pixels whose rays can meet it.
+// A cell as the conservative rectangle of all pixels whose rays can hit it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
@@ -12,7 +12,7 @@ vec3 bound_vector(AffineData a, vec3 v) {
     return vec3(dot(abs(a.x), abs(v)), dot(abs(a.y), abs(v)), dot(abs(a.z), abs(v)));
 }
 
-/// Of the rays of this object; its size does not matter to where things are seen, but to the range of floats.
+/// Camera in object space. Its scale does not affect the projection, only the range of floats.
 ObjectCamera enter_camera(InstanceData instance) {
     AffineData m = instance.object_from_world;
     vec3 reach = abs(push.corner) + float(push.x0 + push.width) * abs(push.step_x) +
@@ -27,8 +27,8 @@ ObjectCamera enter_camera(InstanceData instance) {
     return make_object_camera(transform_point(m, push.origin), vectors, bounds, bound * scale);
 }
 
-/// In pixels of the part that is drawn, with a margin: the ray of a pixel goes through any point of it, and a
-/// fragment is made where its centre is covered.
+/// In pixels of the drawn region, with a margin: the ray of a pixel may pass through any point of it, but fragments are
+/// generated only where the centre is covered.
 vec4 place_on_window(ScreenBox box) {
     vec2 origin = vec2(float(push.x0), float(push.y0 + push.first_row));
     vec2 size = vec2(float(push.width), float(push.row_count));

@@ -1,5 +1,5 @@
-// The ray of a pixel against the two triangles of a cell that may be there, by the tracer's own test. No loops:
-// fragments that only complete a block run too, and would spend those of their neighbours on lavapipe.
+// Tests the ray of a pixel against the two triangles of a cell, with the tracer's own test. No loops: helper
+// invocations would use up the loop budget of their neighbours on lavapipe.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
@@ -14,7 +14,7 @@ layout(scalar, set = 0, binding = kBindRasterNearest) buffer RasterNearest { uin
 void main() {
     uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(0u, push.first_row);
     uint index = find_pixel_number(pixel.x, pixel.y, push.width, push.height) - push.first_pixel;
-    if (index >= push.count) return; // of another batch; below the first one the number wraps
+    if (index >= push.count) return; // of another batch; indices before the first wrap around
     RasterCell cell = make_cell(item_and_cell.x, item_and_cell.y);
     CellCorners corners = load_cell(cell);
     RayData world = rays[index];

@@ -1,5 +1,5 @@
-// The hit of a camera ray in a wave of items, if it is nearer than those of the waves before: the same bits as those of
-// a traced hit.
+// Commits the hit of a camera ray in a wave of items if it is nearer than those of previous waves; bit-identical to a
+// traced hit.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES

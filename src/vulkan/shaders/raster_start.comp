@@ -1,4 +1,4 @@
-// Camera rays before anything is drawn: no hit.
+// Clears the hits of camera rays before rasterisation.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

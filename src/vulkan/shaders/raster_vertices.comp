@@ -1,4 +1,4 @@
-// The vertices of a wave of items: those of the surface that camera rays see, or the corners of polygons.
+// Vertices of a wave of items: displaced vertices at the levels of camera rays, or polygon corners.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -20,7 +20,7 @@ RasterItem find_item_of_vertex(uint vertex) {
     return items[low];
 }
 
-/// The upper triangle of a polygon with three corners is flat: no ray meets it.
+/// The upper triangle of a polygon with three corners is degenerate: no ray hits it.
 vec3 load_polygon_corner(SurfaceData s, uint patch_index, uint i, uint j) {
     return load_position(s, load_quad(s, patch_index)[j == 0u ? i : 3u - i]);
 }

@@ -1,4 +1,4 @@
-// Rays, hits, and what passes between the stages of a cast.
+// Rays, hits, and intermediate results of a cast.
 #ifndef RELIEF_RAYS_GLSL
 #define RELIEF_RAYS_GLSL
 
@@ -36,12 +36,12 @@ bool is_better(HitData a, HitData b) {
     return a.cell < b.cell;
 }
 
-/// Place in a cell of weights (b, c) of its lower triangle 00 10 11 or its upper one 00 11 01.
+/// Position in a cell from weights (b, c) of its lower triangle 00 10 11 or its upper one 00 11 01.
 vec2 place_in_cell(vec2 weights, uint is_upper) {
     return is_upper != 0u ? vec2(weights.x, weights.x + weights.y) : vec2(weights.x + weights.y, weights.y);
 }
 
-/// Place on a patch of `level` of a place in one of its cells.
+/// Position on a patch of `level` from the position in one of its cells.
 vec2 place_on_patch(uint cell, uint level, vec2 within) {
     precise float cell_size = 1.0 / float(1u << level);
     precise vec2 uv = (vec2(cell_column(cell), cell_row(cell)) + within) * cell_size;

@@ -1,4 +1,4 @@
-// The scene as kernels see it: tables, texel buffers, and the functions that read them.
+// Scene access for kernels: tables, texel buffers, and functions that read them.
 #ifndef RELIEF_SCENE_GLSL
 #define RELIEF_SCENE_GLSL
 
@@ -71,18 +71,18 @@ bool is_seam(SurfaceData s, uint patch_index, uint edge) {
     return ((word >> (patch_edge & 31u)) & 1u) != 0u;
 }
 
-/// Which copies of its map a patch reads.
+/// Packed mip levels that a patch reads.
 uint load_mips(SurfaceData s, uint patch_index) {
     return s.first_mip == kNone ? 0u : texelFetch(override_bits, int(s.first_mip + patch_index)).x;
 }
 
-/// Packed levels of a patch of an instance, bias 0.
+/// Packed levels of a patch of an instance, without LOD bias.
 uint find_levels(InstanceData instance, uint patch_index) {
     if (instance.first_level == kNone) return instance.levels;
     return texelFetch(field_levels, int(instance.first_level + patch_index)).x;
 }
 
-/// Texel (x, y), inside the texture.
+/// Texel (x, y); must lie inside the texture.
 vec4 load_texel(TextureData texture_data, uint x, uint y) {
     int place = int(texture_data.first_texel + y * texture_data.width + x);
     return texture_data.is_half != 0u ? texelFetch(half_texels, place) : texelFetch(float_texels, place);

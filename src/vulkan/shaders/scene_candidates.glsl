@@ -1,6 +1,6 @@
-// One ray of a round in the two upper levels, whatever tree is walked: its nearest candidates, the polygons that it
-// meets, what it hands on. The including file defines kMayOfferTwice (a walk may come to a patch again) before, and
-// enter_tiles() and walk() after.
+// One ray of a round in the scene trees, independent of the kind of tree: collects its nearest candidates, intersects
+// polygons, emits pairs. The including file defines kMayOfferTwice (the traversal may visit a patch repeatedly) before,
+// and enter_tiles() and walk() after.
 #ifndef RELIEF_SCENE_CANDIDATES_GLSL
 #define RELIEF_SCENE_CANDIDATES_GLSL
 
@@ -12,7 +12,7 @@ layout(scalar, push_constant) uniform Push { CastPush push; };
 layout(set = 0, binding = kBindNodes) uniform usamplerBuffer nodes;
 layout(set = 0, binding = kBindPrimitiveIds) uniform usamplerBuffer primitive_ids;
 layout(scalar, set = 0, binding = kBindRequests) buffer Requests { RequestData requests[]; };
-/// The histogram of the sort, which comes later, lends its first words.
+/// Shares memory with the histogram of the sort, which runs later.
 layout(scalar, set = 0, binding = kBindHistogram) buffer RequestBits { uint request_bits[]; };
 layout(scalar, set = 0, binding = kBindDirectories) readonly buffer Directories { DirectoryData directories[]; };
 
@@ -23,15 +23,15 @@ uint instance_index; ///< kNone: in world space
 HitData best;
 CursorData cursor;
 
-// The nearest candidates so far, in order.
+// The nearest candidates so far, sorted.
 float slot_entry[kMostSlots];
 uint slot_instance[kMostSlots];
 uint slot_tree[kMostSlots];
 uint slot_levels[kMostSlots];
 uint slot_count = 0u;
-bool is_blocked = false; ///< tiles are missing that the host has still to make
+bool is_blocked = false; ///< tiles are missing that the host must build first
 
-/// Distance beyond which nothing matters to this round.
+/// Distance beyond which this round ignores everything.
 float find_limit() {
     float limit = slot_count == push.slots ? min(best.t, slot_entry[push.slots - 1u]) : best.t;
     return limit * kBoxSlack;
@@ -53,7 +53,7 @@ bool is_offered(uint tree) {
     return false;
 }
 
-/// Keeps a tree of this instance if it comes after the cursor and is among the nearest so far.
+/// Inserts a tree of this instance if it follows the cursor and is among the nearest so far.
 void offer_candidate(uint tree, uint levels, float entry) {
     if (push.round > 0u && !is_after(entry, instance_index, tree, cursor)) return;
     CursorData own = CursorData(entry, instance_index, tree);
@@ -73,9 +73,9 @@ void offer_candidate(uint tree, uint levels, float entry) {
     slot_levels[place] = levels;
 }
 
-/// Levels that this ray sees a patch at, packed.
+/// Packed levels of a patch for this ray.
 uint choose_levels(uint patch_index) {
-    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.bias);
+    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.lod_bias);
     if (push.is_ray_lod == 0u) return levels;
     SurfaceData s = surfaces[instance.surface];
     uvec4 quad = load_quad(s, patch_index);
@@ -92,7 +92,7 @@ uint choose_levels(uint patch_index) {
     return pack_uniform_level(choose_ray_level(longest, distance_there, push.pixel_angle, packed_patch_level(levels)));
 }
 
-/// Node of the tree over the tiles of a patch; kNone where the host has still to make it.
+/// Root of the tree over the tiles of a patch; kNone if the host has not built it yet.
 uint find_directory(uint patch_number, uint levels) {
     uint place = hash_directory(patch_number, levels) & push.directory_mask;
     while (directories[place].patch_number != kNone) {
@@ -103,8 +103,8 @@ uint find_directory(uint patch_number, uint levels) {
     return kNone;
 }
 
-/// Asks the host once, or seldom a few times, however many rays need the same: a bit of a hash tells that somebody
-/// did. What shares another's bit is asked for when the traversal is run again.
+/// Requests tiles from the host once, rarely a few times, however many rays need them: a hashed bit marks requested
+/// patches. Patches that collide are requested when the traversal is repeated.
 void request_tiles(uint patch_number, RequestData request) {
     uint bit = hash_directory(patch_number, request.levels) & (kRequestBits - 1u);
     uint mask = 1u << (bit & 31u);
@@ -114,7 +114,7 @@ void request_tiles(uint patch_number, RequestData request) {
     if (place < push.request_limit) requests[place] = request;
 }
 
-/// Nodes over the tiles of a patch; `entry` is the patch's.
+/// Traverses the tree over the tiles of a patch; `entry` is that of the patch.
 void enter_tiles(uint root, float entry);
 
 void enter_patch(uint patch_index, float entry) {
@@ -149,19 +149,19 @@ void intersect_polygon(uint patch_index) {
     if (!is_triangle(quad)) offer_triangle(patch_index, p0, p2, shear_vertex(ray, load_position(s, quad.w)), 1u);
 }
 
-/// Whatever this round has found so far.
+/// Independent of what this round has found so far.
 bool is_wanted_at_all(BoxInterval interval, float entry) {
     if (!is_box_met(interval)) return false;
     if (push.round == 0u || instance_index == kNone) return true;
     return max(interval.exit, entry) * kBoxSlack >= cursor.entry;
 }
 
-/// `entry`: not before that of any node above, so that what a round leaves out comes after all that it offers.
+/// `entry`: at least that of every ancestor, so that skipped candidates follow all offered ones.
 bool is_wanted(BoxInterval interval, float entry) {
     return entry <= find_limit() && is_wanted_at_all(interval, entry);
 }
 
-/// Neither empty nor hidden from these rays.
+/// Whether the instance is neither empty nor masked.
 bool is_instance_seen(uint index) {
     return instances[index].root != kNone && (instances[index].visibility_mask & push.visibility_mask) != 0u;
 }
@@ -177,7 +177,7 @@ void leave_instance() {
     ray = make_object_ray(world.origin, world.direction);
 }
 
-/// Both upper levels; false where a device ends the loop too early.
+/// Traverses the scene trees; false if the device ended a loop early.
 bool walk();
 
 CandidateData make_candidate(uint k) {
@@ -188,7 +188,7 @@ CandidateData make_candidate(uint k) {
     return CandidateData(slot_instance[k], tree, patch_index, slot_levels[k], slot_entry[k]);
 }
 
-/// Hands the candidates on; a ray that waits for tiles hands on nothing and comes again.
+/// Emits pairs for the candidates; a ray that waits for tiles emits none and repeats the round.
 void emit_candidates(uint place) {
     if (is_blocked) slot_count = 0u;
     uint first_pair = atomicAdd(counters.pair_count, slot_count);

@@ -1,6 +1,6 @@
-// One ray through the two upper levels, nearest first: polygons are hit at once, displaced patches are offered to
-// the bottom level, the nearest few of those that come after the ray's cursor (Harada 2015, section 1.5.3, in
-// rounds). Rays that wait for tiles run the round again: it changes nothing but hits, which only come nearer.
+// Front-to-back traversal of the scene trees by one ray: polygons are intersected immediately; of the displaced
+// patches, the nearest few beyond the ray's cursor become candidates (Harada 2015, section 1.5.3, in rounds). Rays that
+// wait for tiles repeat the round, which is safe: it only changes hits, and those only get nearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -10,12 +10,12 @@ const bool kMayOfferTwice = false;
 
 #include "vulkan/shaders/node_stack.glsl"
 
-/// Tiles are walked on the same stack.
+/// Tile directories are traversed on the same stack.
 void enter_tiles(uint root, float entry) { push_node(root, entry); }
 
-/// False where a device ends the loop before the stack is empty.
+/// False if the device ended the loop before the stack was empty.
 bool walk() {
-    uint world_size = 0u; // entries of the stack that wait outside the instance
+    uint world_size = 0u; // stack entries that belong to the tree of instances
     push_node(push.root, world.t_min);
     leave_instance();
     for (uint popped = 0u; popped < 0xffffffffu; ++popped) {

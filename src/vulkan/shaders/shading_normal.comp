@@ -1,5 +1,4 @@
-// How the surface looks where rays met it: shading normal, and material with its textures. First hits go into the
-// layers.
+// Shading normal and textured material at hits. First hits are added to the layers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -26,7 +25,7 @@ void apply_material(MaterialData material, inout Appearance appearance) {
     vec3 color = vec3(1.0);
     float roughness = 1.0;
     uint indices[2] = {material.color_texture, material.roughness_texture};
-    // A loop keeps one copy of the look-up.
+    // A loop, so that the look-up is inlined only once.
     for (uint k = 0u; k < 2u; ++k) {
         if (indices[k] == kNone) continue;
         vec3 value = fetch_texture(indices[k], appearance.uv);

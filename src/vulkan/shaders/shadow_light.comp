@@ -1,4 +1,4 @@
-// Adds the light of shadow rays that nothing was in the way of.
+// Adds the contribution of unoccluded shadow rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

@@ -1,4 +1,4 @@
-// What the three kernels of one pass of the radix sort share.
+// Shared declarations of the three kernels of a radix sort pass.
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_sort.h"

@@ -1,5 +1,5 @@
-// Second step of a pass: the histogram becomes the place where each tile's pairs of each digit begin. One group
-// walks over the whole of it, kSortGroupSize * kSortItemCount words at a time.
+// Second step of a pass: exclusive prefix sum of the histogram, the start of each tile's pairs of each digit. One group
+// processes all of it, kSortGroupSize * kSortItemCount words at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,7 +7,7 @@
 
 shared uint sums[kSortGroupSize];
 
-/// Sum over the lanes before this one; `sums` holds the sums up to each lane afterwards.
+/// Exclusive prefix sum over the lanes; `sums` holds the inclusive sums afterwards.
 uint scan_lanes(uint lane, uint value) {
     sums[lane] = value;
     barrier();
@@ -31,7 +31,7 @@ void main() {
             if (first + k < word_count) own += histogram[first + k];
         uint place = total + scan_lanes(lane, own);
         total += sums[kSortGroupSize - 1u];
-        barrier(); // before the next round overwrites the sums
+        barrier(); // before the next iteration overwrites the sums
         for (uint k = 0u; k < kSortItemCount; ++k) {
             if (first + k >= word_count) break;
             uint count = histogram[first + k];

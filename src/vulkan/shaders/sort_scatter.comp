@@ -1,11 +1,11 @@
-// Third step of a pass: each pair goes to the begin of its tile and digit, plus the number of equal digits before
-// it in the tile. Equal digits keep their order.
+// Third step of a pass: moves each pair to the start of its tile and digit, plus the number of equal digits before it
+// in the tile. Stable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 
-// Counts of 16 bits, two digits a word, one column a lane: what the lanes up to it have of each digit.
+// 16-bit counts, two digits per word, one column per lane: prefix sums over the lanes for each digit.
 const uint kRowCount = kSortDigitCount / 2u;
 shared uint columns[kRowCount * kSortGroupSize];
 
@@ -34,7 +34,7 @@ void main() {
     if (tile >= tile_count) return;
     uint lane = gl_LocalInvocationID.x;
     for (uint row = 0u; row < kRowCount; ++row) columns[row * kSortGroupSize + lane] = 0u;
-    // Each lane has neighbours in memory, so that the order of lanes is that of pairs.
+    // Each lane takes consecutive pairs, so that lane order is pair order.
     uint first = tile * kSortTileSize + lane * kSortItemCount;
     uint pair_count = count_pairs();
     uint rank[kSortItemCount];

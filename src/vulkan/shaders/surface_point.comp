@@ -1,4 +1,4 @@
-// Where rays met surfaces: position, geometric normal, area. First hits go into the layers.
+// Position, geometric normal and area at hits. First hits are added to the layers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"

@@ -1,4 +1,4 @@
-// Points of the surface as shading sees them.
+// Surface points for shading.
 #ifndef RELIEF_SURFACE_POINT_GLSL
 #define RELIEF_SURFACE_POINT_GLSL
 
@@ -26,7 +26,8 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
                         CellPlace place) {
     SurfaceData s = surfaces[instance.surface];
     vec3 corner[3];
-    // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper one. A loop keeps one copy of the evaluation.
+    // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper one. A loop, so that the evaluation is inlined only
+    // once.
     for (uint k = 0u; k < 3u; ++k) {
         uint around = k + (place.is_upper && k > 0u ? 1u : 0u);
         if (s.map == kNone) {
@@ -49,9 +50,9 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
     return point;
 }
 
-/// Point (u, v) of a patch on surface M_bias.
-CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint bias) {
-    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), bias);
+/// Point (u, v) of a patch as rays with this LOD bias see it.
+CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint lod_bias) {
+    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), lod_bias);
     PatchCorners corners = load_corners(surfaces[instance.surface], patch_index);
     uint side = 1u << packed_patch_level(packed_levels);
     CellPlace place = locate_cell(is_triangle(corners.quad), side, uv.x, uv.y);

@@ -6,7 +6,7 @@
 #include "formulas/environment.h"
 #include "formulas/texture.h"
 
-/// Bilinear value at a place in texels from the centre of texel (0, 0); repeated in x.
+/// Bilinear value at a position in texels from the centre of texel (0, 0); repeated in x.
 vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
     vec2 whole = vec2(floor_texel(at.x), floor_texel(at.y));
     vec2 fraction = at - whole;
@@ -26,7 +26,7 @@ vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
     return make_texture_color(source.channel_count, value);
 }
 
-/// Repeated in both directions; row 0 is v = 1. A uv that is not finite gives texel (0, 0).
+/// Repeated in both directions; row 0 is v = 1. A non-finite uv gives texel (0, 0).
 vec3 fetch_texture(uint index, vec2 uv) {
     TextureData source = textures[index];
     if (!is_finite(vec3(uv, 0.0))) return make_texture_color(source.channel_count, load_texel(source, 0u, 0u).xyz);

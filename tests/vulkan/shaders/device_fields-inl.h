@@ -65,7 +65,7 @@ struct AllStructs {
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
-    FIELD3(s.origin) FIELD(s.t_min) FIELD3(s.direction) FIELD(s.t_max) FIELD(s.bias)
+    FIELD3(s.origin) FIELD(s.t_min) FIELD3(s.direction) FIELD(s.t_max) FIELD(s.lod_bias)
 #define FIELDS_HIT(s) \
     FIELD(s.t) FIELD(s.instance) FIELD(s.patch_index) FIELD(s.u) FIELD(s.v) FIELD(s.cell) FIELD(s.levels)
 #define FIELDS_CURSOR(s) \
