@@ -1,4 +1,4 @@
-// What a render tells of its casts: by depth and kind, and together what it tells of the whole.
+// Statistics of casts by depth and kind; they add up to the totals.
 #include <gtest/gtest.h>
 
 #include "relief/render.h"

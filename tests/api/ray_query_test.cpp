@@ -1,4 +1,4 @@
-// What queries of an Intersector ask beside places of hits, and which objects they see.
+// Hit attributes and visibility masks of an Intersector.
 #include <algorithm>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// An end that is asked for in the middle of a tile.
+// Cancellation in the middle of a tile.
 #include <atomic>
 
 #include <gtest/gtest.h>
@@ -9,11 +9,11 @@
 namespace relief {
 namespace {
 
-/// Asks for an end from the look of this number on.
-struct Stopper final : RenderObserver {
+/// Cancels after `limit` queries.
+struct Canceller final : RenderObserver {
     mutable std::atomic<int> looks{0};
     int limit;
-    explicit Stopper(int limit) : limit(limit) {}
+    explicit Canceller(int limit) : limit(limit) {}
     void on_progress(const Progress&) override {}
     bool is_cancelled() const override { return ++looks > limit; }
 };
@@ -29,16 +29,16 @@ RenderSettings make_settings(size_t cache_bytes) {
     return settings;
 }
 
-TEST(Stop, is_heeded_before_the_next_tree_and_leaves_whole_samples) {
+TEST(Cancellation, stops_before_the_next_tree_and_leaves_whole_samples) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
     for (const size_t cache_bytes : {size_t(256) << 20, size_t(0)}) {
         const RenderSettings settings = make_settings(cache_bytes);
-        Stopper never(1 << 30);
+        Canceller never(1 << 30);
         const RenderResult whole = render(rock, settings, &never);
         ASSERT_TRUE(whole.is_complete);
         ASSERT_GT(whole.statistics.bottom_built, 200u) << "nothing to stop between";
         for (const int limit : {1, 20, never.looks / 2, never.looks - 3}) {
-            Stopper observer(limit);
+            Canceller observer(limit);
             const RenderResult result = render(rock, settings, &observer);
             EXPECT_FALSE(result.is_complete) << limit;
             EXPECT_LE(result.statistics.bottom_built, uint64_t(limit));
@@ -52,7 +52,7 @@ TEST(Stop, is_heeded_before_the_next_tree_and_leaves_whole_samples) {
     }
 }
 
-TEST(Stop, takes_nothing_from_a_picture_that_is_done_by_then) {
+TEST(Cancellation, after_the_last_sample_leaves_the_picture_complete) {
     struct Late final : RenderObserver {
         std::atomic<bool> is_done{false};
         void on_progress(const Progress& progress) override { is_done = progress.fraction >= 1; }

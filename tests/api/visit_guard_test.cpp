@@ -1,6 +1,6 @@
-// What the CPU engine visits on the way of its rays, counted: work that a change adds by accident is seen
-// here on any machine, however busy. Kept figures are those of the day they were written; who lowers a count
-// writes the new one down, who must raise one says why in the commit.
+// Counts of nodes and blocks visited by the CPU engine: detects accidental extra work on any machine, however
+// busy. Update a count when a change lowers it; a change that raises one must give the reason in its commit
+// message.
 #include <gtest/gtest.h>
 
 #include <string>

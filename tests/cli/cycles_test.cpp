@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Renders with Relief what Cycles is asked for, and says what Blender says.
+/// Renders with Relief in place of Cycles, and prints what Blender prints.
 constexpr const char* kBlender =
     R"(#!/bin/sh
 while [ $# -gt 1 ]; do

@@ -1,4 +1,4 @@
-// A picture that cannot be written where it was asked for is not lost, nor is what lies there.
+// A picture that cannot be written to the requested path is not lost, nor is an existing file there.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -230,7 +230,7 @@ TEST_F(FaultyVulkan, memory_that_ends_on_the_way_costs_a_fresh_start_and_nothing
     };
     ASSERT_EQ(render_tiles("whole.exr").exit_code, 0);
     const json whole = json::parse(read("s.json"));
-    std::set<std::string> refusals; // while the tracer is made, and in the cast, when tiles are asked for
+    std::set<std::string> refusals; // while the tracer is created, and in the cast, when tiles are requested
     for (int submissions = 1; submissions <= 8; ++submissions) {
         const Environment fault("RELIEF_FAULT_MEMORY_AFTER", std::to_string(submissions));
         const CommandResult result = render_tiles("again.exr");

@@ -155,8 +155,7 @@ TEST_F(FullScreen, reads_its_groups_from_the_arguments_of_an_indirect_launch) {
     for (uint32_t i = 0; i < 3 * kRow; ++i) ASSERT_EQ(result[i], i < kRun ? 6 + i : 3);
 }
 
-/// Fragments that only complete a block read zeros, for ever, and take the loops of their neighbours on
-/// lavapipe.
+/// Helper invocations read zeros, loop forever, and use up the loop budget of their neighbours on lavapipe.
 TEST_F(FullScreen, has_no_fragments_beside_its_own) {
     constexpr uint32_t kCount = 3 * scalar::kScreenColumns * kFragmentGroup;
     Buffer next(device_, {.name = "next", .bytes = kCount * 4});

@@ -11,7 +11,7 @@
 namespace relief::vulkan::tests {
 namespace {
 
-/// Cancels when it is asked for the n-th time.
+/// Cancels at the n-th query.
 class Canceller final : public RenderObserver {
   public:
     explicit Canceller(int count) : count_(count) {}
@@ -80,7 +80,7 @@ TEST_F(EngineTest, renders_what_the_cpu_engine_renders) {
     EXPECT_GE(statistics.pairs_emitted, statistics.pairs_with_hit);
 }
 
-TEST_F(EngineTest, stops_when_asked_with_a_picture_of_whole_passes) {
+TEST_F(EngineTest, cancelled_leaves_a_picture_of_whole_passes) {
     prepare();
     Film film = make_film();
     Canceller canceller(1); // a pass of one sample, then no other
@@ -126,7 +126,7 @@ TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {
     }
 }
 
-TEST_F(EngineTest, rays_that_are_no_numbers_hit_nothing_and_leave_the_others_theirs) {
+TEST_F(EngineTest, rays_with_nan_hit_nothing_and_do_not_affect_others) {
     prepare();
     std::vector<Ray> rays;
     for (const cpu::TraceRay& ray : make_rays(600, 5))

@@ -16,7 +16,7 @@ inline int get_test_device_index() {
     return index ? std::atoi(index) : -1;
 }
 
-/// Made when first asked for: with Khronos validation and synchronisation validation.
+/// Created on first use, with Khronos validation and synchronisation validation.
 inline const Device& get_test_device() {
     static const Device device({.index = get_test_device_index(), .is_validated = true});
     return device;
@@ -32,7 +32,7 @@ class GpuTest : public testing::Test {
     static const Device& device() { return get_test_device(); }
 
   private:
-    static inline size_t told_count_ = 0; ///< messages that have failed a test
+    static inline size_t told_count_ = 0; ///< messages already reported as test failures
 };
 
 } // namespace relief::vulkan::tests

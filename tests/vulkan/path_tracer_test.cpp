@@ -124,7 +124,7 @@ TEST_P(PathTracerVariants, takes_the_samples_of_the_cpu_engine) {
             const float a = device.image.pixels[k], b = cpu.image.pixels[k];
             in_channel += !(a == b || std::fabs(a - b) <= 0.01f * std::max(1.0f, std::fabs(b)));
         }
-        // A ray that grazes an edge may go the other way, and its path with it.
+        // A ray that grazes an edge may hit on one engine only, and its path diverges.
         EXPECT_LE(in_channel, 12u) << cpu.image.channels[c];
     }
     EXPECT_EQ(device.statistics.camera_rays, cpu.statistics.camera_rays);
@@ -139,7 +139,7 @@ TEST_F(PathTracerTest, gives_the_same_picture_however_it_is_cut) {
     const Picture whole = trace_on_device(2048, 4), cut = trace_on_device(300, 4);
     EXPECT_EQ(whole.image.pixels, cut.image.pixels);
     EXPECT_EQ(whole.statistics.shadow_rays, cut.statistics.shadow_rays);
-    // Other sums in single precision.
+    // Different summation order in single precision.
     const Picture by_sample = trace_on_device(2048, 1);
     ASSERT_EQ(by_sample.image.pixels.size(), whole.image.pixels.size());
     for (size_t k = 0; k < whole.image.pixels.size(); ++k) {

@@ -49,13 +49,13 @@ inline std::shared_ptr<Texture> make_half_greys(uint32_t width, uint32_t height)
 }
 
 inline void add_lights(Scene& scene) {
-    Light sun, delta_sun, lamp, delta_lamp;
+    Light sun, delta_sun, point, delta_point;
     sun.direction = {1, -2, 0.5f}, sun.angle_degrees = 12, sun.strength = 2;
     delta_sun.direction = {-1, -1, 0}, delta_sun.angle_degrees = 0, delta_sun.color = {1, 0.5f, 0.25f};
-    lamp.type = delta_lamp.type = LightType::point;
-    lamp.position = {2, 3, 1}, lamp.radius = 0.6f, lamp.strength = 20;
-    delta_lamp.position = {-3, 2, 2}, delta_lamp.strength = 15;
-    scene.lights = {sun, delta_sun, lamp, delta_lamp};
+    point.type = delta_point.type = LightType::point;
+    point.position = {2, 3, 1}, point.radius = 0.6f, point.strength = 20;
+    delta_point.position = {-3, 2, 2}, delta_point.strength = 15;
+    scene.lights = {sun, delta_sun, point, delta_point};
     Environment environment;
     environment.texture = make_colors(48, 24, 2, 5);
     environment.rotate_degrees = 77;

@@ -20,7 +20,7 @@ namespace relief::vulkan::tests {
 namespace {
 
 constexpr uint32_t kCount = ShadingBench::kCount;
-/// Cases in which a decision may fall the other way, because the numbers that it compares are so close.
+/// Allowed number of cases whose comparisons of close values may go either way.
 constexpr uint32_t kAllowedFlips = kCount / 500;
 
 /// Largest difference of components, relative above 1.

@@ -1,4 +1,4 @@
-// Directories of tiles that rays ask for after others were made.
+// Tile directories requested after others have been built.
 #include "cast_fixture.h"
 #include "vulkan/layout/device_rays.h"
 

@@ -1,5 +1,5 @@
-// Casts on the device against the CPU engine, ray for ray: levels, biases, spaces, leaves, forms of the
-// bottom level, with and without cache, cut into chunks, rounds and waves as small as they go.
+// Casts on the device against the CPU engine, ray for ray: levels, LOD biases, spaces, leaves, forms of the
+// patch tree kernels, with and without cache, cut into chunks, rounds and waves as small as they go.
 #include <ostream>
 
 #include "cast_fixture.h"

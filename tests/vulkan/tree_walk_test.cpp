@@ -354,7 +354,7 @@ TEST_P(TreeWalks, find_the_hits_of_brute_force_and_count_as_the_host_does) {
                 run(*walk.tree, forest.mesh, {walk.traversal, kind, TreeQuery::Counting::each_ray});
             const std::string name = walk.name + (kind == Kind::any ? ", any" : ", closest");
             Answers expected = walk.run_on_host(kind, rays, roots());
-            expected.leaves = found.leaves; // none were asked for
+            expected.leaves = found.leaves; // none were requested
             expect_as_on_host(found, expected, name);
             expect_true(found, truths, kind, name);
         }

@@ -1,4 +1,4 @@
-// A device leaves out the objects that a query's mask hides, whatever it walks the scene trees by.
+// A device skips the objects hidden by a query's mask, with every scene traversal.
 #include "gpu_fixture.h"
 #include "support/choices.h"
 #include "support/ray_queries.h"

@@ -23,8 +23,8 @@
 
 namespace {
 
-/// Functions of the next layer. They are asked for when the instance or device is made: later the loader
-/// answers with the first layer again.
+/// Functions of the next layer. Queried when the instance or device is created: later the loader would return
+/// those of the first layer.
 struct InstanceFunctions {
     PFN_vkGetInstanceProcAddr get_address;
     PFN_vkCreateDevice create_device;

@@ -51,7 +51,7 @@ struct ToneResults {
 };
 
 struct SourceResults {
-    LightDraw sun, lamp, emitter;
+    LightDraw sun, point_light, emitter;
     float irradiance;
     LightSeen seen;
     Vec3 into, out_of;
@@ -198,18 +198,18 @@ FN LightSourceData make_test_source(FormulaInput from, uint kind) {
 FN SourceResults run_source(FormulaInput from) {
     Vec2 u = make_pair(from.u[10], from.u[11]);
     Vec3 position = make_triple(-from.u[9], from.u[8], from.u[7]);
-    LightSourceData lamp = make_test_source(from, kSourcePoint);
+    LightSourceData point_light = make_test_source(from, kSourcePoint);
     Vec3 to = make_triple(1.0f + from.u[0], from.u[1], from.u[2]);
     EnvironmentData e = {to, 0.6f, 0.8f, 64u, 32u, kNone};
     SourceResults r;
     r.sun = draw_sun(make_test_source(from, kSourceSun), u);
     r.sun.distance = 0.0f; // infinite, which no difference can be taken of
-    r.lamp = draw_point_light(lamp, position, u);
+    r.point_light = draw_point_light(point_light, position, u);
     float pdf = emitter_density(0.1f + from.u[3], 0.5f + from.u[4], r.sun.direction, to);
     r.emitter = draw_emitter(to, to, max(pdf, 0.1f));
     LightSourceData emitters = make_test_source(from, kSourceEmitters);
-    r.irradiance = estimate_irradiance(lamp, position) + estimate_irradiance(emitters, position);
-    r.seen = meet_light(lamp, position, normalize(lamp.center - position), 100.0f);
+    r.irradiance = estimate_irradiance(point_light, position) + estimate_irradiance(emitters, position);
+    r.seen = meet_light(point_light, position, normalize(point_light.center - position), 100.0f);
     r.into = turn_into_environment(e, to);
     r.out_of = turn_out_of_environment(e, to);
     r.density = environment_cell_density(e, from.u[5], normalize(to));
