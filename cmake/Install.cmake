@@ -70,7 +70,8 @@ if(TARGET relief)
   set(completions ${PROJECT_BINARY_DIR}/completions)
   set(script ${PROJECT_SOURCE_DIR}/cmake/make_completions.py)
   add_custom_command(OUTPUT ${completions}/relief ${completions}/_relief ${completions}/relief.fish
-    COMMAND Python3::Interpreter ${script} $<TARGET_FILE:relief> ${completions} DEPENDS relief ${script} VERBATIM)
+    COMMAND Python3::Interpreter ${script} $<TARGET_FILE:relief> ${completions}
+    DEPENDS relief $<TARGET_NAME_IF_EXISTS:relief-bench> ${script} VERBATIM)
   add_custom_target(relief_completions ALL DEPENDS ${completions}/relief)
   install(FILES ${completions}/relief DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT command)
   install(FILES ${completions}/_relief DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT command)
