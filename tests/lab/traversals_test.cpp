@@ -1,7 +1,7 @@
 // Every structure and traversal that can be chosen by name finds what the wide trees find, bit for bit.
 #include <gtest/gtest.h>
 
-#include "lab/trees/walk_trees.h"
+#include "lab/walk_trees.h"
 #include "support/casts.h"
 #include "support/choices.h"
 

@@ -11,7 +11,7 @@
 #include "formulas/exact.h"
 #include "formulas/object_ray.h"
 #include "formulas/tree.h"
-#include "lab/trees/walk_trees.h"
+#include "lab/walk_trees.h"
 #include "lab/walks/trail.h"
 #include "prepare/traversals.h"
 

@@ -7,8 +7,8 @@
 
 #include <cstring>
 
-#include "lab/trees/walk_trees.h"
 #include "lab/vulkan/lab_shaders.h"
+#include "lab/walk_trees.h"
 #include "prepare/traversals.h"
 
 namespace relief::vulkan {

@@ -1,4 +1,4 @@
-#include "lab/trees/walk_trees.h"
+#include "lab/walk_trees.h"
 
 #include <algorithm>
 #include <utility>
