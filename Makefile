@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test quick dev asan tsan fuzz coverage format clean packages release asan-slice fuzz-slice gpu-bundle
+.PHONY: help render test quick dev asan tsan fuzz coverage format clean packages peers release asan-slice fuzz-slice gpu-bundle
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -12,6 +12,7 @@ help:
 	@echo 'make render    build, and render the sample scene "pumpkin" to out/pumpkin.png'
 	@echo 'make test      build, and run all tests'
 	@echo 'make quick     build, and run the tests that take seconds: for each step of a change'
+	@echo 'make peers     tests against Blender, fetched from the Python package index (0.5 GB the first time)'
 	@echo 'make dev       optimised build with internal checks, all tests'
 	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
 	@echo 'make tsan      all tests under the thread sanitizer'
@@ -60,6 +61,10 @@ fuzz-slice: packages
 	$(call configure_and_build,release,fuzzers,-DRELIEF_FUZZ=ON)
 	ctest --preset release -R '^fuzz' -j $(JOBS)
 	cmake --preset release -DRELIEF_FUZZ=OFF
+
+peers: packages
+	$(call configure_and_build,release,peers)
+	ctest --preset peers
 
 dev: packages
 	$(call configure_and_build,dev)
