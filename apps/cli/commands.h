@@ -15,7 +15,4 @@ Command add_devices(CLI::App& verb);
 /// All arguments after `bench` go to the program relief-bench, which replaces this process.
 Command add_bench(CLI::App& verb);
 
-/// Parses the command line, runs its verb, reports errors on stderr. Returns the exit code.
-int run(int argument_count, const char* const* arguments);
-
 } // namespace relief::cli

@@ -1,3 +1,70 @@
-#include "commands.h"
+#include <string>
+#include <string_view>
+#include <vector>
 
-int main(int argument_count, char** arguments) { return relief::cli::run(argument_count, arguments); }
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "commands.h"
+#include "common/command_line.h"
+#include "relief/error.h"
+
+namespace relief::cli {
+
+namespace {
+
+struct Verb {
+    CLI::App* app;
+    Command command;
+};
+
+std::vector<Verb> add_verbs(CLI::App& app) {
+    std::vector<Verb> verbs;
+    const auto add = [&](const char* name, const char* description, Command (*add_options)(CLI::App&)) {
+        CLI::App* verb = app.add_subcommand(name, description);
+        verb->allow_extras(); // collected, so that the error can suggest the nearest option
+        verbs.push_back({verb, add_options(*verb)});
+    };
+    add("render", "Render a scene file, or a mesh alone", add_render);
+    add("inspect", "Tell what a scene, mesh or map is, what it costs, what is wrong with it", add_inspect);
+    add("convert", "Maps to other conventions, meshes and displaced surfaces to other files", add_convert);
+    add("scene", "Write a sample scene", add_scene);
+    add("compare", "Difference of two pictures; exit 7 where it is above the threshold", add_compare);
+    add("merge", "Join tiles and sample ranges of one picture", add_merge);
+    add("bench", "Measure, and compare with the figures of a paper", add_bench);
+    add("devices", "List what can render on this machine", add_devices);
+    return verbs;
+}
+
+int run_verb(CLI::App& app, const std::vector<Verb>& verbs) {
+    for (const Verb& verb : verbs) {
+        if (!verb.app->parsed()) continue;
+        if (!verb.app->get_prefix_command()) refuse_extras(*verb.app, "relief " + verb.app->get_name());
+        return verb.command();
+    }
+    const std::vector<std::string> extras = app.remaining();
+    const std::string help = "relief --help lists the commands";
+    if (extras.empty()) throw Error(ErrorKind::usage, {"no command given", "", help});
+    if (extras.front()[0] == '-') refuse_option(extras.front(), app, help);
+    std::vector<std::string_view> names;
+    for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+    const std::string hint = suggest_word(extras.front(), names);
+    throw Error(ErrorKind::usage,
+                {fmt::format("unknown command '{}'", extras.front()), "", hint.empty() ? help : hint});
+}
+
+int parse_and_run(int argument_count, const char* const* arguments) {
+    CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
+    prepare_parsing(app);
+    const std::vector<Verb> verbs = add_verbs(app);
+    if (const auto answered = parse_words(app, argument_count, arguments)) return *answered;
+    return run_verb(app, verbs);
+}
+
+} // namespace
+} // namespace relief::cli
+
+int main(int argument_count, char** arguments) {
+    return relief::cli::run_guarded([&] { return relief::cli::parse_and_run(argument_count, arguments); });
+}

@@ -106,10 +106,8 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     return get_exit_code(options, result, saved);
 }
 
-/// Calls `make` with a progress bar on stderr.
-template <class Make> RenderResult make_picture(const RenderOptions& options, const Make& make) {
-    ProgressPrinter progress(options.is_quiet ? ProgressStyle::none : options.progress);
-    return make(&progress);
+ProgressStyle get_progress_style(const RenderOptions& options) {
+    return options.is_quiet ? ProgressStyle::none : options.progress;
 }
 
 /// Warnings of the reader are printed before the render, those of the render after it.
@@ -136,8 +134,11 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
                    const Waiting& waiting) {
     catch_interrupts();
     Warner warner(scene, options.is_quiet);
-    RenderResult result = make_picture(
-        options, [&](RenderObserver* observer) { return render(std::move(scene), settings, observer); });
+    RenderResult result;
+    {
+        ProgressPrinter progress(get_progress_style(options)); // its end prints the last line
+        result = render(std::move(scene), settings, &progress);
+    }
     warner.print_rest(result.statistics.warnings);
     return finish_picture(options, settings, options.output, waiting, result);
 }
@@ -182,8 +183,11 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
-        RenderResult result =
-            make_picture(options, [&](RenderObserver* observer) { return session.render(observer); });
+        RenderResult result;
+        {
+            ProgressPrinter progress(get_progress_style(options));
+            result = session.render(&progress);
+        }
         warner.print_rest(result.statistics.warnings);
         const uint64_t camera_rays = result.statistics.camera_rays;
         const int exit_code = finish_picture(options, settings, output, waiting, result);
