@@ -10,7 +10,7 @@ import sys
 
 def read_help(program, *verb):
     """The lines `NAMES[ PLACEHOLDER][...]   description` of a help text, by the heading that they stand under."""
-    text = subprocess.run([program, *verb, "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([program, *verb, "--help-all" if verb else "--help"], capture_output=True, text=True, check=True).stdout
     heading, lines = "", []
     for line in text.splitlines():
         if line.endswith(":") and not line.startswith(" "):

@@ -93,6 +93,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
         return get_exit_code(options, result, {});
     }
     const double write_start = get_seconds();
+    add_display_entries(options.aim, output, result.image);
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
     statistics.load_s = waiting.load_s;
     statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
@@ -131,16 +132,41 @@ class Warner {
 };
 
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                   const Waiting& waiting) {
-    catch_interrupts();
-    Warner warner(scene, options.is_quiet);
+                   const std::filesystem::path& output, const Waiting& waiting, Warner& warner) {
     RenderResult result;
     {
         ProgressPrinter progress(get_progress_style(options)); // its end prints the last line
         result = render(std::move(scene), settings, &progress);
     }
     warner.print_rest(result.statistics.warnings);
-    return finish_picture(options, settings, options.output, waiting, result);
+    return finish_picture(options, settings, output, waiting, result);
+}
+
+/// One picture, or those of a turntable.
+int render_pictures(const RenderOptions& options, const RenderSettings& settings, Scene scene,
+                    Waiting waiting) {
+    catch_interrupts();
+    Warner warner(scene, options.is_quiet);
+    const int turns = options.aim.turntable;
+    if (turns == 0)
+        return render_picture(options, settings, std::move(scene), options.output, waiting, warner);
+    int exit_code = kExitDone;
+    for (int k = 0; k < turns && (exit_code == kExitDone || exit_code == kExitWarnings); ++k) {
+        Scene turned = scene;
+        turned.camera = turn_camera(scene.camera, 360.0f * float(k) / float(turns));
+        exit_code = render_picture(options, settings, std::move(turned), name_turn(options.output, k),
+                                   waiting, warner);
+        waiting = {get_seconds(), 0};
+    }
+    return exit_code;
+}
+
+/// The scene as it is rendered, for --save-scene.
+void save_aimed_scene(const RenderOptions& options, const RenderSettings& settings, Scene scene) {
+    const ImageSettings& image = settings.image;
+    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
+    save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene);
+    fmt::print("wrote {}\n", options.aim.saved_scene.string());
 }
 
 void print_edit(const EditReport& report) {
@@ -217,10 +243,14 @@ int render_input(const RenderOptions& options, double start) {
     const double load_s = get_seconds() - start;
     const std::vector<std::string> files = list_files(scene);
     keep_files(files, options.output), keep_files(files, options.statistics_file);
-    const RenderSettings settings = make_settings(options, scene.picture);
+    keep_files(files, options.aim.saved_scene);
+    RenderSettings settings = make_settings(options, scene.picture);
+    apply_background(options.aim, options.output, settings.image);
+    aim_scene(scene, options.aim.scene, float(settings.image.width) / float(settings.image.height));
+    if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const Waiting waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
-    if (!options.pixel) return render_picture(options, settings, std::move(scene), waiting);
+    if (!options.pixel) return render_pictures(options, settings, std::move(scene), waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
     if (!options.is_quiet) print_warnings(scene.warnings);
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;

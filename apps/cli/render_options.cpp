@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/command_line.h"
 #include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
@@ -178,6 +179,17 @@ void check_input(const std::filesystem::path& input) {
                                                       : "give the name of a file in it"});
 }
 
+void check_aim(const RenderOptions& o) {
+    if (o.aim.turntable > 0 && (!o.edits.empty() || o.pixel || !o.statistics_file.empty()))
+        throw Error(ErrorKind::usage, {"a turntable makes several pictures", "--turntable",
+                                       "leave out --edits, --pixel and --stats"});
+    if (o.aim.saved_scene.empty()) return;
+    if (get_lower_extension(o.aim.saved_scene) != ".json")
+        throw Error(ErrorKind::usage,
+                    {"a scene file ends in .json", o.aim.saved_scene.string(), "--save-scene FILE.json"});
+    check_text_writable(o.aim.saved_scene);
+}
+
 } // namespace
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {
@@ -185,11 +197,18 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
             "input", [&o](const std::string& text) { o.input = text; }, "scene file (.json) or mesh")
         ->type_name("SCENE|MESH");
     add_picture_options(verb, o);
+    add_aim_options(verb, o.aim);
     add_part_options(verb, o);
     add_level_options(verb, o);
     add_machine_options(verb, o);
     add_report_options(verb, o);
     add_options_of_meshes(verb, o);
+    for (const char* name :
+         {"--surface", "--lod", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
+        verb.get_option(name)->group(kResearchGroup);
+    for (const char* name : {"--filter", "--subdivision-level", "--autobump", "--no-dilate", "--type",
+                             "--frame", "--lengths", "--encoding", "--wrap"})
+        verb.get_option(name)->group(kMapDetailGroup);
 }
 
 void complete_render_options(RenderOptions& o) {
@@ -200,6 +219,8 @@ void complete_render_options(RenderOptions& o) {
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
                      o.input.string(),
                      "the scene file says this under 'meshes', 'displacements' and 'environment'"});
+    AimOptions& aim = o.aim.scene;
+    if (o.aim.turntable > 0 && is_mesh_file(o.input) && !aim.view && !aim.from) aim.frame_all = true;
     check_mesh_options(o.mesh);
     check_map_options(o.mesh);
     if (o.pixel &&
@@ -208,6 +229,7 @@ void complete_render_options(RenderOptions& o) {
         throw Error(ErrorKind::usage,
                     {"--pixel explains one pixel and makes no picture", "--pixel",
                      "leave out -o, --stats, --crop, --tile, --samples, --layers and --edits"});
+    check_aim(o);
     if (o.pixel) return;
     if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
     if (get_lower_extension(o.output) == ".exr") {

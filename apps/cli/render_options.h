@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "aim_options.h"
 #include "common/cli_app.h"
 #include "common/engine_options.h"
 #include "progress.h"
@@ -24,6 +25,7 @@ struct RenderOptions {
     std::string edits; ///< file of edits, "-": standard input; empty: none
     MeshSceneOptions mesh;
     std::vector<std::string> mesh_only; ///< given options that only meshes support
+    AimArguments aim;
     EngineOptions engine;
     RenderSettings settings; ///< from the command line; picture defaults apply where `given` is empty
     PictureDefaults given;   ///< picture settings given on the command line

@@ -26,14 +26,24 @@ void report(const std::string& where, const std::string& message, const std::str
     if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
 }
 
-/// One empty line between option groups instead of two, so that the help fits on a screen.
+/// One empty line between option groups instead of two, and of the details only under --help-all, so that the
+/// help fits on a screen.
 class HelpFormatter : public CLI::Formatter {
   public:
+    std::string make_group(std::string group, bool is_positional,
+                           std::vector<const CLI::Option*> options) const override {
+        if (!shows_all_ && (group == kResearchGroup || group == kMapDetailGroup)) return {};
+        return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+    }
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        shows_all_ = mode == CLI::AppFormatMode::All;
         std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
         for (size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
         return text;
     }
+
+  private:
+    mutable bool shows_all_ = false;
 };
 
 } // namespace
@@ -57,6 +67,7 @@ int run_guarded(const std::function<int()>& body) {
 void prepare_parsing(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.get_formatter()->column_width(30);
+    app.set_help_all_flag("--help-all", "Print all options, those for research as well");
     app.set_version_flag("--version", "relief " RELIEF_VERSION_STRING);
     app.allow_extras();
 }

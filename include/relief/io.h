@@ -64,9 +64,9 @@ struct MeshSceneOptions {
 };
 
 /// A mesh with automatic camera (from above, front; the object fills about 85 % of the height of a square or
-/// wider picture) and light. The strength of a given environment is normalised so that a white diffuse
-/// surface of the brightest orientation that the camera can see has radiance 1. Throws as load_mesh, load_map
-/// and read_image.
+/// wider picture) and light. A given environment is turned so that most light comes from the camera's left
+/// and above, and its strength is normalised so that a white diffuse surface of the brightest orientation
+/// that the camera can see has radiance 1. Throws as load_mesh, load_map and read_image.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
 
 /// A mesh in memory, displaced by `map` unless that is null, with automatic camera and light.
@@ -88,6 +88,13 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws
 /// Error{bad_input} for a map in the mesh's own tangent frames, since OBJ has no tangents.
 void save_scene(const Scene& scene, const std::filesystem::path& folder);
+
+/// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by
+/// aim_scene, as a scene file that names the files of `input`; load_scene restores the same scene. Comments
+/// say what each section means. A mesh of the scene that came from no file is written beside it. Throws as
+/// write_text_file.
+void save_scene_copy(const Scene& scene, const std::filesystem::path& input, const MeshSceneOptions& options,
+                     const std::filesystem::path& file);
 
 /// Reads all channels of the first part as floats, with data window and metadata. Throws Error{bad_input} for
 /// a file that is missing, damaged, too large or of an unknown format, Error{failed} where the module

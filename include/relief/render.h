@@ -59,6 +59,9 @@ struct ImageSettings {
     int spp = 64;                   ///< samples per pixel, [1, kMaxSamples]
     int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
+    /// Linear colour that camera rays see where they leave the scene; nullopt: the environment. Black makes
+    /// films transparent: colours are then premultiplied by A. Bounces see the environment in any case.
+    std::optional<Vec3f> background;
     Window crop;                     ///< part of the picture to render
     int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
     std::vector<std::string> layers; ///< any of depth N Ng P albedo uv id samples variance cost

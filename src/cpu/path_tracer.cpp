@@ -205,6 +205,11 @@ void TileTracer::add_backgrounds() {
         count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
+    if (depth_ == 0 && settings_.image.background) {
+        for (size_t n = 0; n < count; ++n)
+            paths_[active_[missed_[n]]].result.radiance += *settings_.image.background;
+        return;
+    }
     lights_.look_up_environment(directions_, backgrounds_);
     if (depth_ > 0) return gather_lights();
     for (size_t n = 0; n < count; ++n)

@@ -75,12 +75,12 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
     if (image.channels != first.channels)
         throw_bad(index, "its channels differ from those of part 1",
                   "render all parts with the same image.layers");
-    for (const char* key : {"relief:seed", "relief:scene_hash"})
+    for (const char* key : {"relief:seed", "relief:scene_hash", "relief:background"})
         if (metadata_or_empty(image, key) != metadata_or_empty(first, key))
             throw_bad(index,
                       fmt::format("its {} is {}, that of part 1 {}", key, metadata_or_empty(image, key),
                                   metadata_or_empty(first, key)),
-                      "parts must come from one scene and one seed");
+                      "parts must come from one scene, one seed and one background");
 }
 
 Rule find_rule(const std::string& channel) {

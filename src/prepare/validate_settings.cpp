@@ -56,6 +56,11 @@ void validate_settings(const RenderSettings& s) {
             "the picture size is out of range", fmt::format("1 to {} pixels a side", kMaxPictureSize));
     require(s.image.spp >= 1 && s.image.spp <= kMaxSamples, "the number of samples is out of range",
             fmt::format("1 to {} a pixel", kMaxSamples));
+    const auto is_colour = [](const Vec3f& c) {
+        return std::isfinite(c.x + c.y + c.z) && std::min({c.x, c.y, c.z}) >= 0;
+    };
+    require(!s.image.background || is_colour(*s.image.background), "the background is no colour",
+            "linear Rec.709, each at least 0, finite");
     require(s.image.first_sample >= 0 && s.image.first_sample <= (1 << 30),
             "the first sample is out of range", "0 to 1073741824");
     require(s.image.bounces >= 0 && s.image.bounces <= kMaxBounces, "the number of bounces is out of range",

@@ -122,6 +122,8 @@ void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples)
 scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     scalar::PathPush push{};
     lights_.describe(push);
+    push.has_background = settings_.image.background ? 1 : 0;
+    push.background = settings_.image.background.value_or(Vec3f{});
     push.capacity = capacity_;
     push.last_depth = uint32_t(settings_.image.bounces);
     push.sample_index = sample_index;

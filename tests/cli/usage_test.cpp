@@ -172,6 +172,8 @@ TEST_F(Usage, every_help_fits_on_a_screen_and_goes_to_stdout) {
         EXPECT_EQ(result.errors, "");
         EXPECT_LT(std::count(result.output.begin(), result.output.end(), '\n'), 60) << verb;
     }
+    EXPECT_FALSE(contains(run({"render", "--help"}).output, "--traversal"));
+    EXPECT_TRUE(contains(run({"render", "--help-all"}).output, "--traversal"));
     EXPECT_TRUE(contains(run({"--help"}).output, "render"));
     EXPECT_TRUE(contains(run({"--version"}).output, "relief "));
 }

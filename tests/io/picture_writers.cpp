@@ -9,7 +9,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "formulas/tonemap.h"
+#include "io/picture/display_transform.h"
 #include "io/picture/image_coders.h"
 #include "io/picture/image_output.h"
 #include "io/test_files.h"
@@ -104,11 +104,10 @@ TEST_F(PictureWriters, png_of_several_chunks_is_whole) {
     const Image read = read_image(folder_ / "a.png");
     ASSERT_EQ(read.pixels.size(), image.pixels.size());
     for (size_t i = 0; i < image.pixels.size(); i += 3) {
-        const Vec3f shown =
-            scalar::tone_map_filmic({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
-        ASSERT_NEAR(read.pixels[i], scalar::encode_srgb(shown.x), 0.6f / 255);
-        ASSERT_NEAR(read.pixels[i + 1], scalar::encode_srgb(shown.y), 0.6f / 255);
-        ASSERT_NEAR(read.pixels[i + 2], scalar::encode_srgb(shown.z), 0.6f / 255);
+        const Vec3f shown = show_colour({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]}, {});
+        ASSERT_NEAR(read.pixels[i], shown.x, 0.6f / 255);
+        ASSERT_NEAR(read.pixels[i + 1], shown.y, 0.6f / 255);
+        ASSERT_NEAR(read.pixels[i + 2], shown.z, 0.6f / 255);
     }
 }
 
@@ -130,7 +129,8 @@ TEST_F(PictureWriters, png_is_tagged_as_srgb_and_data_is_not) {
     const auto fill_row = [](int y, std::vector<uint8_t>& row) {
         for (size_t k = 0; k < row.size(); ++k) row[k] = uint8_t(size_t(y) * 16 + k);
     };
-    write_checked(folder_ / "shown.png", [&](CheckedFile& file) { encode_png(2, 3, fill_row, file); });
+    write_checked(folder_ / "shown.png",
+                  [&](CheckedFile& file) { encode_png(2, 3, PngColours::rgb, fill_row, file); });
     const auto tags = read_png_tags(folder_ / "shown.png");
     ASSERT_EQ(tags.size(), 3u);
     EXPECT_EQ(tags.at("IHDR"), std::string("\0\0\0\2\0\0\0\3\10\2\0\0\0", 13));
@@ -148,7 +148,8 @@ TEST_F(PictureWriters, png_is_tagged_as_srgb_and_data_is_not) {
 
 TEST_F(PictureWriters, png_may_be_wider_than_the_default_limit_of_libpng) {
     const auto fill_row = [](int, std::vector<uint8_t>& row) { std::fill(row.begin(), row.end(), 7); };
-    write_checked(folder_ / "a.png", [&](CheckedFile& file) { encode_png(1000001, 1, fill_row, file); });
+    write_checked(folder_ / "a.png",
+                  [&](CheckedFile& file) { encode_png(1000001, 1, PngColours::rgb, fill_row, file); });
     EXPECT_EQ(read_png_tags(folder_ / "a.png").at("IHDR").substr(0, 4), std::string("\x00\x0f\x42\x41", 4));
 }
 
@@ -158,7 +159,7 @@ TEST_F(PictureWriters, a_png_that_fails_on_the_way_is_an_error_and_leaves_nothin
             const auto fill_row = [&](int y, std::vector<uint8_t>&) {
                 if (y >= rows_that_work) throw std::runtime_error("no more rows");
             };
-            encode_png(width, 8, fill_row, file);
+            encode_png(width, 8, PngColours::rgb, fill_row, file);
         });
     };
     EXPECT_HAS(message_of([&] { write_png(0, 8); }, ErrorKind::failed), "a.png: cannot be written: ");

@@ -20,8 +20,10 @@ void encode_exr(const Texture& texture, CheckedFile& file);
 /// whole.
 template <class Value> using FillRow = std::function<void(int y, std::vector<Value>& row)>;
 
-/// Three bytes a pixel, with the tags of sRGB.
-void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
+enum class PngColours { rgb, rgba };
+/// Bytes, three or four a pixel, with the tags of sRGB.
+void encode_png(int width, int height, PngColours colours, const FillRow<uint8_t>& fill_row,
+                CheckedFile& file);
 /// Six bytes a pixel, the high one of each value first; without a tag of colour, as data.
 void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
 /// Radiance RGBE: three mantissas and a common exponent, run lengths.

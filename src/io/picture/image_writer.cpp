@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
-#include "formulas/tonemap.h"
 #include "io/file_system.h"
+#include "io/picture/display_transform.h"
 #include "io/picture/image_coders.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -56,17 +56,48 @@ FillRow<Vec3f> make_colour_rows(const Image& image) {
     };
 }
 
-FillRow<uint8_t> make_shown_rows(const Image& image) {
-    return [fill_colours = make_colour_rows(image),
-            colours = std::vector<Vec3f>(size_t(image.width))](int y, std::vector<uint8_t>& row) mutable {
-        fill_colours(y, colours);
-        uint8_t* byte = row.data();
-        for (const Vec3f& colour : colours) {
-            const Vec3f shown = scalar::tone_map_filmic(colour);
-            for (const float value : {shown.x, shown.y, shown.z})
-                *byte++ = uint8_t(scalar::encode_srgb(value) * 255.0f + 0.5f);
-        }
-    };
+/// What of a pixel is shown: of a film without background its own colour, to be laid over another.
+class ShownPixel {
+  public:
+    ShownPixel(const Image& image, const DisplaySettings& settings)
+        : settings_(settings),
+          channels_(find_colour_channels(image)),
+          alpha_channel_(image.find_channel("A")),
+          is_over_(settings.is_transparent || settings.background) {}
+
+    /// Writes three bytes, or four for a transparent film.
+    uint8_t* write(const float* pixel, uint8_t* byte) const {
+        Vec3f colour{pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
+        const float alpha = is_over_ ? std::clamp(pixel[*alpha_channel_], 0.0f, 1.0f) : 1;
+        if (alpha > 0 && alpha < 1) colour = colour * (1 / alpha);
+        Vec3f shown = show_colour(colour, settings_);
+        if (settings_.background) shown = shown * alpha + *settings_.background * (1 - alpha);
+        for (const float value : {shown.x, shown.y, shown.z}) *byte++ = to_byte(value);
+        if (settings_.is_transparent) *byte++ = to_byte(alpha);
+        return byte;
+    }
+
+  private:
+    static uint8_t to_byte(float value) { return uint8_t(value * 255.0f + 0.5f); }
+
+    DisplaySettings settings_;
+    std::array<size_t, 3> channels_;
+    std::optional<size_t> alpha_channel_;
+    bool is_over_;
+};
+
+void encode_shown_png(const Image& image, CheckedFile& stream) {
+    const DisplaySettings settings = read_display_settings(image);
+    const ShownPixel shown(image, settings);
+    encode_png(
+        image.width, image.height, settings.is_transparent ? PngColours::rgba : PngColours::rgb,
+        [&](int y, std::vector<uint8_t>& row) {
+            const size_t channels = image.channels.size();
+            const float* pixel = &image.pixels[size_t(y) * size_t(image.width) * channels];
+            uint8_t* byte = row.data();
+            for (int x = 0; x < image.width; ++x, pixel += channels) byte = shown.write(pixel, byte);
+        },
+        stream);
 }
 
 } // namespace
@@ -81,7 +112,7 @@ void write_image(const Image& image, const std::filesystem::path& file) {
         else if (extension == ".hdr")
             encode_hdr(image.width, image.height, make_colour_rows(image), stream);
         else
-            encode_png(image.width, image.height, make_shown_rows(image), stream);
+            encode_shown_png(image, stream);
     });
 }
 

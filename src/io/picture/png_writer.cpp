@@ -68,13 +68,13 @@ class PngStream {
     png_info* info_;
 };
 
-void set_header(PngStream& stream, int width, int height, int bits) {
+void set_header(PngStream& stream, int width, int height, int bits, int type) {
     constexpr size_t kChunkBytes = 1u << 16;
     png_struct* png = stream.png();
     // By default no more than a million each.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), bits, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), bits, type, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_buffer_size(png, kChunkBytes);
 }
 
@@ -97,10 +97,12 @@ void write_rows(PngStream& stream, int height, const FillRow<uint8_t>& fill_row)
 
 } // namespace
 
-void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
+void encode_png(int width, int height, PngColours colours, const FillRow<uint8_t>& fill_row,
+                CheckedFile& file) {
     PngStream stream(file);
     stream.run([&] {
-        set_header(stream, width, height, 8);
+        set_header(stream, width, height, 8,
+                   colours == PngColours::rgba ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB);
         tag_as_srgb(stream);
     });
     write_rows(stream, height, fill_row);
@@ -108,7 +110,7 @@ void encode_png(int width, int height, const FillRow<uint8_t>& fill_row, Checked
 
 void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
     PngStream stream(file);
-    stream.run([&] { set_header(stream, width, height, 16); });
+    stream.run([&] { set_header(stream, width, height, 16, PNG_COLOR_TYPE_RGB); });
     write_rows(stream, height, fill_row);
 }
 

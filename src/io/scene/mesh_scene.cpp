@@ -1,16 +1,11 @@
 // load_mesh_scene: a camera that shows the whole object, a material and a light, for a mesh that comes alone.
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "formulas/bsdf.h"
-#include "formulas/environment.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
-#include "io/scene/frame_object.h"
+#include "io/scene/frame_scene.h"
+#include "io/scene/place_sky.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/subdivision_json.h"
 #include "relief/error.h"
@@ -20,50 +15,10 @@ namespace relief {
 
 namespace {
 
-/// Normals of surfaces that the camera sees, spread evenly.
-std::vector<Vec3f> make_visible_normals(const Vec3f& view) {
-    std::vector<Vec3f> normals = {view};
-    constexpr int kCount = 64;
-    constexpr float kGoldenAngle = 2.3999632f;
-    for (int k = 0; k < kCount; ++k) {
-        const float y = 1 - 2 * (float(k) + 0.5f) / kCount, radius = std::sqrt(1 - y * y);
-        const float turn = kGoldenAngle * float(k);
-        const Vec3f normal{radius * std::sin(turn), y, radius * std::cos(turn)};
-        if (dot(normal, view) > 0.2f) normals.push_back(normal);
-    }
-    return normals;
-}
-
-/// Radiance of the brightest of all white diffuse surfaces that the camera sees under an image of a sky.
-float measure_brightness(const Texture& sky, const Vec3f& view) {
-    const std::vector<Vec3f> normals = make_visible_normals(view);
-    std::vector<double> received(normals.size());
-    double weights = 0;
-    const uint32_t columns = std::max(sky.width, 128u), rows = std::max(sky.height, 64u);
-    for (uint32_t row = 0; row < rows; ++row) {
-        const float v = (float(row) + 0.5f) / float(rows);
-        const uint32_t y = uint32_t(uint64_t(row) * sky.height / rows);
-        const double weight = std::sin(std::numbers::pi * double(v));
-        weights += weight * columns;
-        for (uint32_t column = 0; column < columns; ++column) {
-            const uint32_t x = uint32_t(uint64_t(column) * sky.width / columns);
-            const Vec3f radiance{get_texel(sky, x, y, 0), get_texel(sky, x, y, 1), get_texel(sky, x, y, 2)};
-            const double light = weight * double(scalar::luminance(radiance));
-            const Vec3f direction =
-                scalar::latlong_to_direction(Vec2f{(float(column) + 0.5f) / float(columns), v});
-            for (size_t k = 0; k < normals.size(); ++k)
-                received[k] += light * double(std::max(0.0f, dot(direction, normals[k])));
-        }
-    }
-    // The mean of max(0, cos) over the sphere is 1/4.
-    return float(4 * *std::max_element(received.begin(), received.end()) / weights);
-}
-
 void add_image_light(Scene& scene, std::shared_ptr<const Texture> sky, const Vec3f& view) {
-    constexpr float kWhite = 1;
+    const SkyPlacement placement = place_sky(*sky, view);
     Environment environment;
-    const float brightness = measure_brightness(*sky, view);
-    if (brightness > 0) environment.strength = kWhite / brightness;
+    environment.strength = placement.strength, environment.rotate_degrees = placement.rotate_degrees;
     environment.texture = std::move(sky);
     scene.environment = std::move(environment);
 }
@@ -126,11 +81,11 @@ Scene make_clay_scene(Mesh mesh) {
 }
 
 /// Sets the camera; returns the way from the object to it.
-Vec3f frame_scene(Scene& scene) {
+Vec3f place_camera(Scene& scene) {
     validate_scene(scene); // framing follows the indices of the mesh and the uvs into the map
-    scene.camera = frame_object(scene.meshes.front(),
-                                scene.displacements.empty() ? nullptr : &scene.displacements.front());
-    return normalize(scene.camera.from - scene.camera.to);
+    const Vec3f view = choose_view(scene, View::automatic);
+    scene.camera = frame_scene(scene, Camera{}, view, 1, Framing::still);
+    return view;
 }
 
 Mesh make_map_plane() {
@@ -152,7 +107,7 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     AssetCache assets("");
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
-    const Vec3f view = frame_scene(scene);
+    const Vec3f view = place_camera(scene);
     if (options.environment.empty()) {
         add_default_light(scene, view);
     } else {
@@ -170,7 +125,7 @@ Scene make_mesh_scene(Mesh mesh, const Displacement* map) {
         scene.displacements.push_back(*map);
         scene.objects.front().displacement = 0;
     }
-    add_default_light(scene, frame_scene(scene));
+    add_default_light(scene, place_camera(scene));
     validate_scene(scene);
     return scene;
 }

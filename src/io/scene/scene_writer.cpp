@@ -10,6 +10,7 @@
 #include "io/picture/image_coders.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/json_node.h"
+#include "io/scene/scene_values.h"
 #include "io/scene/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -17,10 +18,6 @@
 namespace relief {
 
 namespace {
-
-/// The shortest decimal that reads back as the same float.
-Json to_json(float value) { return std::stod(fmt::format("{}", value)); }
-Json to_json(const Vec3f& v) { return Json::array({to_json(v.x), to_json(v.y), to_json(v.z)}); }
 
 /// Gives every item a name of its own, close to the one it has.
 class Namer {
@@ -95,25 +92,10 @@ class SceneWriter {
     }
 
     void add_picture() {
-        Json node = Json::object();
-        const PictureDefaults& picture = scene_.picture;
-        if (picture.width) node["width"] = *picture.width;
-        if (picture.height) node["height"] = *picture.height;
-        if (picture.spp) node["spp"] = *picture.spp;
-        if (picture.bounces) node["bounces"] = *picture.bounces;
-        if (picture.seed) node["seed"] = *picture.seed;
-        if (!node.empty()) root_["render"] = node;
+        if (Json node = write_picture(scene_.picture); !node.empty()) root_["render"] = std::move(node);
     }
 
-    void add_camera() {
-        const Camera& camera = scene_.camera;
-        root_["camera"] = {{"from", to_json(camera.from)},
-                           {"to", to_json(camera.to)},
-                           {"up", to_json(camera.up)},
-                           {"fov_degrees", to_json(camera.fov_degrees)},
-                           {"aperture_radius", to_json(camera.aperture_radius)},
-                           {"focus_distance", to_json(camera.focus_distance)}};
-    }
+    void add_camera() { root_["camera"] = write_camera(scene_.camera); }
 
     void add_environment() {
         if (!scene_.environment) return;
@@ -213,21 +195,7 @@ class SceneWriter {
     void add_lights() {
         if (scene_.lights.empty()) return;
         root_["lights"] = Json::array();
-        for (const Light& light : scene_.lights) {
-            Json node;
-            if (light.type == LightType::sun) {
-                node = {{"type", "sun"},
-                        {"direction", to_json(light.direction)},
-                        {"angle_degrees", to_json(light.angle_degrees)}};
-            } else {
-                node = {{"type", "point"},
-                        {"position", to_json(light.position)},
-                        {"radius", to_json(light.radius)}};
-            }
-            node["color"] = to_json(light.color);
-            node["strength"] = to_json(light.strength);
-            root_["lights"].push_back(node);
-        }
+        for (const Light& light : scene_.lights) root_["lights"].push_back(write_light(light));
     }
 
     const Scene& scene_;

@@ -68,6 +68,8 @@ struct PathPush {
     uint source_count;
     uint emitter_count, emitter_range_count;
     uint has_environment;
+    uint has_background; ///< camera rays see `background` in place of the environment
+    Vec3 background;
     EnvironmentData environment;
 };
 

@@ -36,7 +36,10 @@ void main() {
         PathData path = paths[path_index];
         float distance = is_hit(hit) ? hit.t : make_infinity();
         paths[path_index].radiance = path.radiance + path.throughput * gather_light(path, direction, distance);
-    } else if (!is_hit(hit) && push.has_environment != 0u) {
-        paths[path_index].radiance += environment_radiance(push.environment, direction);
+    } else if (!is_hit(hit)) {
+        if (push.has_background != 0u)
+            paths[path_index].radiance += push.background;
+        else if (push.has_environment != 0u)
+            paths[path_index].radiance += environment_radiance(push.environment, direction);
     }
 }

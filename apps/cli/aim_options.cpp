@@ -1,0 +1,160 @@
+#include "aim_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "common/values.h"
+
+namespace relief::cli {
+
+namespace {
+
+const char* const kGroup = "Camera, light and display";
+constexpr float kLargest = 1e18f;
+
+template <class Parse>
+void add(CLI::App& verb, const std::string& name, const char* value, const char* help, Parse parse) {
+    verb.add_option_function<std::string>(name, parse, help)->type_name(value)->group(kGroup);
+}
+
+Vec3f parse_point(const std::string& option, const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 3) refuse_value(option, text, "x,y,z");
+    std::array<float, 3> values;
+    for (size_t k = 0; k < 3; ++k) values[k] = float(parse_number(option, parts[k], -kLargest, kLargest));
+    return {values[0], values[1], values[2]};
+}
+
+SunDirection parse_sun(const std::string& text) {
+    constexpr std::string_view kSun = "sun:";
+    const std::vector<std::string> parts =
+        text.starts_with(kSun) ? split(text.substr(kSun.size()), ',') : std::vector<std::string>();
+    if (parts.size() != 2) refuse_value("--light", text, "sun:AZIMUTH,ELEVATION in degrees");
+    return {float(parse_number("--light", parts[0], -360, 360)),
+            float(parse_number("--light", parts[1], -90, 90))};
+}
+
+std::string parse_background(const std::string& text) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames = {
+        {{"transparent", "transparent"},
+         {"black", "#000000"},
+         {"white", "#ffffff"},
+         {"gray", "#808080"},
+         {"grey", "#808080"}}};
+    for (const auto& [name, value] : kNames)
+        if (text == name) return std::string(value);
+    const auto is_digit = [](unsigned char c) { return std::isxdigit(c) != 0; };
+    if (text.size() != 7 || text[0] != '#' || !std::all_of(text.begin() + 1, text.end(), is_digit))
+        refuse_value("--background", text, "transparent, black, white, gray or '#rrggbb'");
+    return text;
+}
+
+float decode_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+Vec3f decode_colour(const std::string& text) {
+    const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
+    const auto channel = [&](int shift) { return decode_srgb(float(rgb >> shift & 255) / 255); };
+    return {channel(16), channel(8), channel(0)};
+}
+
+bool is_png(const std::filesystem::path& file) { return get_lower_extension(file) == ".png"; }
+
+void add_camera_options(CLI::App& verb, AimArguments& a) {
+    AimOptions& scene = a.scene;
+    add(verb, "--from", "x,y,z", "position of the camera",
+        [&scene](const std::string& text) { scene.from = parse_point("--from", text); });
+    add(verb, "--to", "x,y,z", "what it looks at; default with --from: the middle of the scene",
+        [&scene](const std::string& text) { scene.to = parse_point("--to", text); });
+    add(verb, "--fov", "D", "its vertical angle, degrees", [&scene](const std::string& text) {
+        scene.fov_degrees = float(parse_number("--fov", text, 0.001, 179.999));
+    });
+    add(verb, "--view", "NAME", "all objects from front, back, left, right, top or three-quarter",
+        [&scene](const std::string& text) {
+            constexpr std::array<std::pair<std::string_view, View>, 6> kViews = {
+                {{"front", View::front},
+                 {"back", View::back},
+                 {"left", View::left},
+                 {"right", View::right},
+                 {"top", View::top},
+                 {"three-quarter", View::three_quarter}}};
+            scene.view = parse_word("--view", text, kViews);
+        });
+    verb.add_flag("--frame-all", scene.frame_all, "all objects from where the camera looks")->group(kGroup);
+    add(verb, "--turntable", "N", "N pictures of a turn of the camera: FILE.0001.png ...",
+        [&a](const std::string& text) {
+            a.turntable = int(parse_integer("--turntable", text, 1, 100000));
+            a.scene.is_turntable = true;
+        });
+}
+
+void add_light_options(CLI::App& verb, AimArguments& a) {
+    AimOptions& scene = a.scene;
+    add(verb, "--env-rotate", "D", "turns the environment about +y, degrees",
+        [&scene](const std::string& text) {
+            scene.rotate_degrees = float(parse_number("--env-rotate", text, -360, 360));
+        });
+    add(verb, "--env-strength", "F", "factor on the environment's radiance",
+        [&scene](const std::string& text) {
+            scene.strength = float(parse_number("--env-strength", text, 0, 1e9));
+        });
+    add(verb, "--light", "sun:AZ,EL",
+        "a sun in place of the scene's: azimuth from +z to +x, elevation, degrees",
+        [&scene](const std::string& text) { scene.suns.push_back(parse_sun(text)); });
+    verb.add_flag("--ground", scene.has_ground, "a plane under the lowest point")->group(kGroup);
+}
+
+void add_display_options(CLI::App& verb, AimArguments& a) {
+    add(verb, "--background", "COLOR", "behind the objects: '#rrggbb', black, white, gray, transparent",
+        [&a](const std::string& text) { a.background = parse_background(text); });
+    add(verb, "--exposure", "EV", "of PNG: stops brighter, or auto", [&a](const std::string& text) {
+        if (text != "auto") parse_number("--exposure", text, -32, 32);
+        a.exposure = text;
+    });
+    add(verb, "--display", "NAME", "of PNG: agx (default), filmic or standard (clipped)",
+        [&a](const std::string& text) {
+            constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
+                {{"agx", "agx"}, {"filmic", "filmic"}, {"standard", "standard"}}};
+            a.display = parse_word("--display", text, kNames);
+        });
+    add(verb, "--save-scene", "FILE", "write the scene as it is rendered, to go on editing: FILE.json",
+        [&a](const std::string& text) { a.saved_scene = text; });
+}
+
+} // namespace
+
+void add_aim_options(CLI::App& verb, AimArguments& arguments) {
+    add_camera_options(verb, arguments);
+    add_light_options(verb, arguments);
+    add_display_options(verb, arguments);
+}
+
+void apply_background(const AimArguments& arguments, const std::filesystem::path& output,
+                      ImageSettings& image) {
+    if (get_lower_extension(output) == ".hdr" && (!arguments.exposure.empty() || !arguments.display.empty()))
+        throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
+                                       "--exposure and --display go with .png and .exr"});
+    if (arguments.background.empty()) return;
+    // A PNG is laid over its colour after the tone curve, so that the colour is the one that was named.
+    const bool is_over = arguments.background == "transparent" || is_png(output);
+    image.background = is_over ? Vec3f{} : decode_colour(arguments.background);
+}
+
+void add_display_entries(const AimArguments& arguments, const std::filesystem::path& output, Image& image) {
+    if (!arguments.exposure.empty()) image.metadata["relief:exposure"] = arguments.exposure;
+    if (!arguments.display.empty()) image.metadata["relief:display"] = arguments.display;
+    if (arguments.background.empty()) return;
+    const bool is_over = arguments.background == "transparent" || is_png(output);
+    image.metadata["relief:background"] = is_over ? arguments.background : "linear " + arguments.background;
+}
+
+std::filesystem::path name_turn(const std::filesystem::path& output, int index) {
+    std::filesystem::path name = output;
+    return name.replace_filename(
+        fmt::format("{}.{:04}{}", output.stem().string(), index + 1, output.extension().string()));
+}
+
+} // namespace relief::cli

@@ -1,0 +1,46 @@
+// Camera and lights of a scene chosen from what is in it. In library relief_io.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Sides that a scene is seen from. `automatic`: bodies from above their front, flat ones from the side that
+/// they face. The others are axes of the world: `front` looks along -z, `right` along -x, `top` along -y; of
+/// a mesh alone, front is the side that the body faces.
+enum class View { automatic, front, back, left, right, top, three_quarter };
+
+/// Where light comes from, degrees: `azimuth` about +y from +z towards +x, `elevation` above the horizon.
+struct SunDirection {
+    float azimuth = 0, elevation = 45;
+    friend bool operator==(const SunDirection&, const SunDirection&) = default;
+};
+
+/// What is to be changed of a scene; all empty: nothing.
+struct AimOptions {
+    std::optional<Vec3f> from,
+        to; ///< of the camera; without `to` the camera looks at the middle of the scene
+    std::optional<float> fov_degrees;    ///< vertical, in (0, 180)
+    std::optional<View> view;            ///< also frames all objects
+    bool is_turntable = false;           ///< framed objects stay in the picture through a whole turn_camera
+    bool frame_all = false;              ///< the camera keeps its direction and shows all objects
+    std::optional<float> rotate_degrees; ///< of the environment
+    std::optional<float> strength;       ///< of the environment
+    std::vector<SunDirection> suns;      ///< instead of the suns of the scene
+    bool has_ground = false;             ///< a wide plane under the lowest point
+};
+
+/// Applies `options`. `aspect` is width / height of the picture: framed objects take about 85 % of its
+/// height, or of its width. Throws Error{bad_input} for a scene that render() refuses, Error{usage} where the
+/// scene has no environment to change, or nothing to frame. Scans about a quarter of a million samples where
+/// it frames.
+void aim_scene(Scene& scene, const AimOptions& options, float aspect);
+
+/// The camera after a turn about its up axis through `camera.to`; the environment and lights stay.
+Camera turn_camera(const Camera& camera, float degrees);
+
+} // namespace relief

@@ -1,0 +1,153 @@
+// aim_scene and turn_camera.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "base/content_hash.h"
+#include "io/scene/frame_scene.h"
+#include "math/vec.h"
+#include "relief/aim.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+constexpr float kRadians = std::numbers::pi_v<float> / 180;
+
+void require_objects(const Scene& scene) {
+    if (scene.objects.empty())
+        throw Error(ErrorKind::usage, {"the scene has no objects to frame", scene.source,
+                                       "give a position of the camera: from, to"});
+}
+
+void aim_camera(Scene& scene, const AimOptions& options, float aspect) {
+    Camera camera = scene.camera;
+    if (options.fov_degrees) camera.fov_degrees = *options.fov_degrees;
+    if (options.view || options.frame_all) {
+        require_objects(scene);
+        const Vec3f back = camera.from - camera.to;
+        const Vec3f view = options.view       ? choose_view(scene, *options.view)
+                           : length(back) > 0 ? normalize(back)
+                                              : choose_view(scene, View::automatic);
+        if (options.view) camera.up = {0, 1, 0};
+        camera =
+            frame_scene(scene, camera, view, aspect, options.is_turntable ? Framing::turn : Framing::still);
+    }
+    if (!options.from && !options.to) {
+        scene.camera = camera;
+        return;
+    }
+    if (options.from) camera.from = *options.from;
+    if (options.to) {
+        camera.to = *options.to;
+    } else {
+        require_objects(scene);
+        camera.to = measure_scene(scene).center();
+    }
+    const float distance = length(camera.to - camera.from);
+    if (!(distance > 0))
+        throw Error(ErrorKind::usage,
+                    {"the camera would look at its own position",
+                     fmt::format("from {},{},{}", camera.from.x, camera.from.y, camera.from.z),
+                     "from and to must differ"});
+    camera.focus_distance = distance;
+    if (length(cross(camera.up, camera.to - camera.from)) <= 1e-6f * distance) camera.up = {0, 0, -1};
+    scene.camera = camera;
+}
+
+void aim_environment(Scene& scene, const AimOptions& options) {
+    if (!options.rotate_degrees && !options.strength) return;
+    if (!scene.environment)
+        throw Error(ErrorKind::usage, {"the scene has no environment to turn or to scale", scene.source,
+                                       "its file says it under 'environment'"});
+    if (options.rotate_degrees) scene.environment->rotate_degrees = *options.rotate_degrees;
+    if (options.strength) scene.environment->strength = *options.strength;
+}
+
+void replace_suns(Scene& scene, const std::vector<SunDirection>& suns) {
+    if (suns.empty()) return;
+    Light sun;
+    sun.angle_degrees = 3, sun.color = {1.0f, 0.95f, 0.88f}, sun.strength = 2.2f;
+    const auto is_sun = [](const Light& light) { return light.type == LightType::sun; };
+    if (const auto found = std::find_if(scene.lights.begin(), scene.lights.end(), is_sun);
+        found != scene.lights.end())
+        sun = *found; // keeps its colour and strength
+    std::erase_if(scene.lights, is_sun);
+    for (const SunDirection& direction : suns) {
+        const float azimuth = direction.azimuth * kRadians, elevation = direction.elevation * kRadians;
+        sun.direction = Vec3f{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                              std::cos(azimuth) * std::cos(elevation)} *
+                        -1.0f;
+        scene.lights.push_back(sun);
+    }
+}
+
+/// A quad under the lowest point, so wide that its rim is far away.
+void add_ground(Scene& scene) {
+    require_objects(scene);
+    const Box box = measure_scene(scene);
+    const Vec3f size = box.extent(), middle = box.center();
+    const float radius = 20 * std::max({size.x, size.y, size.z});
+    const float below = 1e-4f * std::max({size.x, size.y, size.z}); // samples may miss the lowest point
+    Mesh plane;
+    plane.name = "ground";
+    for (const auto& [x, z] : {std::pair{-1, 1}, {1, 1}, {1, -1}, {-1, -1}})
+        plane.positions.push_back(
+            {middle.x + float(x) * radius, box.lower.y - below, middle.z + float(z) * radius});
+    plane.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    plane.face_sizes = {4};
+    plane.position_indices = plane.uv_indices = {0, 1, 2, 3};
+    Material material;
+    material.name = "ground";
+    material.base_color = {0.5f, 0.5f, 0.5f}, material.roughness = 0.8f;
+    Object object;
+    object.name = "ground";
+    object.mesh = uint32_t(scene.meshes.size()), object.material = uint32_t(scene.materials.size());
+    scene.meshes.push_back(std::move(plane));
+    scene.materials.push_back(std::move(material));
+    scene.objects.push_back(std::move(object));
+}
+
+/// What the options left in the scene.
+uint64_t hash_aimed(const Scene& scene, bool has_ground) {
+    ContentHash hash(scene.hash);
+    const auto add = [&](const Vec3f& v) { hash.add(fmt::format("{} {} {};", v.x, v.y, v.z)); };
+    const Camera& camera = scene.camera;
+    add(camera.from), add(camera.to), add(camera.up);
+    add({camera.fov_degrees, camera.aperture_radius, camera.focus_distance});
+    if (scene.environment) add({scene.environment->strength, scene.environment->rotate_degrees, 0});
+    for (const Light& light : scene.lights) add(light.direction);
+    if (has_ground) hash.add("ground");
+    return hash.value();
+}
+
+} // namespace
+
+void aim_scene(Scene& scene, const AimOptions& options, float aspect) {
+    const bool is_changed = options.from || options.to || options.fov_degrees || options.view ||
+                            options.frame_all || options.rotate_degrees || options.strength ||
+                            !options.suns.empty() || options.has_ground;
+    if (!is_changed) return;
+    validate_scene(scene); // framing follows the indices of the meshes and the uvs into the maps
+    aim_camera(scene, options, aspect);
+    aim_environment(scene, options);
+    replace_suns(scene, options.suns);
+    if (options.has_ground) add_ground(scene);
+    validate_scene(scene);
+    if (scene.hash != 0) scene.hash = hash_aimed(scene, options.has_ground);
+}
+
+Camera turn_camera(const Camera& camera, float degrees) {
+    const Vec3f axis = normalize(camera.up), arm = camera.from - camera.to;
+    const float cosine = std::cos(degrees * kRadians), sine = std::sin(degrees * kRadians);
+    Camera turned = camera;
+    // Rodrigues' rotation
+    turned.from = camera.to + arm * cosine + cross(axis, arm) * sine + axis * (dot(axis, arm) * (1 - cosine));
+    return turned;
+}
+
+} // namespace relief

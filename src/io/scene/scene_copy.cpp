@@ -1,0 +1,181 @@
+// save_scene_copy: the scene that is rendered as a scene file that names the files it was read from.
+#include <array>
+#include <cctype>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/file_system.h"
+#include "io/mesh/mesh_writer.h"
+#include "io/scene/scene_values.h"
+#include "io/scene/subdivision_json.h"
+#include "relief/error.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each section is for: written above it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kComments = {
+    {{"render", "Size in pixels, samples a pixel, path length. Options of the command win over these."},
+     {"camera",
+      "Position, target and up axis in scene units; vertical angle; radius and distance for depth of field."},
+     {"environment", "A latitude-longitude picture or a colour; strength is a factor on its radiance."},
+     {"materials", "base_color is linear, 0 to 1; roughness and metallic 0 to 1; ior 1 has no coat."},
+     {"displacements", "(value - midlevel) * scale, channel by channel, along the axes in this order."},
+     {"meshes", "Paths are relative to this file."},
+     {"objects", "A mesh with its displacement, material and transform."},
+     {"lights",
+      "sun: direction in which its light travels, angle of its disc; point: position and radius."}}};
+
+/// `file`, read from `folder`, as it is named from the folder of the copy.
+std::string move_path(const std::string& file, const fs::path& folder, const fs::path& copy_folder) {
+    const fs::path path(file);
+    if (path.is_absolute()) return file;
+    return fs::absolute(folder / path)
+        .lexically_relative(fs::absolute(copy_folder).lexically_normal())
+        .generic_string();
+}
+
+/// Every file that a section names.
+void move_paths(Json& node, const fs::path& folder, const fs::path& copy_folder) {
+    for (auto& [key, value] : node.items()) {
+        if (value.is_object())
+            move_paths(value, folder, copy_folder);
+        else if (value.is_string() && (key == "file" || key.ends_with("_texture")))
+            value = move_path(value.get<std::string>(), folder, copy_folder);
+    }
+}
+
+Json write_map_options(const MapOptions& map, const std::string& file) {
+    Json node;
+    node["file"] = file;
+    if (!map.preset.empty()) node["preset"] = map.preset;
+    const std::pair<const char*, const std::optional<std::string>*> texts[] = {
+        {"type", &map.type},       {"space", &map.space},       {"axes", &map.axes}, {"frame", &map.frame},
+        {"lengths", &map.lengths}, {"encoding", &map.encoding}, {"wrap", &map.wrap}, {"filter", &map.filter}};
+    for (const auto& [key, text] : texts)
+        if (*text) node[key] = **text;
+    if (map.midlevel) node["midlevel"] = to_json(*map.midlevel);
+    if (map.scale) node["scale"] = to_json(*map.scale);
+    if (map.flip_v) node["flip_v"] = true;
+    if (!map.dilate) node["dilate"] = false;
+    if (map.autobump) node["autobump"] = true;
+    return node;
+}
+
+/// Sections of a mesh that came alone.
+Json write_mesh_scene(const Scene& scene, const MeshSceneOptions& options, const fs::path& folder) {
+    const auto move = [&](const fs::path& file) { return move_path(file.string(), ".", folder); };
+    Json root;
+    const Material& clay = scene.materials.front();
+    root["materials"][clay.name] = {{"base_color", to_json(clay.base_color)},
+                                    {"roughness", to_json(clay.roughness)}};
+    Json object = {{"name", scene.objects.front().name}, {"mesh", "mesh"}};
+    if (!options.displacement_map.empty()) {
+        root["displacements"]["map"] = write_map_options(options.map, move(options.displacement_map));
+        object["displacement"] = "map";
+    }
+    object["material"] = clay.name;
+    root["meshes"]["mesh"]["file"] = move(scene.meshes.front().source);
+    if (options.subdivision) {
+        Json& subdivision = root["meshes"]["mesh"]["subdivision"];
+        subdivision["scheme"] = *options.subdivision;
+        if (options.subdivision_level) subdivision["level"] = *options.subdivision_level;
+    }
+    root["objects"] = Json::array({object});
+    if (!options.environment.empty()) root["environment"]["file"] = move(options.environment);
+    return root;
+}
+
+/// A mesh that was not read from a file is written beside the scene.
+void add_ground(const Scene& scene, const fs::path& file, Json& root) {
+    const Object& object = scene.objects.back();
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (!mesh.source.empty()) return;
+    const Material& material = scene.materials[object.material];
+    const fs::path mesh_file = file.stem().string() + "_" + mesh.name + ".obj";
+    write_text_file(file.parent_path() / mesh_file, format_obj(mesh));
+    root["materials"][material.name] = {{"base_color", to_json(material.base_color)},
+                                        {"roughness", to_json(material.roughness)}};
+    root["meshes"][mesh.name]["file"] = mesh_file.string();
+    root["objects"].push_back({{"name", object.name}, {"mesh", mesh.name}, {"material", material.name}});
+}
+
+/// What options may have changed.
+void update_values(const Scene& scene, Json& root) {
+    if (Json node = write_picture(scene.picture); !node.empty()) root["render"] = std::move(node);
+    root["camera"] = write_camera(scene.camera);
+    if (scene.environment) {
+        Json& node = root["environment"];
+        node["color"] = to_json(scene.environment->color);
+        node["strength"] = to_json(scene.environment->strength);
+        node["rotate_degrees"] = to_json(scene.environment->rotate_degrees);
+    }
+    root["lights"] = Json::array();
+    for (const Light& light : scene.lights) root["lights"].push_back(write_light(light));
+}
+
+/// Vectors on one line.
+std::string join_numbers(const std::string& text) {
+    std::string result;
+    for (size_t k = 0; k < text.size(); ++k) {
+        const size_t end = text[k] == '[' ? text.find(']', k) : std::string::npos;
+        if (end == std::string::npos || text.find_first_of("{[\"", k + 1) < end) {
+            result += text[k];
+            continue;
+        }
+        for (; k < end; ++k) {
+            if (text[k] == '\n' || text[k] == ' ') continue;
+            result += text[k];
+            if (text[k] == ',') result += ' ';
+        }
+        result += ']';
+    }
+    return result;
+}
+
+std::string indent(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        result += c;
+        if (c == '\n') result += "  ";
+    }
+    return result;
+}
+
+std::string format_commented(const Json& root) {
+    std::string text = "// A scene of Relief: docs/formats.md says what each key means.\n{\n  \"version\": 1";
+    for (const auto& [key, comment] : kComments)
+        if (root.contains(key) && !root[std::string(key)].empty())
+            text += fmt::format(",\n\n  // {}\n  \"{}\": {}", comment, key,
+                                indent(join_numbers(root[std::string(key)].dump(2))));
+    return text + "\n}\n";
+}
+
+} // namespace
+
+void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneOptions& options,
+                     const fs::path& file) {
+    validate_scene(scene);
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    Json root;
+    if (is_mesh_file(input)) {
+        root = write_mesh_scene(scene, options, folder);
+    } else {
+        root = parse_json(read_file_bytes(input), input.string());
+        for (const char* section : {"environment", "materials", "displacements", "meshes"})
+            if (root.contains(section))
+                move_paths(root[section], input.has_parent_path() ? input.parent_path() : ".", folder);
+    }
+    update_values(scene, root);
+    if (!scene.objects.empty()) add_ground(scene, file, root);
+    write_text_file(file, format_commented(root));
+}
+
+} // namespace relief

@@ -1,0 +1,43 @@
+#include "io/scene/scene_values.h"
+
+#include <fmt/format.h>
+
+namespace relief {
+
+Json to_json(float value) { return std::stod(fmt::format("{}", value)); }
+Json to_json(const Vec3f& v) { return Json::array({to_json(v.x), to_json(v.y), to_json(v.z)}); }
+
+Json write_picture(const PictureDefaults& picture) {
+    Json node = Json::object();
+    if (picture.width) node["width"] = *picture.width;
+    if (picture.height) node["height"] = *picture.height;
+    if (picture.spp) node["spp"] = *picture.spp;
+    if (picture.bounces) node["bounces"] = *picture.bounces;
+    if (picture.seed) node["seed"] = *picture.seed;
+    return node;
+}
+
+Json write_camera(const Camera& camera) {
+    return {{"from", to_json(camera.from)},
+            {"to", to_json(camera.to)},
+            {"up", to_json(camera.up)},
+            {"fov_degrees", to_json(camera.fov_degrees)},
+            {"aperture_radius", to_json(camera.aperture_radius)},
+            {"focus_distance", to_json(camera.focus_distance)}};
+}
+
+Json write_light(const Light& light) {
+    Json node;
+    if (light.type == LightType::sun) {
+        node = {{"type", "sun"},
+                {"direction", to_json(light.direction)},
+                {"angle_degrees", to_json(light.angle_degrees)}};
+    } else {
+        node = {{"type", "point"}, {"position", to_json(light.position)}, {"radius", to_json(light.radius)}};
+    }
+    node["color"] = to_json(light.color);
+    node["strength"] = to_json(light.strength);
+    return node;
+}
+
+} // namespace relief

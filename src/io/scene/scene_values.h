@@ -1,0 +1,18 @@
+// Sections of a scene file that need no other files, as JSON.
+#pragma once
+
+#include "io/scene/json_node.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// The shortest decimals that read back as the same floats.
+Json to_json(float value);
+Json to_json(const Vec3f& v);
+
+/// What is set of it; an empty object where nothing is.
+Json write_picture(const PictureDefaults& picture);
+Json write_camera(const Camera& camera);
+Json write_light(const Light& light);
+
+} // namespace relief

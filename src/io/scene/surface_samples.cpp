@@ -1,0 +1,119 @@
+#include "io/scene/surface_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/scene/asset_cache.h"
+#include "math/affine.h"
+
+namespace relief {
+
+namespace {
+
+/// Corners of one face, as positions and uvs, and its flat frame.
+struct FaceFrame {
+    std::array<Vec3f, 4> positions;
+    std::array<Vec2f, 4> uvs;
+    Vec3f t, b, n;
+};
+
+FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size, FrameLengths lengths) {
+    FaceFrame face;
+    for (size_t k = 0; k < 4; ++k) {
+        const size_t corner = first + std::min<size_t>(k, size - 1);
+        face.positions[k] = mesh.positions[mesh.position_indices[corner]];
+        if (!mesh.uv_indices.empty()) face.uvs[k] = mesh.uvs[mesh.uv_indices[corner]];
+    }
+    const Vec3f a = face.positions[1] - face.positions[0], c = face.positions[2] - face.positions[0];
+    const Vec2f ua = face.uvs[1] - face.uvs[0], uc = face.uvs[2] - face.uvs[0];
+    const float determinant = ua.x * uc.y - ua.y * uc.x;
+    const float sign = determinant < 0 ? -1.0f : 1.0f;
+    face.n = normalize(cross(a, c));
+    const Vec3f along_u = (a * uc.y - c * ua.y) * sign;
+    face.t = normalize(along_u - face.n * dot(face.n, along_u));
+    face.b = cross(face.n, face.t) * sign;
+    if (lengths == FrameLengths::relative && determinant != 0) {
+        face.t = (a * uc.y - c * ua.y) / determinant;
+        face.b = (c * ua.x - a * uc.x) / determinant;
+    }
+    return face;
+}
+
+/// The map's vector at a uv, before it goes through a frame; 0 where there is no tile.
+Vec3f fetch_nearest(const Displacement& map, const Vec2f& uv) {
+    const MapTile* tile = &map.tiles.front();
+    const float column = std::floor(uv.x), row = std::floor(uv.y);
+    if (map.is_udim) {
+        const auto found = std::find_if(map.tiles.begin(), map.tiles.end(), [&](const MapTile& candidate) {
+            return float(candidate.udim) == 1001 + column + 10 * row;
+        });
+        if (found == map.tiles.end()) return {};
+        tile = &*found;
+    }
+    const Texture& texture = *tile->texture;
+    const float v = uv.y - row;
+    const auto to_texel = [](float f, uint32_t size) {
+        return uint32_t(std::clamp(f * float(size), 0.0f, float(size - 1)));
+    };
+    const uint32_t x = to_texel(uv.x - column, texture.width);
+    const uint32_t y = to_texel(map.flip_v ? v : 1 - v, texture.height);
+    if (map.type == DisplacementType::height)
+        return {0, 0, (get_texel(texture, x, y, 0) - map.midlevel.x) * map.scale.x};
+    Vec3f local;
+    for (int c = 0; c < 3; ++c) {
+        const float value = get_texel(texture, x, y, uint32_t(c)) - get_component(map.midlevel, c);
+        set_component(local, map.axes.axis[size_t(c)],
+                      value * get_component(map.scale, c) * float(map.axes.sign[size_t(c)]));
+    }
+    return local;
+}
+
+Vec3f displace(const Displacement& map, const Vec2f& uv, const FaceFrame& face,
+               const Affine& object_from_world) {
+    const Vec3f local = fetch_nearest(map, uv);
+    if (map.type == DisplacementType::height || map.space == DisplacementSpace::tangent)
+        return face.t * local.x + face.b * local.y + face.n * local.z;
+    return map.space == DisplacementSpace::world ? transform_vector(object_from_world, local) : local;
+}
+
+} // namespace
+
+void visit_corners(const Mesh& mesh, const VisitPoint& visit) {
+    for (const uint32_t index : mesh.position_indices) visit(mesh.positions[index]);
+}
+
+void visit_displaced(const Mesh& mesh, const Displacement& map, const Affine& object_from_world, double count,
+                     const VisitPoint& visit) {
+    const int steps = std::clamp(int(std::sqrt(count / double(mesh.face_sizes.size()))), 1, 512);
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        const FaceFrame face = make_face_frame(mesh, first, size, map.lengths);
+        for (int j = 0; j < steps; ++j) {
+            for (int i = 0; i < steps; ++i) {
+                // Never on the border, where the uv may belong to the next tile.
+                const float u = (float(i) + 0.5f) / float(steps), v = (float(j) + 0.5f) / float(steps);
+                const auto mix = [&](const auto& c) {
+                    return (c[0] * (1 - u) + c[1] * u) * (1 - v) + (c[3] * (1 - u) + c[2] * u) * v;
+                };
+                visit(mix(face.positions) + displace(map, mix(face.uvs), face, object_from_world));
+            }
+        }
+        first += size;
+    }
+}
+
+Vec3f sum_area_vectors(const Mesh& mesh) {
+    Vec3f sum;
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        const auto corner = [&](size_t k) {
+            return mesh.positions[mesh.position_indices[first + std::min<size_t>(k, size - 1)]];
+        };
+        sum += cross(corner(2) - corner(0), corner(3) - corner(1));
+        first += size;
+    }
+    return sum;
+}
+
+} // namespace relief

@@ -1,0 +1,85 @@
+// Options of `relief render` that place the camera, light the scene and show the picture.
+#include <filesystem>
+
+#include "command.h"
+#include "relief/io.h"
+
+namespace relief::cli {
+namespace {
+
+class AimOptionsTest : public CommandTest {
+  protected:
+    Image render(const std::string& output, const std::vector<std::string>& more) {
+        const CommandResult result = render_bump(output, more);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return read_image(folder_ / output);
+    }
+    std::string refuse(const std::vector<std::string>& more) {
+        const CommandResult result = render_bump("no.png", more);
+        EXPECT_EQ(result.exit_code, 2) << result.errors;
+        EXPECT_FALSE(exists("no.png"));
+        return result.errors;
+    }
+};
+
+float count_covered(const Image& image) {
+    float sum = 0;
+    const size_t alpha = *image.find_channel("A"), channels = image.channels.size();
+    for (size_t k = alpha; k < image.pixels.size(); k += channels) sum += image.pixels[k];
+    return sum;
+}
+
+TEST_F(AimOptionsTest, a_view_frames_and_a_position_is_taken) {
+    const float front = count_covered(render("front.exr", {"--view", "front"}));
+    const float edge = count_covered(render("left.exr", {"--view", "left"}));
+    const float far = count_covered(render("far.exr", {"--from", "0,0,40"}));
+    EXPECT_GT(front, 100);
+    EXPECT_LT(edge, front) << "a plane from its side";
+    EXPECT_LT(far, 10);
+    EXPECT_GT(far, 0) << "without --to it looks at the scene";
+    EXPECT_GT(count_covered(render("near.exr", {"--from", "0,0,40", "--fov", "5"})), 10 * far);
+}
+
+TEST_F(AimOptionsTest, a_saved_scene_renders_the_same_picture) {
+    render("a.exr", {"--view", "three-quarter", "--light", "sun:20,30", "--ground", "--env-strength", "2",
+                     "--save-scene", "copy.json"});
+    const CommandResult again = run({"render", "copy.json", "-o", "b.exr"});
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_EQ(run({"compare", "a.exr", "b.exr"}).exit_code, 0);
+}
+
+TEST_F(AimOptionsTest, a_turntable_writes_numbered_pictures_that_differ) {
+    const CommandResult result = render_bump("turn.exr", {"--turntable", "3"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    for (const char* name : {"turn.0001.exr", "turn.0002.exr", "turn.0003.exr"}) EXPECT_TRUE(exists(name));
+    EXPECT_EQ(run({"compare", "turn.0001.exr", "turn.0002.exr"}).exit_code, 7);
+    EXPECT_FALSE(exists("turn.exr"));
+}
+
+TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
+    const Image colour = render("colour.png", {"--background", "#ff0080"});
+    EXPECT_EQ(colour.at(0, 0, 0), 1);
+    EXPECT_EQ(colour.at(0, 0, 1), 0);
+    const Image film = render("film.exr", {"--background", "transparent"});
+    EXPECT_EQ(film.at(0, 0, *film.find_channel("R")), 0);
+    ASSERT_EQ(run({"merge", "film.exr", "-o", "film.png"}).exit_code, 0);
+    EXPECT_EQ(read_texture(folder_ / "film.png").channel_count, 4u);
+    const Image plain = render("plain.png", {}), bright = render("bright.png", {"--exposure", "3"});
+    EXPECT_GT(bright.at(12, 8, 0), plain.at(12, 8, 0));
+    render("filmic.png", {"--display", "filmic"});
+    EXPECT_NE(read("plain.png"), read("filmic.png"));
+}
+
+TEST_F(AimOptionsTest, what_cannot_be_is_refused_before_the_render) {
+    EXPECT_NE(refuse({"--view", "fornt"}).find("did you mean 'front'"), std::string::npos);
+    EXPECT_NE(refuse({"--from", "1,2"}).find("x,y,z"), std::string::npos);
+    EXPECT_NE(refuse({"--light", "moon:1,2"}).find("sun:AZIMUTH,ELEVATION"), std::string::npos);
+    EXPECT_NE(refuse({"--background", "blue"}).find("#rrggbb"), std::string::npos);
+    EXPECT_NE(refuse({"--save-scene", "copy.txt"}).find(".json"), std::string::npos);
+    EXPECT_NE(refuse({"--turntable", "2", "--stats", "s.json"}).find("several pictures"), std::string::npos);
+    EXPECT_NE(render_bump("a.hdr", {"--exposure", "1"}).errors.find("radiance is written as it is"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace relief::cli

@@ -1,0 +1,102 @@
+// What PNG files show: display transforms, exposure, backgrounds.
+#include <cmath>
+
+#include "io/picture/display_transform.h"
+#include "math/vec.h"
+#include "relief/io.h"
+#include "test_files.h"
+
+namespace relief {
+
+using Display = FileTest;
+
+Image make_image(const std::vector<float>& rgba) {
+    Image image;
+    image.width = image.full_width = int(rgba.size() / 4), image.height = image.full_height = 1;
+    image.channels = {"R", "G", "B", "A"};
+    image.pixels = rgba;
+    return image;
+}
+
+TEST_F(Display, agx_goes_from_black_to_white_through_the_middle) {
+    const DisplaySettings agx;
+    const auto show_grey = [&](float x) { return show_colour({x, x, x}, agx); };
+    EXPECT_LT(show_grey(0).x, 0.01f);
+    EXPECT_GT(show_grey(1e5f).x, 0.99f);
+    // Half of the code values of a 2.2 display.
+    const Vec3f middle = show_grey(0.18f);
+    EXPECT_NEAR(middle.x, 0.5f, 0.01f);
+    EXPECT_NEAR(middle.x, middle.z, 1e-3f) << "grey stays grey";
+    float last = -1;
+    for (float ev = -12; ev < 8; ev += 0.25f) {
+        const float shown = show_grey(0.18f * std::exp2(ev)).x;
+        EXPECT_GE(shown, last - 1e-5f);
+        last = shown;
+    }
+    const Vec3f broken = show_colour({NAN, -1, INFINITY}, agx);
+    for (const float value : {broken.x, broken.y, broken.z}) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+}
+
+/// Hue of an sRGB colour, degrees.
+float find_hue(const Vec3f& c) {
+    return std::atan2(std::sqrt(3.0f) * (c.y - c.z), 2 * c.x - c.y - c.z) * 57.29578f;
+}
+
+TEST_F(Display, strong_blue_stays_blue_in_agx_and_turns_in_filmic) {
+    const Vec3f blue{0.02f, 0.05f, 3};
+    const float hue = find_hue({0.02f, 0.05f, 3});
+    const auto shift = [&](DisplayTransform transform) {
+        DisplaySettings settings;
+        settings.transform = transform;
+        return std::fabs(find_hue(show_colour(blue, settings)) - hue);
+    };
+    EXPECT_LT(shift(DisplayTransform::agx), 8);
+    EXPECT_GT(shift(DisplayTransform::filmic), shift(DisplayTransform::agx));
+}
+
+TEST_F(Display, standard_is_the_transfer_function_alone) {
+    DisplaySettings settings;
+    settings.transform = DisplayTransform::standard;
+    EXPECT_NEAR(show_colour({0.2140411f, 0, 0}, settings).x, 0.5f, 1e-5f);
+    EXPECT_NEAR(show_colour({7, 0, 0}, settings).x, 1, 1e-6f);
+}
+
+TEST_F(Display, automatic_exposure_puts_the_objects_in_the_middle) {
+    // The third pixel is background.
+    const Image image = make_image({0.72f, 0.72f, 0.72f, 1, 0.72f, 0.72f, 0.72f, 1, 90, 90, 90, 0});
+    EXPECT_NEAR(find_exposure(image), -2, 1e-4f);
+    EXPECT_NEAR(find_exposure(make_image({0.09f, 0.09f, 0.09f, 0})), 1, 1e-4f) << "nothing is hit";
+    EXPECT_EQ(find_exposure(make_image({0, 0, 0, 1})), 0);
+    Image shown = image;
+    shown.metadata["relief:exposure"] = "auto";
+    EXPECT_NEAR(read_display_settings(shown).factor, 0.25f, 1e-4f);
+    shown.metadata["relief:exposure"] = "1.5";
+    EXPECT_NEAR(read_display_settings(shown).factor, std::exp2(1.5f), 1e-4f);
+    shown.metadata["relief:exposure"] = "much", shown.metadata["relief:display"] = "none";
+    EXPECT_EQ(read_display_settings(shown).factor, 1);
+}
+
+TEST_F(Display, a_png_is_laid_over_its_background_or_transparent) {
+    // Premultiplied: half covered by 0.5, and nothing at all.
+    Image image = make_image({0.25f, 0.25f, 0.25f, 0.5f, 0, 0, 0, 0});
+    image.metadata["relief:display"] = "standard";
+    image.metadata["relief:background"] = "#ff0080";
+    write_image(image, folder_ / "over.png");
+    const Image over = read_image(folder_ / "over.png");
+    ASSERT_EQ(over.channels.size(), 3u);
+    const float half = 0.7353569f; // sRGB of 0.5
+    EXPECT_NEAR(over.pixels[0], (half + 1) / 2, 0.004f);
+    EXPECT_NEAR(over.pixels[1], half / 2, 0.004f);
+    EXPECT_EQ(over.pixels[3], 1);
+    EXPECT_EQ(over.pixels[4], 0);
+    EXPECT_NEAR(over.pixels[5], 128 / 255.0f, 1e-5f);
+    image.metadata["relief:background"] = "transparent";
+    write_image(image, folder_ / "film.png");
+    const Texture film = read_texture(folder_ / "film.png");
+    ASSERT_EQ(film.channel_count, 4u);
+    EXPECT_NEAR(film.floats[0], half, 0.004f) << "not premultiplied, as PNG has it";
+    EXPECT_NEAR(film.floats[3], 0.5f, 0.004f);
+    EXPECT_EQ(film.floats[7], 0);
+}
+
+} // namespace relief
