@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -36,24 +36,65 @@ std::string strip_parser_prefix(std::string message) {
     return message;
 }
 
-/// Remembers the keys of the objects that are open and the first key that came twice.
-class DuplicateKeyFinder {
+/// Builds a document from the parser's events in linear time: the parser's own builder searches an object for
+/// each of its keys, and with a callback the parent for each of its objects. Remembers the first key that
+/// came twice.
+class DocumentBuilder {
   public:
-    bool operator()(int, Json::parse_event_t event, const Json& value) {
-        if (event == Json::parse_event_t::object_start)
-            open_.emplace_back();
-        else if (event == Json::parse_event_t::object_end && !open_.empty())
-            open_.pop_back();
-        else if (event == Json::parse_event_t::key && !open_.empty()) {
-            const std::string key = value.get<std::string>();
-            if (!open_.back().insert(key).second && duplicate_.empty()) duplicate_ = key;
-        }
+    explicit DocumentBuilder(Json& document) : document_(document) {}
+
+    bool null() { return add(nullptr); }
+    bool boolean(bool value) { return add(value); }
+    bool number_integer(Json::number_integer_t value) { return add(value); }
+    bool number_unsigned(Json::number_unsigned_t value) { return add(value); }
+    bool number_float(Json::number_float_t value, const std::string&) { return add(value); }
+    bool string(std::string& value) { return add(std::move(value)); }
+    bool binary(Json::binary_t& value) { return add(std::move(value)); }
+    bool start_array(size_t) { return open(Json::array()); }
+    bool end_array() { return close(); }
+    bool start_object(size_t) {
+        keys_.emplace_back();
+        return open(Json::object());
+    }
+    bool end_object() {
+        keys_.pop_back();
+        return close();
+    }
+    bool key(std::string& name) {
+        if (!keys_.back().insert(name).second && duplicate_.empty()) duplicate_ = name;
+        auto& members = open_.back()->get_ref<Json::object_t&>();
+        static_cast<Json::object_t::Container&>(members).emplace_back(std::move(name), nullptr);
         return true;
+    }
+    template <class Failure> [[noreturn]] bool parse_error(size_t, const std::string&, const Failure& error) {
+        throw error;
     }
     const std::string& duplicate() const { return duplicate_; }
 
   private:
-    std::vector<std::set<std::string>> open_;
+    /// The value goes to the last key of the open object, to the end of the open array, or is the document.
+    template <class Value> Json& place(Value&& value) {
+        if (open_.empty()) return document_ = std::forward<Value>(value);
+        if (open_.back()->is_object())
+            return open_.back()->get_ref<Json::object_t&>().back().second = std::forward<Value>(value);
+        return open_.back()->get_ref<Json::array_t&>().emplace_back(std::forward<Value>(value));
+    }
+    template <class Value> bool add(Value&& value) {
+        place(std::forward<Value>(value));
+        return true;
+    }
+    bool open(Json value) {
+        open_.push_back(&place(std::move(value)));
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    Json& document_;
+    std::vector<Json*> open_; ///< stay where they are: only the innermost one grows
+    std::vector<std::unordered_set<std::string>> keys_;
     std::string duplicate_;
 };
 
@@ -67,15 +108,10 @@ std::string describe_type(const Json& value) {
 } // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
-    DuplicateKeyFinder finder;
     Json document;
+    DocumentBuilder builder(document);
     try {
-        document = Json::parse(
-            text.begin(), text.end(),
-            [&finder](int depth, Json::parse_event_t event, Json& value) {
-                return finder(depth, event, value);
-            },
-            true, true);
+        Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, true, true);
     } catch (const Json::parse_error& error) {
         // The parser counts the byte that it could not accept, starting from 1.
         const LineAndColumn place = locate(text, error.byte > 0 ? error.byte - 1 : 0);
@@ -85,9 +121,9 @@ Json parse_json(std::string_view text, const std::string& file) {
     } catch (const Json::exception& error) {
         throw Error(ErrorKind::bad_input, {"broken JSON: " + strip_parser_prefix(error.what()), file, ""});
     }
-    if (!finder.duplicate().empty()) {
+    if (!builder.duplicate().empty()) {
         throw Error(ErrorKind::bad_input,
-                    {fmt::format("key '{}' stands twice in one object", finder.duplicate()), file,
+                    {fmt::format("key '{}' stands twice in one object", builder.duplicate()), file,
                      "give every material, mesh and map a name of its own"});
     }
     return document;
