@@ -62,6 +62,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
     expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
     expect_keys("/properties/objects/items", scene_keys::kObject);
+    expect_keys("/properties/objects/items/properties/instances", scene_keys::kInstances);
     expect_keys("/properties/lights/items/oneOf/0", scene_keys::kSun);
     expect_keys("/properties/lights/items/oneOf/1", scene_keys::kPoint);
     // A transform is either parts or a matrix.
@@ -69,7 +70,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 13u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 14u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

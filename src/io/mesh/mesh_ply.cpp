@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "io/mesh/ply_cursor.h"
 #include "io/mesh/ply_header.h"
 #include "io/mesh/welder.h"
 #include "relief/error.h"
@@ -17,104 +13,6 @@
 namespace relief {
 
 namespace {
-
-const char* const kDamagedHint = "the file is damaged or incomplete: export it again";
-
-/// Reads one value after another, and knows where it is.
-class PlyCursor {
-  public:
-    PlyCursor(std::string_view bytes, const std::string& name, const PlyHeader& header)
-        : bytes_(bytes), name_(name), format_(header.format), at_(header.byte_count) {}
-
-    void enter(const std::string& element, uint64_t index) { element_ = &element, index_ = index; }
-
-    [[noreturn]] void fail(const std::string& message) const {
-        const std::string place =
-            format_ == PlyFormat::ascii
-                ? fmt::format("line {}",
-                              1 + std::count(bytes_.begin(), bytes_.begin() + ptrdiff_t(at_), '\n'))
-                : fmt::format("byte {}", at_);
-        throw Error(ErrorKind::bad_input,
-                    {message, fmt::format("{}, {}, {} {}", name_, place, *element_, index_), kDamagedHint});
-    }
-
-    /// Every type of PLY fits a double.
-    double read(PlyType type) { return format_ == PlyFormat::ascii ? read_word() : read_bytes(type); }
-
-    /// A whole number below `end`.
-    uint64_t read_whole(PlyType type, uint64_t end, const char* what) {
-        const double value = read(type);
-        if (!(value >= 0 && value < double(end)) || value != std::floor(value))
-            fail(fmt::format("{} {} is out of range: there are {}", what, value, end));
-        return uint64_t(value);
-    }
-
-    /// The number of values of a list, which must still be there.
-    uint64_t read_count(const PlyProperty& list) {
-        const double value = read(*list.count_type);
-        // A value of a text takes a digit and a space; behind the last one there may be none.
-        const uint64_t left = bytes_.size() - at_;
-        const uint64_t room = format_ == PlyFormat::ascii ? (left + 1) / 2 : left / get_byte_size(list.type);
-        if (!(value >= 0 && value <= double(room)) || value != std::floor(value))
-            fail(fmt::format("a list of {} values does not fit the file", value));
-        return uint64_t(value);
-    }
-
-  private:
-    double read_word() {
-        const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-        while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
-        if (at_ < bytes_.size() && bytes_[at_] == '+') ++at_;
-        double value = 0;
-        const char *begin = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
-        if (begin == end) fail("the file ends early");
-        const auto [stop, code] = std::from_chars(begin, end, value);
-        if (code != std::errc() || (stop != end && !is_space(*stop)))
-            fail("there is no number where one must be, or one out of range");
-        at_ += size_t(stop - begin);
-        return value;
-    }
-
-    double read_bytes(PlyType type) {
-        switch (type) {
-        case PlyType::int8:
-            return double(take<int8_t>());
-        case PlyType::uint8:
-            return double(take<uint8_t>());
-        case PlyType::int16:
-            return double(take<int16_t>());
-        case PlyType::uint16:
-            return double(take<uint16_t>());
-        case PlyType::int32:
-            return double(take<int32_t>());
-        case PlyType::uint32:
-            return double(take<uint32_t>());
-        case PlyType::float32:
-            return double(take<float>());
-        case PlyType::float64:
-            return take<double>();
-        }
-        return 0;
-    }
-
-    template <class T> T take() {
-        if (bytes_.size() - at_ < sizeof(T)) fail("the file ends early");
-        std::array<char, sizeof(T)> raw;
-        std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
-        at_ += sizeof(T);
-        const bool is_native =
-            (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
-        if (!is_native) std::reverse(raw.begin(), raw.end());
-        return std::bit_cast<T>(raw);
-    }
-
-    std::string_view bytes_;
-    const std::string& name_;
-    PlyFormat format_;
-    size_t at_;
-    const std::string* element_ = nullptr;
-    uint64_t index_ = 0;
-};
 
 using NameList = std::array<std::string_view, 4>;
 
@@ -167,16 +65,11 @@ class PlyBuilder {
         return element.properties.size();
     }
 
-    void skip_value(const PlyProperty& property) {
-        const uint64_t count = property.count_type ? cursor_.read_count(property) : 1;
-        for (uint64_t k = 0; k < count; ++k) cursor_.read(property.type);
-    }
-
     void skip(const PlyElement& element) {
         if (element.properties.empty()) return; // takes no bytes, whatever its count
         for (uint64_t i = 0; i < element.count; ++i) {
             cursor_.enter(element.name, i);
-            for (const PlyProperty& property : element.properties) skip_value(property);
+            for (const PlyProperty& property : element.properties) cursor_.skip(property);
         }
     }
 
@@ -195,7 +88,7 @@ class PlyBuilder {
         const auto has = [&](size_t begin, size_t end) {
             return std::find(places.begin() + begin, places.begin() + end, none) == places.begin() + end;
         };
-        if (!has(0, 3)) fail("the vertices have no x, y and z", kDamagedHint);
+        if (!has(0, 3)) fail("the vertices have no x, y and z", kDamagedPlyHint);
         if (element.count >= kNoIndex) fail("has too many vertices", "split the mesh");
         const bool has_normals = has(3, 6), has_uvs = has(6, 8);
         std::vector<float> values(none + 1);
@@ -203,7 +96,7 @@ class PlyBuilder {
             cursor_.enter(element.name, i);
             for (size_t p = 0; p < none; ++p) {
                 if (element.properties[p].count_type)
-                    skip_value(element.properties[p]);
+                    cursor_.skip(element.properties[p]);
                 else
                     values[p] = float(cursor_.read(element.properties[p].type));
             }
@@ -217,7 +110,7 @@ class PlyBuilder {
         const size_t index_place = find_list(element, {"vertex_indices", "vertex_index"});
         const size_t uv_place = find_list(element, {"texcoord"});
         if (index_place == element.properties.size())
-            fail("the faces have no list 'vertex_indices'", kDamagedHint);
+            fail("the faces have no list 'vertex_indices'", kDamagedPlyHint);
         std::vector<uint32_t> corners;
         std::vector<float> uvs;
         for (uint64_t i = 0; i < element.count; ++i) {
@@ -233,7 +126,7 @@ class PlyBuilder {
                     for (uint64_t left = cursor_.read_count(property); left > 0; --left)
                         uvs.push_back(float(cursor_.read(property.type)));
                 else
-                    skip_value(property);
+                    cursor_.skip(property);
             }
             add_face(corners, uvs);
         }

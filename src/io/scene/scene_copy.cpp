@@ -45,7 +45,7 @@ std::string move_path(const std::string& file, const fs::path& folder, const fs:
 /// Every file that a section names.
 void move_paths(Json& node, const fs::path& folder, const fs::path& copy_folder) {
     for (auto& [key, value] : node.items()) {
-        if (value.is_object())
+        if (value.is_structured())
             move_paths(value, folder, copy_folder);
         else if (value.is_string() && (key == "file" || key.ends_with("_texture")))
             value = move_path(value.get<std::string>(), folder, copy_folder);
@@ -169,7 +169,7 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
         root = write_mesh_scene(scene, options, folder);
     } else {
         root = parse_json(read_file_bytes(input), input.string());
-        for (const char* section : {"environment", "materials", "displacements", "meshes"})
+        for (const char* section : {"environment", "materials", "displacements", "meshes", "objects"})
             if (root.contains(section))
                 move_paths(root[section], input.has_parent_path() ? input.parent_path() : ".", folder);
     }

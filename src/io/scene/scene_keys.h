@@ -24,7 +24,9 @@ inline constexpr auto kDisplacement =
               "flip_v", "wrap", "dilate", "filter", "autobump");
 inline constexpr auto kMesh = make_keys("file", "uv_set", "subdivision");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
-inline constexpr auto kObject = make_keys("name", "mesh", "displacement", "material", "transform");
+inline constexpr auto kObject =
+    make_keys("name", "mesh", "displacement", "material", "transform", "instances");
+inline constexpr auto kInstances = make_keys("file", "materials");
 inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");
 inline constexpr auto kSun = make_keys("type", "direction", "angle_degrees", "color", "strength");
 inline constexpr auto kPoint = make_keys("type", "position", "radius", "color", "strength");

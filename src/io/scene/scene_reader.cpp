@@ -8,11 +8,13 @@
 
 #include "base/suggest.h"
 #include "io/file_system.h"
+#include "io/mesh/point_ply.h"
 #include "io/scene/json_node.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/subdivision_json.h"
+#include "math/affine.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -76,7 +78,42 @@ Object read_object(const JsonNode& node, const ObjectNames& names) {
     return object;
 }
 
-void read_root(const JsonNode& root, Scene& scene, AssetCache& assets) {
+/// The object once for each point of a file; the transform of the object moves them all.
+void add_instances(const JsonNode& node, const Object& object, const NameIndex& materials,
+                   const AssetCache& assets, std::vector<Object>& objects, ContentHash& hash) {
+    node.check_keys(scene_keys::kInstances);
+    std::vector<uint32_t> choice;
+    if (const auto names = node.find("materials"))
+        for (const JsonNode& name : names->elements())
+            choice.push_back(find_named(name, materials, "material"));
+    const JsonNode file = node.get("file");
+    const std::filesystem::path path = assets.resolve(file.as_string());
+    const InstancePoints points = file.with_place([&] {
+        const std::string bytes = read_file_bytes(path);
+        hash.add(bytes);
+        return parse_points(bytes, path.string(), choice.size());
+    });
+    objects.reserve(objects.size() + points.transforms.size());
+    for (size_t k = 0; k < points.transforms.size(); ++k) {
+        objects.push_back(object);
+        objects.back().world_from_object = compose(object.world_from_object, points.transforms[k]);
+        if (!points.materials.empty()) objects.back().material = choice[points.materials[k]];
+    }
+}
+
+void read_objects(const JsonNode& section, const ObjectNames& names, const AssetCache& assets, Scene& scene,
+                  ContentHash& hash) {
+    for (const JsonNode& node : section.elements()) {
+        Object object = read_object(node, names);
+        if (const auto instances = node.find("instances"))
+            add_instances(*instances, object, names.materials, assets, scene.objects, hash);
+        else
+            scene.objects.push_back(std::move(object));
+    }
+}
+
+/// Content of files that the scene does not hold goes into `hash`.
+void read_root(const JsonNode& root, Scene& scene, AssetCache& assets, ContentHash& hash) {
     root.check_keys(scene_keys::kRoot);
     if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
         version->fail("only version 1 is known", "use a newer version of the program");
@@ -92,18 +129,16 @@ void read_root(const JsonNode& root, Scene& scene, AssetCache& assets) {
                      [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
     names.meshes = read_section(root, "meshes", scene.meshes,
                                 [&](const auto& name, const auto& n) { return read_mesh(n, name, assets); });
-    if (const auto node = root.find("objects"))
-        for (const JsonNode& element : node->elements()) scene.objects.push_back(read_object(element, names));
+    if (const auto node = root.find("objects")) read_objects(*node, names, assets, scene, hash);
     if (const auto node = root.find("lights"))
         for (const JsonNode& element : node->elements()) scene.lights.push_back(read_light(element));
 }
 
 /// Size and samples of the picture may change without its being another picture.
-uint64_t compute_hash(const Json& document, const Scene& scene) {
+uint64_t compute_hash(const Json& document, const Scene& scene, ContentHash hash) {
     nlohmann::json canonical = document; // sorts the keys
     if (const auto render = canonical.find("render"); render != canonical.end())
         for (const char* key : {"width", "height", "spp"}) render->erase(key);
-    ContentHash hash;
     hash.add(canonical.dump());
     add_scene_content(hash, scene);
     return hash.value();
@@ -116,14 +151,15 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& folder, co
     Scene scene;
     scene.source = name;
     AssetCache assets(folder);
-    read_root(JsonNode(document, "", name), scene, assets);
+    ContentHash hash;
+    read_root(JsonNode(document, "", name), scene, assets, hash);
     scene.warnings = std::move(assets.warnings());
     try {
         validate_scene(scene);
     } catch (const Error& error) {
         throw Error(error.kind(), {error.message(), name + ": " + error.where(), error.hint()});
     }
-    scene.hash = compute_hash(document, scene);
+    scene.hash = compute_hash(document, scene, hash);
     return scene;
 }
 

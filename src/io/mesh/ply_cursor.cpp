@@ -1,0 +1,95 @@
+#include "io/mesh/ply_cursor.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "relief/error.h"
+
+namespace relief {
+
+void PlyCursor::fail(const std::string& message) const {
+    const std::string place =
+        format_ == PlyFormat::ascii
+            ? fmt::format("line {}", 1 + std::count(bytes_.begin(), bytes_.begin() + ptrdiff_t(at_), '\n'))
+            : fmt::format("byte {}", at_);
+    throw Error(ErrorKind::bad_input,
+                {message, fmt::format("{}, {}, {} {}", name_, place, *element_, index_), kDamagedPlyHint});
+}
+
+uint64_t PlyCursor::read_whole(PlyType type, uint64_t end, const char* what) {
+    const double value = read(type);
+    if (!(value >= 0 && value < double(end)) || value != std::floor(value))
+        fail(fmt::format("{} {} is out of range: there are {}", what, value, end));
+    return uint64_t(value);
+}
+
+uint64_t PlyCursor::read_count(const PlyProperty& list) {
+    const double value = read(*list.count_type);
+    // A value of a text takes a digit and a space; behind the last one there may be none.
+    const uint64_t left = bytes_.size() - at_;
+    const uint64_t room = format_ == PlyFormat::ascii ? (left + 1) / 2 : left / get_byte_size(list.type);
+    if (!(value >= 0 && value <= double(room)) || value != std::floor(value))
+        fail(fmt::format("a list of {} values does not fit the file", value));
+    return uint64_t(value);
+}
+
+void PlyCursor::skip(const PlyProperty& property) {
+    const uint64_t count = property.count_type ? read_count(property) : 1;
+    for (uint64_t k = 0; k < count; ++k) read(property.type);
+}
+
+double PlyCursor::read_word() {
+    const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+    while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
+    if (at_ < bytes_.size() && bytes_[at_] == '+') ++at_;
+    double value = 0;
+    const char *begin = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
+    if (begin == end) fail("the file ends early");
+    const auto [stop, code] = std::from_chars(begin, end, value);
+    if (code != std::errc() || (stop != end && !is_space(*stop)))
+        fail("there is no number where one must be, or one out of range");
+    at_ += size_t(stop - begin);
+    return value;
+}
+
+template <class T> T PlyCursor::take() {
+    if (bytes_.size() - at_ < sizeof(T)) fail("the file ends early");
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    const bool is_native =
+        (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
+    if (!is_native) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+}
+
+double PlyCursor::read_bytes(PlyType type) {
+    switch (type) {
+    case PlyType::int8:
+        return double(take<int8_t>());
+    case PlyType::uint8:
+        return double(take<uint8_t>());
+    case PlyType::int16:
+        return double(take<int16_t>());
+    case PlyType::uint16:
+        return double(take<uint16_t>());
+    case PlyType::int32:
+        return double(take<int32_t>());
+    case PlyType::uint32:
+        return double(take<uint32_t>());
+    case PlyType::float32:
+        return double(take<float>());
+    case PlyType::float64:
+        return take<double>();
+    }
+    return 0;
+}
+
+} // namespace relief
