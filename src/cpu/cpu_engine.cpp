@@ -209,7 +209,12 @@ class CpuEngine final : public Engine {
             hits[k] = {};
             if (!found[k].is_hit()) continue;
             const TraceHit& hit = found[k];
-            hits[k] = {hit.t, hit.instance, hit.patch, {hit.u, hit.v}, points[next++].geometric_normal};
+            // Sums of barycentric weights may round to more than 1.
+            hits[k] = {hit.t,
+                       hit.instance,
+                       hit.patch,
+                       {std::min(hit.u, 1.0f), std::min(hit.v, 1.0f)},
+                       points[next++].geometric_normal};
         }
     }
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "surface/mesh/degenerate_faces.h"
+
 namespace relief {
 
 namespace {
@@ -58,6 +60,14 @@ void warn_of_creases(const Mesh& mesh, std::vector<std::string>& warnings) {
                     mesh.name, sharpest, subdivision.level, level));
 }
 
+void warn_of_degenerate_faces(const Mesh& mesh, std::vector<std::string>& warnings) {
+    const DegenerateFaces faces = find_degenerate_faces(mesh);
+    if (faces.count == 0 || faces.count == mesh.face_sizes.size()) return;
+    warnings.push_back(
+        fmt::format("mesh '{}': {} of {} faces have no area and are left out; the first is face {}",
+                    mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
+}
+
 bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
 
 void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
@@ -85,6 +95,9 @@ std::vector<std::string> find_scene_warnings(const Scene& scene) {
     warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
     std::set<uint32_t> meshes;
+    std::set<uint32_t> used;
+    for (const Object& object : scene.objects)
+        if (used.insert(object.mesh).second) warn_of_degenerate_faces(scene.meshes[object.mesh], warnings);
     for (const Object& object : scene.objects) {
         if (object.displacement == kNoIndex) continue;
         const Mesh& mesh = scene.meshes[object.mesh];

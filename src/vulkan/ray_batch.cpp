@@ -20,7 +20,7 @@ RayHit make_ray_hit(const scalar::HitData& found, const scalar::SurfacePointData
     hit.t = found.t;
     hit.object = found.instance;
     hit.patch = found.patch_index;
-    hit.uv = {found.u, found.v};
+    hit.uv = {std::min(found.u, 1.0f), std::min(found.v, 1.0f)};
     hit.normal = point.geometric_normal;
     return hit;
 }

@@ -50,6 +50,42 @@ TEST(Intersector, answers_closest_and_any_for_rays_of_any_length) {
     EXPECT_GT(hit_count, 500u);
 }
 
+/// A quad at the corners of which sums of barycentric weights round up as often as down.
+TEST(Intersector, gives_positions_within_the_patch) {
+    Mesh mesh;
+    mesh.name = "quad";
+    mesh.positions = {{-1.1f, -0.9f, 0.3f}, {1.3f, -1.2f, -0.2f}, {0.9f, 1.4f, 0.1f}, {-1.2f, 0.8f, -0.4f}};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.position_indices = mesh.uv_indices = {0, 1, 2, 3};
+    mesh.face_sizes = {4};
+    IntersectorSettings settings;
+    settings.surface.level = 0;
+    const Intersector intersector(
+        test::make_body_scene(
+            mesh, test::make_displacement(test::make_random_map(4, 4, 0, 1), DisplacementSpace::object)),
+        settings);
+    uint32_t state = 1;
+    const auto draw = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f; };
+    std::vector<Ray> rays(200000);
+    for (size_t k = 0; k < rays.size(); ++k) { // at points of the edges u = 1 and v = 1
+        const float part = draw();
+        const Vec3f& end = mesh.positions[k % 2 ? 1 : 3];
+        const Vec3f target = end + (mesh.positions[2] - end) * part;
+        rays[k].origin = {4 * draw() - 2, 4 * draw() - 2, 5};
+        rays[k].direction = target - rays[k].origin;
+    }
+    std::vector<RayHit> hits(rays.size());
+    intersector.closest_hits(rays, hits);
+    size_t at_end = 0;
+    for (const RayHit& hit : hits) {
+        if (hit.object == kNoIndex) continue;
+        ASSERT_TRUE(hit.uv.x >= 0 && hit.uv.x <= 1 && hit.uv.y >= 0 && hit.uv.y <= 1)
+            << hit.uv.x - 1 << " " << hit.uv.y - 1;
+        at_end += hit.uv.x == 1 || hit.uv.y == 1;
+    }
+    EXPECT_GT(at_end, 1000u);
+}
+
 TEST(Intersector, respects_the_interval_of_a_ray) {
     const Intersector intersector(make_scene(), {});
     Ray ray;

@@ -46,6 +46,28 @@ TEST(Warnings, name_the_level_that_shows_a_semi_sharp_crease_as_it_is) {
     EXPECT_NE(prepare_with_crease(0.5f, 0, CreaseRule::obey)[0].find("level 1 shows"), std::string::npos);
 }
 
+TEST(Warnings, count_the_faces_without_area_and_name_the_first) {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+    scene.objects[0].displacement = kNoIndex, scene.displacements.clear();
+    scene.environment.emplace();
+    Mesh& mesh = scene.meshes[0];
+    const size_t faces = mesh.face_sizes.size();
+    for (int copy = 0; copy < 2; ++copy) { // an edge twice
+        mesh.face_sizes.push_back(3);
+        for (const uint32_t index : {0u, 1u, 1u}) {
+            mesh.position_indices.push_back(index);
+            if (!mesh.uv_indices.empty()) mesh.uv_indices.push_back(0);
+        }
+    }
+    const std::vector<std::string> warnings = prepare_scene(std::move(scene), {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("2 of " + std::to_string(faces + 2) + " faces have no area"),
+              std::string::npos)
+        << warnings[0];
+    EXPECT_NE(warnings[0].find("the first is face " + std::to_string(faces)), std::string::npos)
+        << warnings[0];
+}
+
 TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
     const auto prepare = [](const std::function<void(Scene&)>& change) {
         Scene scene = test::make_body_scene(test::make_torus(4, 6), {});

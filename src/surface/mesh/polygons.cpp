@@ -10,6 +10,7 @@
 
 #include "math/vec.h"
 #include "relief/error.h"
+#include "surface/mesh/degenerate_faces.h"
 
 namespace relief {
 
@@ -17,8 +18,6 @@ namespace {
 
 constexpr float kLargestCoordinate = 1e18f; // squares of lengths stay finite
 constexpr float kLargestUv = 1e6f;
-constexpr double kSmallestAreaRatio =
-    1e-12; // of the square of the longest edge: rounding of collinear corners
 
 [[noreturn]] void throw_bad_face(const std::string& where, size_t face, std::string message,
                                  std::string hint) {
@@ -134,24 +133,6 @@ std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
     return result;
 }
 
-void check_area(const Polygons& polygons, uint32_t face) {
-    const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
-    const auto refuse = [&] {
-        throw_bad_face(polygons.where, polygons.source_faces[face], "face has zero area",
-                       "remove degenerate faces from the mesh");
-    };
-    if (size < 3) refuse();
-    double longest = 0;
-    for (uint32_t k = 0; k < size; ++k) {
-        const Vec3f& a = polygons.positions[polygons.points[start + k]];
-        const Vec3f& b = polygons.positions[polygons.points[start + (k + 1) % size]];
-        const double x = double(b.x) - a.x, y = double(b.y) - a.y, z = double(b.z) - a.z;
-        longest = std::max(longest, x * x + y * y + z * z);
-    }
-    const Vec3<double> n = compute_newell_normal(polygons, face);
-    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > kSmallestAreaRatio * longest)) refuse();
-}
-
 } // namespace
 
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
@@ -186,7 +167,7 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
         for (uint32_t k = 0; k < size; ++k) {
             const uint32_t point = mesh.position_indices[start + k];
             const uint32_t previous = mesh.position_indices[start + (k + size - 1) % size];
-            // A face whose corners all coincide loses them all and has zero area.
+            // A face whose corners all coincide loses them all and has no area.
             if (result.positions[point] == result.positions[previous]) continue;
             result.points.push_back(representatives.empty() ? point : representatives[point]);
             if (!mesh.uv_indices.empty()) result.uvs.push_back(mesh.uvs[mesh.uv_indices[start + k]]);
@@ -197,7 +178,7 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
         result.source_faces.push_back(uint32_t(face));
     }
     result.starts.push_back(uint32_t(result.points.size()));
-    for (uint32_t face = 0; face < result.face_count(); ++face) check_area(result, face);
+    drop_degenerate_faces(result);
     return result;
 }
 

@@ -33,9 +33,9 @@ enum class Welding {
     equal_points ///< points at exactly equal positions become one, as exporters take them apart
 };
 
-/// Resolves and checks a mesh. Corners that repeat the position of the corner before are dropped. Throws
-/// bad_input with mesh and face for an index out of range, a value that is not finite or beyond 1e18, and a
-/// face of zero area.
+/// Resolves and checks a mesh. Corners that repeat the position of the corner before are dropped, and faces
+/// without area (surface/mesh/degenerate_faces.h). Throws bad_input with mesh and face for an index out of
+/// range, a value that is not finite or beyond 1e18, and where no face is left.
 Polygons make_polygons(const Mesh& mesh, Welding welding);
 
 /// One linear Catmull-Clark step (Catmull and Clark 1978, without the smoothing): every face becomes one quad

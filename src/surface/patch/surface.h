@@ -167,7 +167,7 @@ class PyramidCache;
 /// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
 /// used by world-space displacement only. Surfaces made with the same `pyramids`
 /// (surface/map/displacement_map.h) share the bounds of their textures. Throws bad_input with mesh and face:
-/// missing uv, index out of range, zero area, a value that is not finite or absurdly large.
+/// missing uv, index out of range, no face with an area, a value that is not finite or absurdly large.
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
                      PyramidCache* pyramids = nullptr);
 

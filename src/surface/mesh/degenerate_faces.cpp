@@ -1,0 +1,188 @@
+#include "surface/mesh/degenerate_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "math/vec.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+/// Of the square of the longest edge: rounding of collinear corners.
+constexpr double kSmallestAreaRatio = 1e-12;
+
+/// A point on the edge between two corners of a face, at this part of its length.
+struct EdgePoint {
+    uint32_t point;
+    float part;
+};
+
+using Edge = std::pair<uint32_t, uint32_t>;
+
+std::vector<Vec3f> get_corners(const Polygons& polygons, uint32_t face) {
+    std::vector<Vec3f> corners;
+    for (uint32_t k = polygons.starts[face]; k < polygons.starts[face + 1]; ++k)
+        corners.push_back(polygons.positions[polygons.points[k]]);
+    return corners;
+}
+
+/// First point at the same position, so that faces that share an edge have the same numbers for it.
+std::vector<uint32_t> number_positions(const std::vector<Vec3f>& positions) {
+    std::vector<uint32_t> order(positions.size()), numbers(positions.size());
+    for (uint32_t k = 0; k < order.size(); ++k) order[k] = k;
+    const auto key = [&](uint32_t k) {
+        return std::tuple(positions[k].x, positions[k].y, positions[k].z, k);
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+    for (size_t k = 0; k < order.size(); ++k)
+        numbers[order[k]] =
+            k > 0 && positions[order[k]] == positions[order[k - 1]] ? numbers[order[k - 1]] : order[k];
+    return numbers;
+}
+
+/// Decides which corners of dropped faces go into edges of faces that stay.
+class Splicer {
+  public:
+    Splicer(const Polygons& polygons, const std::vector<uint8_t>& is_dropped)
+        : polygons_(polygons), numbers_(number_positions(polygons.positions)) {
+        for (uint32_t face = 0; face < polygons.face_count(); ++face)
+            for (uint32_t k = 0; !is_dropped[face] && k < polygons.face_size(face); ++k)
+                corner_of_edge_.try_emplace(get_edge(face, k), polygons.starts[face] + k);
+    }
+
+    void splice(uint32_t face) {
+        const uint32_t size = polygons_.face_size(face);
+        if (size < 3) return;
+        uint32_t longest = 0;
+        for (uint32_t k = 1; k < size; ++k)
+            if (get_length(face, k) > get_length(face, longest)) longest = k;
+        const auto [end, begin] = get_edge(face, longest);
+        const auto neighbour = corner_of_edge_.find({begin, end});
+        if (neighbour == corner_of_edge_.end()) return;
+        const double whole = get_length(face, longest);
+        std::vector<EdgePoint> points;
+        double reached = 0;
+        for (uint32_t k = longest + 1; k + 1 < longest + size; ++k) {
+            reached += get_length(face, k % size);
+            if (!(reached < whole)) return; // the corners turn back: no order along the edge
+            points.push_back(
+                {polygons_.points[polygons_.starts[face] + (k + 1) % size], float(reached / whole)});
+        }
+        points_of_corner_[neighbour->second] = std::move(points);
+    }
+
+    /// What goes between a corner and the next one of its face.
+    const std::vector<EdgePoint>& find(uint32_t corner) const {
+        static const std::vector<EdgePoint> kNone;
+        const auto found = points_of_corner_.find(corner);
+        return found == points_of_corner_.end() ? kNone : found->second;
+    }
+
+  private:
+    uint32_t get_point(uint32_t face, uint32_t k) const {
+        return polygons_.points[polygons_.starts[face] + k % polygons_.face_size(face)];
+    }
+    Edge get_edge(uint32_t face, uint32_t k) const {
+        return {numbers_[get_point(face, k)], numbers_[get_point(face, k + 1)]};
+    }
+    double get_length(uint32_t face, uint32_t k) const {
+        return length(polygons_.positions[get_point(face, k + 1)] - polygons_.positions[get_point(face, k)]);
+    }
+
+    const Polygons& polygons_;
+    std::vector<uint32_t> numbers_;
+    std::map<Edge, uint32_t> corner_of_edge_;
+    std::map<uint32_t, std::vector<EdgePoint>> points_of_corner_;
+};
+
+template <class Value> Value mix(const Value& a, const Value& b, float part) {
+    return a * (1 - part) + b * part;
+}
+
+/// Adds a corner of `from`, or a point between it and the next one.
+void add_corner(const Polygons& from, uint32_t corner, uint32_t next, const EdgePoint& at, Polygons& to) {
+    to.points.push_back(at.point);
+    if (!from.uvs.empty()) to.uvs.push_back(mix(from.uvs[corner], from.uvs[next], at.part));
+    if (!from.normals.empty()) to.normals.push_back(mix(from.normals[corner], from.normals[next], at.part));
+    if (from.tangents.empty()) return;
+    std::array<float, 4> tangent = from.tangents[corner];
+    for (size_t c = 0; c < 3; ++c) tangent[c] += (from.tangents[next][c] - tangent[c]) * at.part;
+    to.tangents.push_back(tangent);
+}
+
+} // namespace
+
+bool has_area(std::span<const Vec3f> corners) {
+    if (corners.size() < 3) return false;
+    const auto offset = [&](size_t k) {
+        const Vec3f &p = corners[k % corners.size()], &origin = corners[0];
+        return Vec3<double>{double(p.x) - origin.x, double(p.y) - origin.y, double(p.z) - origin.z};
+    };
+    Vec3<double> sum{};
+    double longest = 0;
+    for (size_t k = 0; k < corners.size(); ++k) {
+        const Vec3<double> edge = offset(k + 1) - offset(k);
+        longest = std::max(longest, dot(edge, edge));
+        if (k > 0 && k + 1 < corners.size()) sum += cross(offset(k), offset(k + 1));
+    }
+    return std::sqrt(dot(sum, sum)) > kSmallestAreaRatio * longest;
+}
+
+DegenerateFaces find_degenerate_faces(const Mesh& mesh) {
+    DegenerateFaces result;
+    std::vector<Vec3f> corners;
+    size_t start = 0;
+    for (uint32_t face = 0; face < mesh.face_sizes.size(); start += mesh.face_sizes[face], ++face) {
+        corners.clear();
+        const uint32_t size = mesh.face_sizes[face];
+        for (uint32_t k = 0; k < size; ++k) {
+            const Vec3f& p = mesh.positions[mesh.position_indices[start + k]];
+            if (p != mesh.positions[mesh.position_indices[start + (k + size - 1) % size]])
+                corners.push_back(p);
+        }
+        if (!has_area(corners) && result.count++ == 0) result.first = face;
+    }
+    return result;
+}
+
+void drop_degenerate_faces(Polygons& polygons) {
+    std::vector<uint8_t> is_dropped(polygons.face_count());
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        is_dropped[face] = has_area(get_corners(polygons, face)) ? 0 : 1;
+    const auto first = std::find(is_dropped.begin(), is_dropped.end(), 1);
+    if (first == is_dropped.end()) return;
+    if (std::find(is_dropped.begin(), is_dropped.end(), 0) == is_dropped.end())
+        throw Error(ErrorKind::bad_input,
+                    {"face has zero area",
+                     fmt::format("{}, face {}", polygons.where,
+                                 polygons.source_faces[size_t(first - is_dropped.begin())]),
+                     "remove degenerate faces from the mesh: no other is left"});
+    Splicer splicer(polygons, is_dropped);
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        if (is_dropped[face]) splicer.splice(face);
+    Polygons kept;
+    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+        if (is_dropped[face]) continue;
+        const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+        kept.starts.push_back(uint32_t(kept.points.size()));
+        kept.source_faces.push_back(polygons.source_faces[face]);
+        for (uint32_t k = 0; k < size; ++k) {
+            const uint32_t next = start + (k + 1) % size;
+            add_corner(polygons, start + k, next, {polygons.points[start + k], 0}, kept);
+            for (const EdgePoint& point : splicer.find(start + k))
+                add_corner(polygons, start + k, next, point, kept);
+        }
+    }
+    kept.starts.push_back(uint32_t(kept.points.size()));
+    kept.where = std::move(polygons.where), kept.positions = std::move(polygons.positions);
+    kept.creases = std::move(polygons.creases);
+    polygons = std::move(kept);
+}
+
+} // namespace relief
