@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "surface/mesh/large_polygon.h"
 #include "surface/mesh/polygons.h"
 
 namespace relief {
 
 namespace {
+
+constexpr uint32_t kManyCorners = 256; ///< from here on the cubic time of the plain search shows
 
 /// Corners of a face in its plane; counter-clockwise.
 std::vector<Vec2<double>> project_face(const Polygons& polygons, uint32_t face) {
@@ -97,7 +100,8 @@ Polygons cut_to_triangles(const Polygons& polygons) {
             for (uint32_t k = 0; k < size; ++k) add_corner(start + k);
             continue;
         }
-        for (const auto& triangle : clip_ears(outline)) {
+        for (const auto& triangle :
+             size < kManyCorners ? clip_ears(outline) : cut_large_polygon(outline).triangles) {
             begin_face(face);
             for (const uint32_t k : triangle) add_corner(start + k);
         }

@@ -1,0 +1,24 @@
+// Triangles of polygons with many corners.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace relief {
+
+struct PolygonCut {
+    std::vector<std::array<uint32_t, 3>> triangles; ///< corners of the polygon
+    size_t work = 0;                                ///< corners and cells looked at
+};
+
+/// Clips ears (Meisters 1975) of a counter-clockwise polygon of at least three corners. Only reflex corners
+/// can lie in an ear: a grid finds them, so that polygons of n corners as they are drawn take about n^1.5
+/// steps. One that crosses itself may have no ear left: then any corner is taken.
+PolygonCut cut_large_polygon(std::span<const Vec2<double>> polygon);
+
+} // namespace relief
