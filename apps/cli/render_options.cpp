@@ -216,6 +216,7 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
+    refuse_link_loop(o.edits, ErrorKind::bad_input);
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
         throw Error(ErrorKind::usage,
                     {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
