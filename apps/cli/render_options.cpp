@@ -169,6 +169,7 @@ void check_input(const std::filesystem::path& input) {
     if (input.empty())
         throw Error(ErrorKind::usage,
                     {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
+    refuse_foreign_file(input);
     std::error_code code;
     if (!std::filesystem::is_directory(input, code)) return;
     const std::filesystem::path scene = input / "scene.json";
