@@ -67,11 +67,19 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
         if (tile[0] >= tile[1]) refuse_value("--tile", text, "i/n with i from 0 to n - 1");
         o.tile = Tile{int(tile[0]), int(tile[1])};
     });
-    add(verb, "--samples", "A:B", "samples A to B - 1 of each pixel", [&o](const std::string& text) {
-        const std::vector<int64_t> range = parse_integers("--samples", text, ':', 2, {0, kMaxSamples});
-        if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
-        o.samples = {int(range[0]), int(range[1])};
-    });
+    add(verb, "--samples", "A:B",
+        "samples A to B - 1 of each pixel; within --spp if given, not bound by the scene file's spp",
+        [&o](const std::string& text) {
+            if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos)
+                throw Error(
+                    ErrorKind::usage,
+                    {fmt::format("'{}' is no range A:B", text), "--samples",
+                     fmt::format("--spp {0} for the number of samples, --samples 0:{0} for the first of them",
+                                 text)});
+            const std::vector<int64_t> range = parse_integers("--samples", text, ':', 2, {0, kMaxSamples});
+            if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
+            o.samples = {int(range[0]), int(range[1])};
+        });
     add(verb, "--edits", "FILE",
         "then a picture after each edit of a map in FILE (-: as they come on standard input); "
         "paths in it start from the current folder",
@@ -254,8 +262,10 @@ RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& pict
     s.image.seed = o.given.seed.value_or(picture.seed.value_or(s.image.seed));
     if (o.samples) {
         if (o.given.spp && o.samples->second > *o.given.spp)
-            refuse_value("--samples", fmt::format("{}:{}", o.samples->first, o.samples->second),
-                         fmt::format("inside the {} samples of --spp", *o.given.spp));
+            throw Error(ErrorKind::usage,
+                        {fmt::format("'{}:{}' is not inside the {} samples of --spp", o.samples->first,
+                                     o.samples->second, *o.given.spp),
+                         "--samples", "leave out --spp: --samples alone says which samples to take"});
         s.image.first_sample = o.samples->first;
         s.image.spp = o.samples->second - o.samples->first;
     }
