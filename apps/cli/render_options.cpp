@@ -170,7 +170,7 @@ void add_report_options(CLI::App& verb, RenderOptions& o) {
     });
     verb.add_flag("-q", o.is_quiet, "no progress, no warnings on stderr")
         ->excludes(verb.add_flag("-v", o.is_verbose, "say what was rendered and what it cost"));
-    verb.add_flag("--strict", o.is_strict, "exit 6 when there were warnings");
+    verb.add_flag("--strict", o.is_strict, "render nothing that there are warnings of: exit 6");
 }
 
 void check_input(const std::filesystem::path& input) {
