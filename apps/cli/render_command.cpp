@@ -46,7 +46,13 @@ Scene load_input(const RenderOptions& options) {
     if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
         throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
                                        "a map goes with its mesh: relief render MESH --vdm MAP"});
-    return load_scene(options.input);
+    try {
+        return load_scene(options.input);
+    } catch (const Error& error) {
+        if (extension == ".json" || !error.hint().empty()) throw;
+        throw Error(error.kind(), {error.message(), error.where(),
+                                   "a scene file is JSON; meshes are .obj, .ply, .gltf, .glb and .fbx"});
+    }
 }
 
 void write_statistics(const std::filesystem::path& file, const RenderResult& result,

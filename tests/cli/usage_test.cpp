@@ -205,6 +205,8 @@ TEST_F(Usage, files_of_other_programs_name_the_way_out_of_them) {
     }
     write("a.gltf", R"({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]})");
     expect_refused({"render", "a.gltf"}, message, 3);
+    write("notes.txt", "x");
+    expect_refused({"render", "notes.txt"}, "a scene file is JSON; meshes are .obj", 3);
     write("a.psd", "x");
     expect_refused({"render", "plane.obj", "--vdm", "a.psd"}, "a Photoshop file is not read", 3);
 }
