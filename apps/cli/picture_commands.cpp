@@ -52,6 +52,11 @@ int run_compare(const CompareOptions& options) {
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
 
+int get_sample_count(const Image& picture) {
+    const std::string& samples = picture.metadata.at("relief:samples"); // "A:B"
+    return std::atoi(samples.c_str() + samples.find(':') + 1);
+}
+
 /// "samples 4:8 of rows 0 to 99", as --samples and --crop take them.
 std::string describe_gap(const PictureGap& gap, const Image& picture, int sample_count) {
     const bool is_wide = gap.x0 <= picture.x0 && gap.x1 >= picture.x0 + picture.width;
@@ -68,12 +73,23 @@ std::string describe_gap(const PictureGap& gap, const Image& picture, int sample
 /// What is missing, for people; a few of many.
 std::string describe_gaps(const std::vector<PictureGap>& gaps, const Image& picture) {
     constexpr size_t kMost = 6;
-    const std::string& samples = picture.metadata.at("relief:samples"); // "A:B"
-    const int sample_count = std::atoi(samples.c_str() + samples.find(':') + 1);
+    const int sample_count = get_sample_count(picture);
     std::string text;
     for (size_t k = 0; k < std::min(gaps.size(), kMost); ++k)
         text += (k > 0 ? "; " : "") + describe_gap(gaps[k], picture, sample_count);
     return gaps.size() > kMost ? fmt::format("{}; and {} more", text, gaps.size() - kMost) : text;
+}
+
+/// Only .exr says, by alpha and layer "samples", that a black pixel has no sample.
+void refuse_black_pixels(const std::vector<PictureGap>& gaps, const Image& picture,
+                         const std::string& output) {
+    const int sample_count = get_sample_count(picture);
+    const bool has_empty = std::any_of(gaps.begin(), gaps.end(), [&](const PictureGap& gap) {
+        return gap.first_sample == 0 && gap.last_sample == sample_count;
+    });
+    if (has_empty && get_lower_extension(output) != ".exr")
+        throw Error(ErrorKind::usage,
+                    {"pixels without a sample would be black in it", output, "-o FILE.exr"});
 }
 
 int run_merge(const MergeOptions& options) {
@@ -91,6 +107,7 @@ int run_merge(const MergeOptions& options) {
             throw Error(
                 ErrorKind::bad_input,
                 {message, options.output, "add the missing parts, or --allow-gaps to join what is there"});
+        refuse_black_pixels(gaps, merged, options.output);
         fmt::print(stderr, "relief: warning: {}\n", message);
     }
     write_image(merged, options.output);

@@ -27,15 +27,17 @@ constexpr std::string_view kMaya = "Maya: File > Export All, Files of type: OBJe
                                    "Windows > Settings/Preferences > "
                                    "Plug-in Manager)";
 constexpr std::string_view kZbrush = "ZBrush: Tool > Export, as .obj";
-constexpr std::string_view kHoudini =
-    "Houdini: right-click the geometry node > Save > Geometry, as .obj (before Houdini 18: Save Geometry)";
+constexpr std::string_view kHoudini = "Houdini: right-click the surface node > Save Geometry, as .obj";
 constexpr std::string_view kUsd =
     "Blender: File > Import > Universal Scene Description, then File > Export > Wavefront (.obj); Houdini: "
-    "right-click the geometry node > Save > Geometry, as .obj; Maya: File > Export All, OBJexport";
+    "right-click the surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
 constexpr std::string_view kAlembic =
     "Blender: File > Import > Alembic (.abc), then File > Export > Wavefront (.obj); Houdini: right-click "
     "the "
-    "geometry node > Save > Geometry, as .obj; Maya: File > Export All, OBJexport";
+    "surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
+constexpr std::string_view kCollada = "Blender 4: File > Import > Collada (.dae), then File > Export > "
+                                      "Wavefront (.obj); MeshLab: File > Import "
+                                      "Mesh, then File > Export Mesh As";
 constexpr std::string_view kMeshlab =
     "MeshLab: File > Import Mesh, then File > Export Mesh As, as .obj or .ply";
 constexpr std::string_view k3dsMax = "3ds Max: File > Export > Export, Save as type: OBJ-Exporter";
@@ -70,7 +72,7 @@ constexpr std::array<Format, 43> kFormats{{
     {".3ds", "a 3D Studio file",
      "3ds Max: File > Import, then File > Export > Export, Save as type: OBJ-Exporter"},
     {".c4d", "a Cinema 4D file", "Cinema 4D: File > Export > Wavefront OBJ (.obj)"},
-    {".dae", "a COLLADA file", kMeshlab},
+    {".dae", "a COLLADA file", kCollada},
     {".3dm", "a Rhino file", "Rhino: File > Export Selected, Save as type: OBJ"},
     {".skp", "a SketchUp file", "SketchUp: File > Export > 3D Model, as .obj"},
     {".off", "an OFF file", kMeshlab},

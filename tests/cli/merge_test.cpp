@@ -34,6 +34,9 @@ TEST_F(Merge, names_the_rows_of_tiles_that_are_missing) {
         render_ok(std::string("t") + tile[0] + ".exr", {"--tile", tile});
     expect_refused({"t0.exr", "t2.exr"}, "missing: rows 5 to 9 (--crop 0,5,24,10)");
     expect_refused({"t1.exr", "t0.exr"}, "missing: rows 10 to 15 (--crop 0,10,24,16)");
+    const CommandResult black = run({"merge", "t0.exr", "t2.exr", "-o", "black.png", "--allow-gaps"});
+    EXPECT_EQ(black.exit_code, 2) << black.errors;
+    EXPECT_FALSE(exists("black.png"));
     const CommandResult whole = run({"merge", "t0.exr", "t1.exr", "t2.exr", "-o", "whole.exr"});
     EXPECT_EQ(whole.exit_code, 0) << whole.errors;
     EXPECT_EQ(whole.errors, "");
@@ -43,6 +46,7 @@ TEST_F(Merge, names_the_samples_that_are_missing) {
     for (const char* range : {"0:1", "1:3", "3:4"})
         render_ok(std::string("s") + range[0] + ".exr", {"--samples", range});
     expect_refused({"s0.exr", "s3.exr"}, "missing: samples 1:3");
+    EXPECT_EQ(run({"merge", "s0.exr", "s3.exr", "-o", "fewer.png", "--allow-gaps"}).exit_code, 0);
     expect_refused({"s3.exr", "s1.exr"}, "missing: samples 0:1");
     render_ok("upper.exr", {"--samples", "1:4", "--crop", "0,0,24,9"});
     render_ok("lower.exr", {"--samples", "1:2", "--crop", "0,9,24,16"});

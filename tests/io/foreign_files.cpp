@@ -27,7 +27,7 @@ TEST_F(ForeignFiles, meshes_name_the_way_out_of_their_program) {
         {"a.c4d", "Cinema 4D: File > Export > Wavefront OBJ"},
         {"a.3ds", "3D Studio"},
         {"a.dae", "MeshLab: File > Import Mesh"},
-        {"a.bgeo.sc", "Houdini: right-click the geometry node > Save > Geometry"}};
+        {"a.bgeo.sc", "Houdini: right-click the surface node > Save Geometry"}};
     for (const auto& [name, way] : kinds) {
         const auto file = write(name, "x");
         for (const std::function<void()>& read : {std::function<void()>([&] { load_mesh(file); }),
