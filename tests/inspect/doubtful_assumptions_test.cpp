@@ -1,5 +1,6 @@
 // Warnings of maps whose convention nobody stated.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -43,6 +44,39 @@ TEST(DoubtfulAssumptions, say_nothing_of_what_was_stated) {
     EXPECT_TRUE(has_code(find(half, kAll), "E-NONEG"));
     EXPECT_TRUE(has_code(find(half, {.midlevel = true}), "E-NONEG"));
     EXPECT_FALSE(has_code(find(half, {.space = true, .axes = true, .wrap = true}), "E-NONEG"));
+}
+
+/// A tube that is open on one side, without seams, and what moves it outwards in object space.
+Mesh make_open_tube(Texture& outwards) {
+    constexpr uint32_t kColumns = 24;
+    constexpr float kArc = 6.0f;
+    Mesh tube;
+    tube.name = "tube";
+    for (uint32_t k = 0; k <= kColumns; ++k)
+        for (const float y : {-1.0f, 1.0f}) {
+            const float u = float(k) / kColumns;
+            tube.positions.push_back({std::sin(kArc * u), y, std::cos(kArc * u)});
+            tube.uvs.push_back({u, y / 2 + 0.5f});
+        }
+    for (uint32_t k = 0; k < kColumns; ++k) {
+        tube.face_sizes.push_back(4);
+        for (const uint32_t corner : {2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1})
+            tube.position_indices.push_back(corner), tube.uv_indices.push_back(corner);
+    }
+    outwards.width = 64, outwards.height = 4, outwards.channel_count = 3;
+    for (uint32_t k = 0; k < 64 * 4; ++k) {
+        const float angle = kArc * (float(k % 64) + 0.5f) / 64;
+        outwards.floats.insert(outwards.floats.end(), {0.1f * std::sin(angle), 0, 0.1f * std::cos(angle), 1});
+    }
+    return tube;
+}
+
+TEST(DoubtfulAssumptions, tell_object_space_where_no_seam_does) {
+    auto outwards = std::make_shared<Texture>();
+    const Mesh tube = make_open_tube(*outwards);
+    const Inspection doubts = find(outwards, kAll, tube);
+    EXPECT_HAS_PART(find_text(doubts, "I-SPACE"), "displacement.space = object");
+    EXPECT_FALSE(has_code(find(outwards, {.axes = true, .midlevel = true}, tube), "I-SPACE"));
 }
 
 TEST(DoubtfulAssumptions, tell_uvs_outside_of_one_image) {
