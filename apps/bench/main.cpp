@@ -53,6 +53,7 @@ int parse_and_run(int argument_count, const char* const* arguments) {
     add_bench_options(app, options);
     if (const auto answered = cli::parse_words(app, argument_count, arguments)) return *answered;
     cli::refuse_extras(app, "relief bench");
+    cli::refuse_empty_names(app);
     cli::complete_engine_options(options.engine, options.settings);
     return run_bench(options);
 }

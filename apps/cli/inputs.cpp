@@ -21,6 +21,14 @@ std::vector<std::string> list_files(const Scene& scene) {
     return files;
 }
 
+void refuse_link_loop(const std::filesystem::path& file, ErrorKind kind) {
+    std::error_code code;
+    [[maybe_unused]] const std::filesystem::file_status status = std::filesystem::status(file, code);
+    if (code == std::errc::too_many_symbolic_link_levels)
+        throw Error(kind, {"is a symbolic link, or in one, that leads back to itself", file.string(),
+                           "readlink -f shows where links end"});
+}
+
 std::filesystem::path find_place(const std::filesystem::path& file) {
     std::error_code ignored;
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";

@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "relief/error.h"
 #include "relief/scene.h"
 
 namespace relief::cli {
 
 /// Files that a scene was read from, as far as known: scene file, meshes, maps, textures.
 std::vector<std::string> list_files(const Scene& scene);
+
+/// Throws Error{kind} for a symbolic link, or a path through one, that leads back to itself.
+void refuse_link_loop(const std::filesystem::path& file, ErrorKind kind);
 
 /// Path of an existing or future file with symbolic links of its folder resolved; names with <UDIM> are not
 /// files.

@@ -196,6 +196,7 @@ void print_inspection_json(const Inspection& inspection, const std::string& file
 void check_options(const InspectOptions& options) {
     if (options.file.empty())
         throw Error(ErrorKind::usage, {"no file given", "", "relief inspect SCENE.json, a mesh or a map"});
+    refuse_foreign_file(options.file);
     const FileKind kind = get_kind(options.file);
     if (kind != FileKind::mesh && !options.mesh_only.empty())
         throw Error(ErrorKind::usage,

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "base/suggest.h"
 #include "commands.h"
 #include "common/command_line.h"
+#include "common/option_hints.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -41,15 +41,16 @@ int run_verb(CLI::App& app, const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs) {
         if (!verb.app->parsed()) continue;
         if (!verb.app->get_prefix_command()) refuse_extras(*verb.app, "relief " + verb.app->get_name());
+        refuse_empty_names(*verb.app);
         return verb.command();
     }
     const std::vector<std::string> extras = app.remaining();
     const std::string help = "relief --help lists the commands";
     if (extras.empty()) throw Error(ErrorKind::usage, {"no command given", "", help});
-    if (extras.front()[0] == '-') refuse_option(extras.front(), app, help);
+    if (extras.front()[0] == '-') refuse_option(extras.front(), "", app, help);
     std::vector<std::string_view> names;
     for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
-    const std::string hint = suggest_word(extras.front(), names);
+    const std::string hint = suggest_command(extras.front(), names);
     throw Error(ErrorKind::usage,
                 {fmt::format("unknown command '{}'", extras.front()), "", hint.empty() ? help : hint});
 }

@@ -1,7 +1,8 @@
 // compare and merge.
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct CompareOptions {
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string output;
+    bool allows_gaps = false;
 };
 
 int run_compare(const CompareOptions& options) {
@@ -50,14 +52,44 @@ int run_compare(const CompareOptions& options) {
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
 
-/// Pixels of the window without samples in any part.
-size_t count_empty_pixels(const Image& image) {
-    const std::optional<size_t> samples = image.find_channel("samples.Y");
-    if (!samples) return 0;
-    size_t count = 0;
-    for (size_t k = *samples; k < image.pixels.size(); k += image.channels.size())
-        count += image.pixels[k] == 0 ? 1 : 0;
-    return count;
+int get_sample_count(const Image& picture) {
+    const std::string& samples = picture.metadata.at("relief:samples"); // "A:B"
+    return std::atoi(samples.c_str() + samples.find(':') + 1);
+}
+
+/// "samples 4:8 of rows 0 to 99", as --samples and --crop take them.
+std::string describe_gap(const PictureGap& gap, const Image& picture, int sample_count) {
+    const bool is_wide = gap.x0 <= picture.x0 && gap.x1 >= picture.x0 + picture.width;
+    const bool is_high = gap.y0 <= picture.y0 && gap.y1 >= picture.y0 + picture.height;
+    const bool has_none = gap.first_sample == 0 && gap.last_sample == sample_count;
+    const std::string samples = fmt::format("samples {}:{}", gap.first_sample, gap.last_sample);
+    if (is_wide && is_high) return samples;
+    const std::string window = fmt::format("--crop {},{},{},{}", gap.x0, gap.y0, gap.x1, gap.y1);
+    const std::string place = is_wide ? fmt::format("rows {} to {} ({})", gap.y0, gap.y1 - 1, window)
+                                      : "window " + window.substr(7);
+    return has_none ? place : samples + " of " + place;
+}
+
+/// What is missing, for people; a few of many.
+std::string describe_gaps(const std::vector<PictureGap>& gaps, const Image& picture) {
+    constexpr size_t kMost = 6;
+    const int sample_count = get_sample_count(picture);
+    std::string text;
+    for (size_t k = 0; k < std::min(gaps.size(), kMost); ++k)
+        text += (k > 0 ? "; " : "") + describe_gap(gaps[k], picture, sample_count);
+    return gaps.size() > kMost ? fmt::format("{}; and {} more", text, gaps.size() - kMost) : text;
+}
+
+/// Only .exr says, by alpha and layer "samples", that a black pixel has no sample.
+void refuse_black_pixels(const std::vector<PictureGap>& gaps, const Image& picture,
+                         const std::string& output) {
+    const int sample_count = get_sample_count(picture);
+    const bool has_empty = std::any_of(gaps.begin(), gaps.end(), [&](const PictureGap& gap) {
+        return gap.first_sample == 0 && gap.last_sample == sample_count;
+    });
+    if (has_empty && get_lower_extension(output) != ".exr")
+        throw Error(ErrorKind::usage,
+                    {"pixels without a sample would be black in it", output, "-o FILE.exr"});
 }
 
 int run_merge(const MergeOptions& options) {
@@ -69,10 +101,16 @@ int run_merge(const MergeOptions& options) {
     std::vector<Image> parts;
     for (const std::string& part : options.parts) parts.push_back(read_image(part));
     const Image merged = merge_images(parts);
+    if (const std::vector<PictureGap> gaps = find_gaps(parts); !gaps.empty()) {
+        const std::string message = "the picture is not whole, missing: " + describe_gaps(gaps, merged);
+        if (!options.allows_gaps)
+            throw Error(
+                ErrorKind::bad_input,
+                {message, options.output, "add the missing parts, or --allow-gaps to join what is there"});
+        refuse_black_pixels(gaps, merged, options.output);
+        fmt::print(stderr, "relief: warning: {}\n", message);
+    }
     write_image(merged, options.output);
-    if (const size_t count = count_empty_pixels(merged); count > 0)
-        fmt::print(stderr, "relief: warning: {} of {} pixels have no sample: a part is missing\n", count,
-                   size_t(merged.width) * size_t(merged.height));
     fmt::print("wrote {}\n", options.output);
     return kExitDone;
 }
@@ -100,6 +138,8 @@ Command add_merge(CLI::App& verb) {
     verb.add_option("parts", options->parts, "tiles and sample ranges of one picture (.exr)")
         ->type_name("PARTS");
     verb.add_option("-o", options->output, "the joined picture")->type_name("FILE");
+    verb.add_flag("--allow-gaps", options->allows_gaps,
+                  "join parts of a picture that lack pixels or samples of it, which is refused else");
     return [options] { return run_merge(*options); };
 }
 

@@ -23,12 +23,12 @@
 #include "interrupt.h"
 #include "output.h"
 #include "pixel.h"
-#include "progress.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
 #include "relief/session.h"
 #include "render_options.h"
+#include "render_warnings.h"
 #include "statistics_report.h"
 
 namespace relief::cli {
@@ -46,7 +46,13 @@ Scene load_input(const RenderOptions& options) {
     if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
         throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
                                        "a map goes with its mesh: relief render MESH --vdm MAP"});
-    return load_scene(options.input);
+    try {
+        return load_scene(options.input);
+    } catch (const Error& error) {
+        if (extension == ".json" || !error.hint().empty()) throw;
+        throw Error(error.kind(), {error.message(), error.where(),
+                                   "a scene file is JSON; meshes are .obj, .ply, .gltf, .glb and .fbx"});
+    }
 }
 
 void write_statistics(const std::filesystem::path& file, const RenderResult& result,
@@ -54,8 +60,9 @@ void write_statistics(const std::filesystem::path& file, const RenderResult& res
     write_text_file(file, write_json(describe_statistics(result, settings), 2));
 }
 
-void print_warnings(const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
+void print_warnings(const std::vector<std::string>& warnings, bool is_mesh) {
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
 }
 
 void print_summary(const RenderResult& result, const RenderSettings& settings) {
@@ -70,27 +77,24 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
 
-int get_exit_code(const RenderOptions& options, const RenderResult& result, const Saved& saved) {
+int get_exit_code(const RenderResult& result, const Saved& saved) {
     if (saved.is_elsewhere) return int(ErrorKind::failed);
     if (!result.is_complete && get_interrupt() != 0) return kExitSignalBase + get_interrupt();
-    if (options.is_strict && !result.statistics.warnings.empty()) return kExitWarnings;
     return kExitDone;
 }
 
 /// Start of the wait for a picture, and the time spent reading.
 struct Waiting {
     double start, load_s;
-    uint64_t camera_rays = 0; ///< of previous pictures: engines accumulate
 };
 
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const Waiting& waiting, RenderResult& result) {
     Statistics& statistics = result.statistics;
-    const bool has_samples = statistics.camera_rays > 0 && statistics.camera_rays != waiting.camera_rays;
-    if (!result.is_complete && !has_samples) {
-        fmt::print(stderr, "relief: interrupted before the first sample; no picture was written\n");
+    if (result.whole_samples == 0) {
+        fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
         if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
-        return get_exit_code(options, result, {});
+        return get_exit_code(result, {});
     }
     const double write_start = get_seconds();
     add_display_entries(options.aim, output, result.image);
@@ -104,58 +108,31 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     std::fflush(stdout); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
-    return get_exit_code(options, result, saved);
+    return get_exit_code(result, saved);
 }
-
-ProgressStyle get_progress_style(const RenderOptions& options) {
-    return options.is_quiet ? ProgressStyle::none : options.progress;
-}
-
-/// Warnings of the reader are printed before the render, those of the render after it.
-class Warner {
-  public:
-    Warner(const Scene& scene, bool is_quiet) : told_(scene.warnings.size()), is_quiet_(is_quiet) {
-        print(scene.warnings, 0);
-    }
-    void print_rest(const std::vector<std::string>& warnings) {
-        print(warnings, told_);
-        told_ = std::max(told_, warnings.size());
-    }
-
-  private:
-    void print(const std::vector<std::string>& warnings, size_t first) const {
-        if (!is_quiet_ && first < warnings.size())
-            print_warnings({warnings.begin() + ptrdiff_t(first), warnings.end()});
-    }
-    size_t told_;
-    bool is_quiet_;
-};
 
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                   const std::filesystem::path& output, const Waiting& waiting, Warner& warner) {
+                   const std::filesystem::path& output, const Waiting& waiting) {
+    catch_interrupts();
     RenderResult result;
+    size_t told = 0;
     {
-        ProgressPrinter progress(get_progress_style(options)); // its end prints the last line
-        result = render(std::move(scene), settings, &progress);
+        RenderWatcher watcher(options, told); // its end prints the last line
+        result = render(std::move(scene), settings, &watcher);
+        if (watcher.is_refused()) return kExitWarnings;
     }
-    warner.print_rest(result.statistics.warnings);
     return finish_picture(options, settings, output, waiting, result);
 }
 
-/// One picture, or those of a turntable.
-int render_pictures(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                    Waiting waiting) {
-    catch_interrupts();
-    Warner warner(scene, options.is_quiet);
-    const int turns = options.aim.turntable;
-    if (turns == 0)
-        return render_picture(options, settings, std::move(scene), options.output, waiting, warner);
+/// The pictures of a turntable, one after the other.
+int render_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
+                 Waiting waiting) {
     int exit_code = kExitDone;
-    for (int k = 0; k < turns && (exit_code == kExitDone || exit_code == kExitWarnings); ++k) {
+    for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
         Scene turned = scene;
-        turned.camera = turn_camera(scene.camera, 360.0f * float(k) / float(turns));
-        exit_code = render_picture(options, settings, std::move(turned), name_turn(options.output, k),
-                                   waiting, warner);
+        turned.camera = turn_camera(scene.camera, 360.0f * float(k) / float(options.aim.turntable));
+        exit_code =
+            render_picture(options, settings, std::move(turned), name_turn(options.output, k), waiting);
         waiting = {get_seconds(), 0};
     }
     return exit_code;
@@ -205,24 +182,21 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
         scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
                      options.edits == "-" ? "standard input" : options.edits, only_displacement);
-    Warner warner(scene, options.is_quiet);
+    size_t told = 0; // warnings
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
         RenderResult result;
         {
-            ProgressPrinter progress(get_progress_style(options));
-            result = session.render(&progress);
+            RenderWatcher watcher(options, told);
+            result = session.render(&watcher);
+            if (watcher.is_refused()) return kExitWarnings;
         }
-        warner.print_rest(result.statistics.warnings);
-        const uint64_t camera_rays = result.statistics.camera_rays;
-        const int exit_code = finish_picture(options, settings, output, waiting, result);
-        waiting.camera_rays = camera_rays;
-        return exit_code;
+        return finish_picture(options, settings, output, waiting, result);
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet
-    while (exit_code == kExitDone || exit_code == kExitWarnings) {
+    while (exit_code == kExitDone) {
         const std::optional<EditLine> line = edits.next();
         if (!line) break;
         if (!is_pending) waiting.start = get_seconds() - line->read_s, waiting.load_s = 0;
@@ -240,6 +214,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
 
 int render_input(const RenderOptions& options, double start) {
     Scene scene = load_input(options);
+    add_assumption_warnings(scene);
     const double load_s = get_seconds() - start;
     const std::vector<std::string> files = list_files(scene);
     keep_files(files, options.output), keep_files(files, options.statistics_file);
@@ -250,9 +225,10 @@ int render_input(const RenderOptions& options, double start) {
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const Waiting waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
-    if (!options.pixel) return render_pictures(options, settings, std::move(scene), waiting);
+    if (options.aim.turntable > 0) return render_turns(options, settings, scene, waiting);
+    if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
-    if (!options.is_quiet) print_warnings(scene.warnings);
+    if (!options.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 

@@ -68,11 +68,19 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
         if (tile[0] >= tile[1]) refuse_value("--tile", text, "i/n with i from 0 to n - 1");
         o.tile = Tile{int(tile[0]), int(tile[1])};
     });
-    add(verb, "--samples", "A:B", "samples A to B - 1 of each pixel", [&o](const std::string& text) {
-        const std::vector<int64_t> range = parse_integers("--samples", text, ':', 2, {0, kMaxSamples});
-        if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
-        o.samples = {int(range[0]), int(range[1])};
-    });
+    add(verb, "--samples", "A:B",
+        "samples A to B - 1 of each pixel; within --spp if given, not bound by the scene file's spp",
+        [&o](const std::string& text) {
+            if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos)
+                throw Error(
+                    ErrorKind::usage,
+                    {fmt::format("'{}' is no range A:B", text), "--samples",
+                     fmt::format("--spp {0} for the number of samples, --samples 0:{0} for the first of them",
+                                 text)});
+            const std::vector<int64_t> range = parse_integers("--samples", text, ':', 2, {0, kMaxSamples});
+            if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
+            o.samples = {int(range[0]), int(range[1])};
+        });
     add(verb, "--edits", "FILE",
         "then a picture after each edit of a map in FILE (-: as they come on standard input); "
         "paths in it start from the current folder",
@@ -163,13 +171,14 @@ void add_report_options(CLI::App& verb, RenderOptions& o) {
     });
     verb.add_flag("-q", o.is_quiet, "no progress, no warnings on stderr")
         ->excludes(verb.add_flag("-v", o.is_verbose, "say what was rendered and what it cost"));
-    verb.add_flag("--strict", o.is_strict, "exit 6 when there were warnings");
+    verb.add_flag("--strict", o.is_strict, "render nothing that there are warnings of: exit 6");
 }
 
 void check_input(const std::filesystem::path& input) {
     if (input.empty())
         throw Error(ErrorKind::usage,
                     {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
+    refuse_foreign_file(input);
     std::error_code code;
     if (!std::filesystem::is_directory(input, code)) return;
     const std::filesystem::path scene = input / "scene.json";
@@ -238,6 +247,7 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
+    refuse_link_loop(o.edits, ErrorKind::bad_input);
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
         throw Error(ErrorKind::usage,
                     {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
@@ -274,8 +284,10 @@ RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& pict
     s.image.seed = o.given.seed.value_or(picture.seed.value_or(s.image.seed));
     if (o.samples) {
         if (o.given.spp && o.samples->second > *o.given.spp)
-            refuse_value("--samples", fmt::format("{}:{}", o.samples->first, o.samples->second),
-                         fmt::format("inside the {} samples of --spp", *o.given.spp));
+            throw Error(ErrorKind::usage,
+                        {fmt::format("'{}:{}' is not inside the {} samples of --spp", o.samples->first,
+                                     o.samples->second, *o.given.spp),
+                         "--samples", "leave out --spp: --samples alone says which samples to take"});
         s.image.first_sample = o.samples->first;
         s.image.spp = o.samples->second - o.samples->first;
     }

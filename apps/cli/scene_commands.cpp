@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/report.h"
+#include "inputs.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/devices.h"
 #include "relief/error.h"
@@ -65,6 +66,7 @@ int run_scene(const SceneOptions& options) {
         throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
     const std::filesystem::path folder = options.folder.empty() ? options.name : options.folder;
     const std::filesystem::path file = folder / "scene.json";
+    refuse_link_loop(file, ErrorKind::failed);
     const std::string before = read_text(file);
     const std::string copy = find_free_copy(file.string());
     if (!before.empty()) write_text_file(copy, before);

@@ -1,5 +1,7 @@
 #include "common/command_line.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -12,7 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "base/suggest.h"
+#include "common/option_hints.h"
 #include "common/option_names.h"
 #include "relief/error.h"
 #include "relief/version.h"
@@ -73,6 +75,7 @@ void prepare_parsing(CLI::App& app) {
 }
 
 std::optional<int> parse_words(CLI::App& app, int argument_count, const char* const* arguments) {
+    refuse_single_dashes(app, argument_count, arguments);
     try {
         app.parse(argument_count, arguments);
     } catch (const CLI::ParseError& error) {
@@ -84,14 +87,9 @@ std::optional<int> parse_words(CLI::App& app, int argument_count, const char* co
     return std::nullopt;
 }
 
-void refuse_option(const std::string& word, const CLI::App& app, const std::string& help) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-    }
-    const std::vector<std::string_view> views(names.begin(), names.end());
-    const std::string hint = suggest_word(word, views);
+void refuse_option(const std::string& word, const std::string& value, const CLI::App& app,
+                   const std::string& help) {
+    const std::string hint = suggest_option(word, value, app);
     throw Error(ErrorKind::usage, {fmt::format("unknown option '{}'", word), "", hint.empty() ? help : hint});
 }
 
@@ -99,9 +97,30 @@ void refuse_extras(const CLI::App& app, const std::string& command) {
     const std::vector<std::string> extras = app.remaining();
     if (extras.empty()) return;
     const std::string help = fmt::format("{} --help lists the options", command);
-    for (const std::string& extra : extras)
-        if (extra.size() > 1 && extra[0] == '-') refuse_option(extra.substr(0, extra.find('=')), app, help);
+    for (size_t k = 0; k < extras.size(); ++k) {
+        const std::string& extra = extras[k];
+        if (extra.size() < 2 || extra[0] != '-') continue;
+        const size_t equals = extra.find('=');
+        const std::string next = k + 1 < extras.size() ? extras[k + 1] : std::string();
+        refuse_option(extra.substr(0, equals), equals == std::string::npos ? next : extra.substr(equals + 1),
+                      app, help);
+    }
     throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extras.front()), "", help});
+}
+
+void refuse_empty_names(const CLI::App& app) {
+    constexpr std::array<std::string_view, 5> kFiles = {"FILE", "DIR", "MAP", "MESH", "PARTS"};
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string type = option->get_type_name();
+        if (std::none_of(kFiles.begin(), kFiles.end(),
+                         [&](std::string_view file) { return type.find(file) != std::string::npos; }))
+            continue;
+        for (const std::string& value : option->results())
+            if (value.empty())
+                throw Error(ErrorKind::usage,
+                            {fmt::format("an empty text names no {}", type == "DIR" ? "folder" : "file"),
+                             option->get_name(), "leave it out, or give a name"});
+    }
 }
 
 } // namespace relief::cli

@@ -29,7 +29,12 @@ std::optional<int> parse_words(CLI::App& app, int argument_count, const char* co
 /// Throws Error{usage} for arguments unknown to `app`. `command`: as the user types it.
 void refuse_extras(const CLI::App& app, const std::string& command);
 
-/// Throws Error{usage} with the nearest option, or else the help command, as the hint.
-[[noreturn]] void refuse_option(const std::string& word, const CLI::App& app, const std::string& help);
+/// Throws Error{usage} with the option that was probably meant, or else the help command, as the hint.
+/// `value`: what follows the word; may be empty.
+[[noreturn]] void refuse_option(const std::string& word, const std::string& value, const CLI::App& app,
+                                const std::string& help);
+
+/// Throws Error{usage} for an option or argument that names a file or folder and is empty: `-o ""`.
+void refuse_empty_names(const CLI::App& app);
 
 } // namespace relief::cli

@@ -12,7 +12,7 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 26> kOptions{{
+constexpr std::array<OptionName, 32> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
@@ -35,6 +35,12 @@ constexpr std::array<OptionName, 26> kOptions{{
     {"experiment.method", "--method"},
     {"experiment.bottom", "--bottom"},
     {"displacement.scale", "--vdm-scale"},
+    {"displacement.type", "--type"},
+    {"displacement.space", "--space"},
+    {"displacement.axes", "--axes"},
+    {"displacement.midlevel", "--midlevel"},
+    {"displacement.encoding", "--encoding"},
+    {"displacement.wrap", "--wrap"},
     {"image.width", "--size"},
     {"image.height", "--size"},
     {"vulkan_devices()", "`relief devices`"},

@@ -72,4 +72,17 @@ ImageDifference compare_images(const Image& a, const Image& b, const std::string
 /// channels) or overlapping sample ranges of a pixel.
 Image merge_images(std::span<const Image> parts);
 
+/// Samples [first_sample, last_sample) that pixels [x0, x1) x [y0, y1) of the display window lack.
+struct PictureGap {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int first_sample = 0, last_sample = 0;
+    friend bool operator==(const PictureGap&, const PictureGap&) = default;
+};
+
+/// What `parts`, as merge_images takes them, leave out of a whole picture: of the display window, or of their
+/// data window where all have the same one, and of the samples from 0 to the last that any part has. A part
+/// with "samples.Y" counts by its least pixel, within each window that no edge of another part crosses. By
+/// rows. Throws Error{bad_input} for a part without "relief:samples".
+std::vector<PictureGap> find_gaps(std::span<const Image> parts);
+
 } // namespace relief

@@ -62,6 +62,12 @@ Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* 
 /// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
+/// What speaks against the assumptions about the maps of a scene (Displacement::assumed): each finding names
+/// the setting that says it, "displacement.axes = t,n,b". At most 2^18 texels a map are looked at, and none
+/// of maps whose convention was stated in full. That seams speak for object space is left to render(), which
+/// warns of it. The scene must be valid.
+std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
+
 /// Contact sheet of a scene seen by its camera, four pictures of `settings.image.width` x
 /// `settings.image.height` each: the base (with the displacement axes as red, green and blue arrows), the
 /// displaced surface, the displacement as colours (red, green, blue along t, b, n or x, y, z; grey is zero),

@@ -78,6 +78,11 @@ Scene make_map_scene(const Displacement& map);
 /// Whether load_mesh reads files with this extension (.obj .ply .gltf .glb .fbx).
 bool is_mesh_file(const std::filesystem::path& file);
 
+/// Throws Error{bad_input} where the extension is that of a program's own format which nothing here reads
+/// (.blend .usd .abc .stl .ma .ztl .psd .ptx ...), with the menu path by which that program exports another.
+/// The functions that read files call it themselves.
+void refuse_foreign_file(const std::filesystem::path& file);
+
 struct MeshReadOptions {
     int uv_set = 0; ///< of glTF and FBX, from 0; OBJ and PLY have only set 0
 };

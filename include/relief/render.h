@@ -129,8 +129,11 @@ class RenderObserver {
   public:
     virtual ~RenderObserver() = default;
     virtual void on_progress(const Progress& progress) = 0;
-    /// Returning true cancels the render: the image so far is returned and is valid.
+    /// Returning true cancels the render: the image so far is returned, and is whole where
+    /// RenderResult::whole_samples is above 0.
     virtual bool is_cancelled() const = 0;
+    /// Called once, before the first ray, with all warnings (Statistics::warnings) known by then.
+    virtual void on_warnings(const std::vector<std::string>& warnings) { (void)warnings; }
 };
 
 struct RenderResult {
@@ -138,6 +141,9 @@ struct RenderResult {
     Statistics statistics;
     bool is_complete =
         true; ///< false if cancelled; "samples.Y" then holds the number of samples of each pixel
+    /// Samples that every pixel has; 0 if cancelled before the first pass over the picture was whole: pixels
+    /// without samples are then 0, and the image is not to be shown.
+    int whole_samples = 0;
 };
 
 /// Renders `scene`, whose polygons are freed once patches have been built from them. `observer` may be null.

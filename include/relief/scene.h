@@ -93,6 +93,12 @@ struct MapTile {
     std::shared_ptr<const Texture> texture;
 };
 
+/// What of a map's convention nobody said, so that a reader assumed it; for warnings only.
+struct AssumedConvention {
+    bool space = false, axes = false, midlevel = false, wrap = false;
+    friend bool operator==(const AssumedConvention&, const AssumedConvention&) = default;
+};
+
 /// A displacement map and its convention. A texel displaces by A (value - midlevel) scale, A the signed
 /// permutation; a height map along n by (R - midlevel.x) scale.x. Row 0 of a map is v = 1 unless `flip_v`.
 struct Displacement {
@@ -104,6 +110,7 @@ struct Displacement {
     AxisMap axes;
     Vec3f midlevel{0, 0, 0};
     bool has_midlevel = false; ///< stated explicitly, even if 0; for inspection only
+    AssumedConvention assumed; ///< of a map read from a file; nothing of one made in memory
     Vec3f scale{1, 1, 1};
     bool flip_v = false;
     bool is_udim = false; ///< tiles are selected by floor(u), floor(v); a missing tile displaces by 0

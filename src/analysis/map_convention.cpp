@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -184,20 +186,117 @@ std::optional<Surface> try_surface(const Mesh& mesh, const Displacement& map) {
     }
 }
 
+/// The UDIM number in the name of an image's file, "head.1002.exr"; 0: none.
+int find_tile_number(const Texture& texture) {
+    const size_t slash = texture.file.find_last_of('/');
+    const std::string_view name =
+        std::string_view(texture.file).substr(slash == std::string::npos ? 0 : slash + 1);
+    int found = 0;
+    for (size_t begin = 0; begin < name.size();) {
+        size_t end = begin;
+        int number = 0;
+        while (end < name.size() && name[end] >= '0' && name[end] <= '9' && end - begin < 5)
+            number = 10 * number + (name[end++] - '0');
+        if (end - begin == 4 && number >= 1001 && number <= 1999) found = number; // a tile stands last
+        begin = std::max(end, begin + 1);
+    }
+    return found;
+}
+
+/// Tiles of a body whose texels nearly all move to one side along two channels, alike: a movement of the
+/// body, as in object space. In tangent space the axes turn from island to island, and only the channel along
+/// the normal has a side.
+std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement& map,
+                                                             const MapSurvey& survey) {
+    constexpr double kAllOneSided = 0.9;
+    if (!map.is_udim && find_tile_number(*map.tiles.front().texture) == 0) return std::nullopt;
+    std::array<size_t, 3> order{0, 1, 2};
+    const auto measure = [&](size_t c) { return std::fabs(survey.channels[c].mean - survey.midlevel[c]); };
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return measure(a) > measure(b); });
+    const auto is_one_sided = [&](size_t c) {
+        return std::fabs(survey.channels[c].one_sided) >= kAllOneSided;
+    };
+    if (!is_one_sided(order[0]) || !is_one_sided(order[1]) ||
+        measure(order[0]) >= kClearRatio * measure(order[1]))
+        return std::nullopt;
+    return Guess<DisplacementSpace>{
+        DisplacementSpace::object, true,
+        fmt::format("{} and {} lie to one side in nearly all texels of this tile, as where a whole body "
+                    "moves; in tangent space only the channel along the normal does",
+                    kChannelNames[std::min(order[0], order[1])],
+                    kChannelNames[std::max(order[0], order[1])])};
+}
+
+/// UDIM numbers of the middles of a mesh's faces.
+std::set<int> list_tiles(const Mesh& mesh) {
+    std::set<int> tiles;
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        double u = 0, v = 0;
+        for (size_t k = first; k < first + size; ++k)
+            u += double(mesh.uvs[mesh.uv_indices[k]].x) / size,
+                v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
+        first += size;
+        u = std::floor(u), v = std::floor(v);
+        if (u >= 0 && u <= 9 && v >= 0 && v <= 99) tiles.insert(1001 + int(u) + 10 * int(v));
+    }
+    return tiles;
+}
+
+/// One image on a mesh with several tiles, and not repeated, is the image of one of them.
+std::set<int> list_possible_tiles(const Displacement& map, const Mesh& mesh) {
+    if (map.is_udim || map.wrap == WrapMode::repeat || map.wrap == WrapMode::mirror) return {};
+    std::set<int> tiles = list_tiles(mesh);
+    if (const int number = find_tile_number(*map.tiles.front().texture);
+        tiles.size() > 1 && tiles.contains(number))
+        return {number};
+    if (tiles.size() < 2 || tiles.size() > size_t(kMaxMapTiles)) tiles.clear();
+    return tiles;
+}
+
+/// With the image in each of these tiles: the one whose seams close best, in any space, counts from here on.
+std::optional<Guess<DisplacementSpace>> guess_tile_by_seams(const std::set<int>& tiles, MapSamples& samples) {
+    std::optional<Guess<DisplacementSpace>> best;
+    MapSamples best_samples;
+    double smallest = 1e9;
+    size_t k = 0;
+    for (const int tile : tiles) {
+        MapSamples kept = keep_tile(samples, uint8_t(k++));
+        std::optional<Guess<DisplacementSpace>> guess = guess_space_by_seams(kept.seams);
+        if (!guess) continue;
+        const double gap = std::min(measure_object_gap(kept.seams), measure_best_tangent_gap(kept.seams));
+        if (gap >= smallest) continue;
+        smallest = gap, best_samples = std::move(kept);
+        guess->reason = fmt::format("as tile {} of the mesh, {}", tile, guess->reason);
+        best = std::move(guess);
+    }
+    if (best) samples = std::move(best_samples);
+    return best;
+}
+
 void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
                    MapConvention& result) {
     Displacement raw = map;
     raw.type = DisplacementType::vector, raw.space = DisplacementSpace::tangent;
     raw.axes = AxisMap{}, raw.midlevel = round_midlevel(survey), raw.scale = {1, 1, 1};
+    const std::set<int> tiles = list_possible_tiles(map, mesh);
+    if (!tiles.empty()) {
+        raw.is_udim = true, raw.tiles.clear();
+        for (const int tile : tiles) raw.tiles.push_back({tile, map.tiles.front().texture});
+    }
     const std::optional<Surface> surface = try_surface(mesh, raw);
     if (!surface) {
         guess_tangent_axes(map, survey, result);
         return;
     }
-    const MapSamples samples = sample_map(*surface);
-    const std::optional<Guess<DisplacementSpace>> by_seams = guess_space_by_seams(samples.seams);
+    MapSamples samples = sample_map(*surface);
+    const std::optional<Guess<DisplacementSpace>> by_seams =
+        tiles.empty() ? guess_space_by_seams(samples.seams) : guess_tile_by_seams(tiles, samples);
+    result.is_space_by_seams = by_seams.has_value();
     if (by_seams)
         result.space = *by_seams;
+    else if (const auto by_tiles = guess_space_of_tiles(map, survey))
+        result.space = *by_tiles;
     else
         guess_space_by_normals(samples, survey, result);
     if (result.space.value == DisplacementSpace::object) {
@@ -217,6 +316,11 @@ MapConvention guess_convention(const Displacement& map, const MapSurvey& survey,
     if (mesh && survey.bad_count == 0) {
         result.space.reason = "seams and normals of the mesh do not tell";
         guess_on_mesh(map, survey, *mesh, result);
+        return result;
+    }
+    if (const auto by_tiles = guess_space_of_tiles(map, survey)) {
+        result.space = *by_tiles;
+        result.axes.reason = "the usual order; only a mesh could speak for another";
         return result;
     }
     guess_tangent_axes(map, survey, result);

@@ -19,8 +19,9 @@ template <class Value> struct Guess {
 
 struct MapConvention {
     Guess<DisplacementSpace> space;
-    Guess<AxisMap> axes;         ///< clear where the axis along the normal is
-    bool is_order_clear = false; ///< also which channels go along t and b, or x, y and z
+    Guess<AxisMap> axes;            ///< clear where the axis along the normal is
+    bool is_space_by_seams = false; ///< the uv seams of the mesh speak for the space
+    bool is_order_clear = false;    ///< also which channels go along t and b, or x, y and z
 };
 
 /// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.

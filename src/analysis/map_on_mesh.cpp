@@ -23,6 +23,7 @@ MapSample sample_vertex_data(const Surface& surface, const VertexData& data) {
     MapSample sample;
     if (data.tile != Surface::kNoTile) sample.value = fetch_displacement(surface.map, data.tile, data.uv);
     sample.frame = normalize_frame(surface, data.frame);
+    sample.tile = data.tile;
     return sample;
 }
 
@@ -68,6 +69,15 @@ MapSamples sample_map(const Surface& surface) {
     sample_places(surface, samples);
     samples.seams = sample_seams(surface, kMostEdges);
     return samples;
+}
+
+MapSamples keep_tile(const MapSamples& samples, uint8_t tile) {
+    MapSamples kept;
+    for (const MapSample& place : samples.places)
+        if (place.tile == tile) kept.places.push_back(place);
+    for (const SeamSample& seam : samples.seams)
+        if (seam.first.tile == tile && seam.second.tile == tile) kept.seams.push_back(seam);
+    return kept;
 }
 
 std::vector<SeamSample> sample_seams(const Surface& surface, size_t most) {

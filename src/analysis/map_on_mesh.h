@@ -15,6 +15,7 @@ namespace relief {
 struct MapSample {
     Vec3f value;
     Frame frame;
+    uint8_t tile = Surface::kNoTile; ///< of the surface's map
 };
 
 /// Both sides of a point on a uv seam.
@@ -29,6 +30,9 @@ struct MapSamples {
 
 /// Of a surface made with axes 0, 1, 2, scale 1 and tangent frames.
 MapSamples sample_map(const Surface& surface);
+
+/// Those that lie in one tile of the map, on both sides of a seam.
+MapSamples keep_tile(const MapSamples& samples, uint8_t tile);
 
 /// Those of at most `most` edges, spread over all seams, of a surface in any space.
 std::vector<SeamSample> sample_seams(const Surface& surface, size_t most);

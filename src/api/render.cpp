@@ -28,6 +28,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 
+        if (observer) observer->on_warnings(prepared->warnings);
         const Timer timer;
         result.is_complete = engine->render(film, observer);
         statistics.render_s = timer.seconds();
@@ -40,6 +41,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         count_scene(*prepared, statistics);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
+        result.whole_samples = int(film.least_samples());
         result.image = film.resolve();
     });
     add_metadata(settings, scene_hash, result.is_complete, result.image);

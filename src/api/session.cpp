@@ -80,6 +80,7 @@ RenderResult Session::render(RenderObserver* observer) {
     Statistics& statistics = result.statistics;
     const Timer total;
     with_threads(self.settings.device.threads, [&] {
+        if (observer) observer->on_warnings(self.editor->scene()->warnings);
         const Timer timer;
         result.is_complete = self.trace_picture(observer);
         statistics.render_s = timer.seconds();
@@ -90,6 +91,7 @@ RenderResult Session::render(RenderObserver* observer) {
         statistics.ray_buffers_bytes += self.film->byte_count();
         statistics.warnings = self.editor->scene()->warnings;
         count_scene(*self.editor->scene(), statistics);
+        result.whole_samples = int(self.film->least_samples());
         result.image = self.film->resolve();
     });
     add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, result.image);

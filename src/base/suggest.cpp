@@ -5,8 +5,6 @@
 
 namespace relief {
 
-namespace {
-
 size_t compute_edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<size_t>> table(a.size() + 1, std::vector<size_t>(b.size() + 1));
     for (size_t i = 0; i <= a.size(); ++i) table[i][0] = i;
@@ -22,6 +20,8 @@ size_t compute_edit_distance(std::string_view a, std::string_view b) {
     }
     return table[a.size()][b.size()];
 }
+
+namespace {
 
 constexpr size_t kShortestStem = 3; // shortest prefix, in letters, that identifies a longer word
 

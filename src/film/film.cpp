@@ -290,6 +290,10 @@ Image Film::resolve() const {
     return image;
 }
 
+uint32_t Film::least_samples() const {
+    return counts_.empty() ? 0 : *std::min_element(counts_.begin(), counts_.end());
+}
+
 size_t Film::byte_count() const {
     return sums_.size() * sizeof(double) +
            (counts_.size() + hit_counts_.size() + ids_.size()) * sizeof(uint32_t) +

@@ -55,6 +55,9 @@ class Film {
     /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
     Image resolve() const;
 
+    /// The least number of samples that a pixel has.
+    uint32_t least_samples() const;
+
     size_t byte_count() const;
 
   private:

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <system_error>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include "image/sample_range.h"
 #include "relief/error.h"
 #include "relief/image.h"
 
@@ -13,7 +13,6 @@ namespace relief {
 
 namespace {
 
-const char* const kSamplesKey = "relief:samples";
 const char* const kInterruptedKey = "relief:interrupted"; ///< pixels lack some of these samples
 
 /// One part with its sample range and the channel of its sample counts.
@@ -46,22 +45,13 @@ std::string metadata_or_empty(const Image& image, const std::string& key) {
 
 Part make_part(const Image& image, size_t index) {
     Part part{&image, index, 0, 0, image.find_channel("samples.Y"), image.find_channel("A")};
-    const std::string range = metadata_or_empty(image, kSamplesKey);
-    const char* const end = range.data() + range.size();
-    const auto first = std::from_chars(range.data(), end, part.first);
-    bool is_good = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
-    if (is_good) {
-        const auto last = std::from_chars(first.ptr + 1, end, part.last);
-        is_good = last.ec == std::errc() && last.ptr == end && part.first >= 0 && part.last > part.first;
-    }
-    if (!is_good)
-        throw_bad(index, fmt::format("no sample range \"A:B\" in the header entry {}", kSamplesKey),
-                  "merge joins EXR files written by relief render");
+    std::tie(part.first, part.last) = read_sample_range(image, index);
     if (!part.samples_channel && image.metadata.contains(kInterruptedKey))
         throw_bad(
             index,
-            fmt::format("its render was interrupted: how many of the samples {} a pixel has, it does not say",
-                        range),
+            fmt::format(
+                "its render was interrupted: how many of the samples {}:{} a pixel has, it does not say",
+                part.first, part.last),
             "render it again, or all parts with image.layers = samples");
     return part;
 }

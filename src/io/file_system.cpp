@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -51,6 +52,11 @@ bool is_special(const fs::path& target) {
     return folder == "/dev" || folder.native().starts_with("/proc/");
 }
 
+const char* const kLoop = "is a symbolic link, or in one, that leads back to itself";
+const char* const kLoopHint = "readlink -f shows where links end: name the file itself, or link to it again";
+
+bool is_loop(const std::error_code& code) { return code == std::errc::too_many_symbolic_link_levels; }
+
 } // namespace
 
 std::string get_extension(const fs::path& file) {
@@ -62,6 +68,7 @@ std::string get_extension(const fs::path& file) {
 void require_file(const fs::path& file) {
     std::error_code code;
     const fs::file_status status = fs::status(file, code);
+    if (is_loop(code)) throw Error(ErrorKind::bad_input, {kLoop, file.string(), kLoopHint});
     if (!fs::exists(status))
         throw Error(ErrorKind::bad_input, {"file not found", file.string(), suggest_file(file)});
     if (!fs::is_regular_file(status))
@@ -92,6 +99,8 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     temporary_ += fmt::format(".{}.tmp", ::getpid());
     std::error_code code;
     const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    [[maybe_unused]] const fs::file_status status = fs::status(target_, code);
+    if (is_loop(code)) throw Error(ErrorKind::failed, {kLoop, target_.string(), kLoopHint});
     if (!target_.has_filename() || fs::is_directory(target_, code))
         throw Error(ErrorKind::failed, {"is a folder, not a file", target_.string(), "add a file name"});
     if (!fs::is_directory(folder, code))

@@ -19,7 +19,8 @@ std::string read_file_bytes(const std::filesystem::path& file);
 /// A temporary name beside `target` that becomes the target on commit and is removed otherwise.
 class AtomicFile {
   public:
-    /// Throws Error{failed} where the folder does not exist or the target is there and no regular file.
+    /// Throws Error{failed} where the folder does not exist, or the target is there and no regular file or a
+    /// link that leads back to itself.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

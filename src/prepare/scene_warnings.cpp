@@ -38,7 +38,7 @@ void warn_of_tiles(const Mesh& mesh, const Displacement& map, std::vector<std::s
     for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
     if (missing.empty()) return;
     warnings.push_back(fmt::format("displacement '{}' has no file for tile(s) {} of mesh '{}', which is not "
-                                   "displaced there",
+                                   "displaced there: export the missing ones, or look at their names",
                                    map.name, fmt::join(missing, ", "), mesh.name));
 }
 

@@ -49,7 +49,7 @@ std::vector<std::string> find_space_warnings(const PreparedScene& scene) {
         if (!guess || guess->value != DisplacementSpace::object) continue;
         warnings.push_back(
             fmt::format("the displacement of mesh '{}' is read as tangent space and looks like "
-                        "object space: {}; say space object, or inspect the map",
+                        "object space: {}; write displacement.space = object, or inspect the map",
                         surface.name, guess->reason));
     }
     return warnings;

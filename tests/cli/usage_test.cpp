@@ -69,6 +69,7 @@ TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
     expect_refused({"render", "plane.obj", "--size", "8x2", "--tile", "0/3"}, "2 rows");
     expect_refused({"render", "plane.obj", "--samples", "4:4"}, "A < B");
     expect_refused({"render", "plane.obj", "--spp", "4", "--samples", "2:6"}, "4 samples");
+    expect_refused({"render", "plane.obj", "--samples", "2:6", "--spp", "4"}, "leave out --spp");
     expect_refused({"render", "plane.obj", "--size", "8x8", "--pixel", "8,0"}, "8x8");
 }
 
@@ -150,6 +151,64 @@ TEST_F(Usage, a_missing_file_is_bad_input_with_its_name) {
     expect_refused({"render", "nothing.obj", "--size", "8x8"}, "nothing.obj", 3);
     expect_refused({"inspect", "nothing.exr"}, "nothing.exr", 3);
     expect_refused({"compare", "nothing.exr", "bump.exr"}, "nothing.exr", 3);
+}
+
+TEST_F(Usage, empty_names_are_refused) {
+    const std::string message = "-o: an empty text names no";
+    expect_refused({"render", "plane.obj", "-o", ""}, message);
+    expect_refused({"inspect", "plane.obj", "-o", ""}, message);
+    expect_refused({"convert", "bump.exr", "-o", ""}, message);
+    expect_refused({"scene", "rock", "-o", ""}, message);
+    expect_refused({"merge", "bump.exr", "-o", ""}, message);
+    expect_refused({"bench", "paper1", "-o", ""}, message);
+    expect_refused({"render", "plane.obj", "--vdm", ""}, "--vdm: an empty text names no file");
+    expect_refused({"render", "plane.obj", "--stats", ""}, "--stats");
+}
+
+TEST_F(Usage, loops_of_links_are_called_so) {
+    const std::string message = "leads back to itself";
+    for (const char* name : {"loop.exr", "in.obj", "in.json", "loop"})
+        std::filesystem::create_symlink(name, folder_ / name);
+    for (const char* input : {"in.obj", "in.json"}) {
+        expect_refused({"render", input}, message, 3);
+        expect_refused({"inspect", input}, message, 3);
+    }
+    expect_refused({"inspect", "loop.exr"}, message, 3);
+    expect_refused({"convert", "in.obj", "-o", "a.ply"}, message, 3);
+    expect_refused({"render", "plane.obj", "--vdm", "loop.exr"}, message, 3);
+    expect_refused({"render", "plane.obj", "--env", "loop.exr"}, message, 3);
+    expect_refused({"render", "plane.obj", "--edits", "loop"}, message, 3);
+    expect_refused({"merge", "loop.exr", "-o", "a.exr"}, message, 3);
+    expect_refused({"render", "plane.obj", "-o", "loop.exr"}, message, 1);
+    expect_refused({"render", "plane.obj", "-o", "loop/a.exr"}, message, 1);
+    expect_refused({"render", "plane.obj", "--stats", "in.json"}, message, 1);
+    expect_refused({"scene", "rock", "-o", "loop"}, message, 1);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "loop.exr"));
+}
+
+TEST_F(Usage, files_of_other_programs_name_the_way_out_of_them) {
+    const std::string message = "is not read: export OBJ, PLY or glTF";
+    for (const char* name :
+         {"a.blend", "a.usd", "a.abc", "a.stl", "a.ma", "a.ztl", "a.max", "a.c4d", "a.dae"}) {
+        write(name, "x");
+        for (const std::vector<std::string>& line : {std::vector<std::string>{"render", name},
+                                                     {"render", name, "--vdm", "bump.exr"},
+                                                     {"render", "plane.obj", "--vdm", name},
+                                                     {"inspect", name},
+                                                     {"inspect", name, "--vdm", "bump.exr"},
+                                                     {"inspect", "bump.exr", "--mesh", name},
+                                                     {"convert", name, "-o", "out.ply"},
+                                                     {"convert", name, "-o", "out.exr"}})
+            expect_refused(line, message, 3);
+        write("scene.json", std::string(R"({"meshes": {"m": {"file": ")") + name + R"("}}})");
+        expect_refused({"render", "scene.json"}, message, 3);
+    }
+    write("a.gltf", R"({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]})");
+    expect_refused({"render", "a.gltf"}, message, 3);
+    write("notes.txt", "x");
+    expect_refused({"render", "notes.txt"}, "a scene file is JSON; meshes are .obj", 3);
+    write("a.psd", "x");
+    expect_refused({"render", "plane.obj", "--vdm", "a.psd"}, "a Photoshop file is not read", 3);
 }
 
 TEST_F(Usage, an_output_that_cannot_be_written_is_refused_before_the_render) {

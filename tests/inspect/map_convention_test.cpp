@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -162,6 +163,52 @@ TEST(MapConvention, seams_of_the_mesh_tell_object_space) {
     EXPECT_EQ(count_severe(inspection), 0u);
 }
 
+/// The cube in tile 1002, and beside it in tile 1001 one that lies mirrored in its uvs.
+Mesh make_cubes_in_tiles() {
+    const Mesh cube = make_cube();
+    Mesh both = cube;
+    for (Vec2f& uv : both.uvs) uv.x += 1;
+    const auto points = uint32_t(cube.positions.size()), uvs = uint32_t(cube.uvs.size());
+    for (const Vec3f& position : cube.positions) both.positions.push_back(position + Vec3f{5, 0, 0});
+    for (const Vec2f& uv : cube.uvs) both.uvs.push_back({1 - uv.x, uv.y});
+    both.face_sizes.insert(both.face_sizes.end(), cube.face_sizes.begin(), cube.face_sizes.end());
+    for (const uint32_t index : cube.position_indices) both.position_indices.push_back(points + index);
+    for (const uint32_t index : cube.uv_indices) both.uv_indices.push_back(uvs + index);
+    return both;
+}
+
+TEST(MapConvention, one_image_on_a_mesh_with_tiles_is_tried_in_that_of_its_name_or_its_seams) {
+    const Mesh cubes = make_cubes_in_tiles();
+    const Displacement map =
+        bake(make_cube(), [](const Vec3f& p, const Frame&) { return p * (0.1f + 0.05f * p.y); });
+    for (const char* file : {"maps/cube.1002.exr", "maps/cube.exr"}) {
+        auto texture = std::make_shared<Texture>(*map.tiles[0].texture);
+        texture->file = file;
+        const Inspection inspection = inspect_map(make_map(texture), MapMeaning::unknown, &cubes);
+        EXPECT_HAS_PART(get_fact(inspection, "space"), "object: as tile 1002 of the mesh, ");
+        EXPECT_HAS_PART(get_fact(inspection, "looks_like"), "object space, axes x,y,z");
+    }
+}
+
+TEST(MapConvention, a_tile_that_moves_to_one_side_along_two_channels_is_object_space_without_a_mesh) {
+    const auto make = [](float b, const std::string& file) {
+        auto texture = make_sculpt_texture(kSize);
+        for (size_t k = 0; k < texture->floats.size(); k += 4) {
+            const float height = texture->floats[k + 2];
+            texture->floats[k] = 0, texture->floats[k + 1] = -height, texture->floats[k + 2] = b * height;
+        }
+        texture->file = file;
+        return inspect_map(make_map(texture), MapMeaning::unknown);
+    };
+    const Inspection tile = make(-0.9f, "maps/jaw.1003.exr");
+    EXPECT_HAS_PART(get_fact(tile, "space"), "object: G and B lie to one side");
+    EXPECT_HAS_PART(get_fact(tile, "looks_like"), "object space, axes x,y,z");
+    // A brush may lean as a whole, and one channel alone is the normal.
+    EXPECT_HAS_PART(get_fact(make(-0.9f, "maps/horn.exr"), "space"), "tangent");
+    EXPECT_HAS_PART(get_fact(make(-0.9f, "maps/horn_2048.exr"), "space"), "tangent");
+    EXPECT_HAS_PART(get_fact(make(-0.3f, "maps/jaw.1003.exr"), "space"), "tangent");
+}
+
 std::vector<std::string> render_for_warnings(const Mesh& mesh, Displacement map, DisplacementSpace space) {
     map.space = space;
     RenderSettings settings;
@@ -182,7 +229,7 @@ TEST(MapConvention, a_render_warns_of_object_space_that_is_read_as_tangent) {
     const std::vector<std::string> warnings = render_for_warnings(cube, object, DisplacementSpace::tangent);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_HAS_PART(warnings[0], "looks like object space");
-    EXPECT_HAS_PART(warnings[0], "say space object");
+    EXPECT_HAS_PART(warnings[0], "displacement.space = object");
     EXPECT_TRUE(render_for_warnings(cube, object, DisplacementSpace::object).empty());
     EXPECT_TRUE(render_for_warnings(cube, tangent, DisplacementSpace::tangent).empty());
 }

@@ -195,7 +195,7 @@ TEST_F(MeshFiles, missing_unknown_and_broken_files_are_named) {
     const std::string missing = message_of([&] { load_mesh(folder_ / "plnae.obj"); });
     EXPECT_HAS(missing, "plnae.obj");
     EXPECT_HAS(missing, "did you mean 'plane.obj'?");
-    EXPECT_HAS(message_of([&] { load_mesh(write("a.stl", "x")); }), "unknown kind of mesh '.stl'");
+    EXPECT_HAS(message_of([&] { load_mesh(write("a.xyz", "x")); }), "unknown kind of mesh '.xyz'");
     EXPECT_HAS(message_of([&] { load_mesh(write("a.ply", "ply\nnonsense")); }), "a.ply");
     EXPECT_HAS(message_of([&] { load_mesh(write("e.obj", "v 0 0 0\n")); }), "no faces");
 }

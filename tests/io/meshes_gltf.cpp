@@ -228,7 +228,7 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
     EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
     EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");
-    EXPECT_HAS(set("/extensionsRequired", {"KHR_draco_mesh_compression"}), "export it without compression");
+    EXPECT_HAS(set("/extensionsRequired", {"KHR_draco_mesh_compression"}), "without compression");
     EXPECT_HAS(set("/meshes", {1}), "meshes[0]: must be an object");
     EXPECT_HAS(complain([](Document& d) { d.json["accessors"][0].erase("bufferView"); }),
                "such as that of Draco");

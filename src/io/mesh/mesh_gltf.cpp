@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "formulas/basis.h"
+#include "io/foreign_files.h"
 #include "io/mesh/gltf_primitive.h"
 #include "io/mesh/welder.h"
 #include "math/affine.h"
@@ -112,11 +113,14 @@ class GltfBuilder {
     }
 
     void check_extensions() const {
-        for (const JsonNode& node : file_.list("extensionsRequired"))
-            if (const std::string extension = node.as_string();
-                extension.find("compression") != std::string::npos)
+        for (const JsonNode& node : file_.list("extensionsRequired")) {
+            const std::string extension = node.as_string();
+            if (const std::optional<ForeignFile> foreign = find_foreign_gltf(extension))
+                node.fail(foreign->message, foreign->hint);
+            if (extension.find("compression") != std::string::npos)
                 node.fail(fmt::format("needs the extension {}, which is not supported", extension),
                           "export it without compression");
+        }
     }
 
     /// The roots of the file's scene; of a file without one, all nodes that are nobody's children.

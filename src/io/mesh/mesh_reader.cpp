@@ -46,6 +46,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     require_file(file);
+    refuse_foreign_file(file);
     if (!is_mesh_file(file)) {
         const std::string extension = get_extension(file);
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of mesh '{}'", extension), file.string(),

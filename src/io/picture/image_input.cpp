@@ -16,6 +16,7 @@
 #include "io/picture/png_header.h"
 #include "io/picture/tiff_header.h"
 #include "relief/error.h"
+#include "relief/io.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -125,6 +126,7 @@ std::string find_colour_tag(std::istream& stream) {
 
 std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file) {
     require_file(file);
+    refuse_foreign_file(file);
     const std::string name = file.string();
     check_extension(name);
     return open(std::make_unique<std::ifstream>(file, std::ios::binary), name,

@@ -28,8 +28,9 @@ DisplacementType decide_type(const DisplacementRequest& request, const Displacem
         return map.type;
     }
     if (channels >= 3) return DisplacementType::vector;
-    assets.warnings().push_back(fmt::format(
-        "displacement '{}': a map of {} channel(s) is taken as a height map", request.name, channels));
+    assets.warnings().push_back(fmt::format("displacement '{}': a map of {} channel(s) is taken as a height "
+                                            "map; displacement.type = height says so",
+                                            request.name, channels));
     return DisplacementType::height;
 }
 
@@ -77,7 +78,9 @@ void complete_midlevel(const DisplacementRequest& request, Displacement& map, As
     if (!is_integer || says_zero(request.options, map)) return;
     map.midlevel = {0.5f, 0.5f, 0.5f};
     assets.warnings().push_back(
-        fmt::format("displacement '{}': integer map without a midlevel: 0.5 is assumed", request.name));
+        fmt::format("displacement '{}': integer map without a midlevel: 0.5 is assumed; "
+                    "displacement.midlevel = 0.5 says so",
+                    request.name));
 }
 
 } // namespace
@@ -101,6 +104,10 @@ Displacement make_displacement_values(const MapOptions& options) {
     else if (preset && preset->midlevel && !options.encoding)
         map.midlevel = {*preset->midlevel, *preset->midlevel, *preset->midlevel};
     apply_encoding(options, map);
+    map.assumed = {.space = !options.space && !options.axes && !preset,
+                   .axes = !options.axes && !preset,
+                   .midlevel = !options.midlevel && !options.encoding && !(preset && preset->midlevel),
+                   .wrap = !options.wrap};
     return map;
 }
 

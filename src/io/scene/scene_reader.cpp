@@ -164,6 +164,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& folder, co
 }
 
 Scene load_scene(const std::filesystem::path& file) {
+    refuse_foreign_file(file);
     return parse_scene(read_file_bytes(file), file.parent_path(), file.string());
 }
 

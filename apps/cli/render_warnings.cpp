@@ -1,0 +1,63 @@
+#include "render_warnings.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "common/option_names.h"
+#include "relief/inspect.h"
+#include "relief/io.h"
+
+namespace relief::cli {
+
+namespace {
+
+/// displacement.axes = t,n,b becomes "axes": "t,n,b", as under 'displacements' of a scene file.
+std::string name_keys(std::string text) {
+    constexpr std::string_view kStart = "displacement.", kEquals = " = ";
+    for (size_t at = 0; (at = text.find(kStart, at)) != std::string::npos;) {
+        const size_t equals = text.find(kEquals, at);
+        if (equals == std::string::npos) break;
+        const size_t value = equals + kEquals.size();
+        size_t end = value;
+        while (end < text.size() && text[end] != ' ' && text[end] != ';') ++end;
+        if (end > value && text[end - 1] == ',') --end;
+        const std::string key = text.substr(at + kStart.size(), equals - at - kStart.size());
+        const std::string word = text.substr(value, end - value);
+        const bool is_number = word.find_first_not_of("0123456789.-") == std::string::npos;
+        const std::string written =
+            is_number ? fmt::format("\"{}\": {}", key, word) : fmt::format("\"{}\": \"{}\"", key, word);
+        text.replace(at, end - at, written);
+        at += written.size();
+    }
+    return text;
+}
+
+} // namespace
+
+void add_assumption_warnings(Scene& scene) {
+    for (const Finding& finding : find_doubtful_assumptions(scene)) scene.warnings.push_back(finding.text);
+}
+
+std::string name_setting(std::string warning, bool is_mesh) {
+    return is_mesh ? name_options(std::move(warning)) : name_keys(std::move(warning));
+}
+
+RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told)
+    : ProgressPrinter(options.is_quiet ? ProgressStyle::none : options.progress),
+      options_(options),
+      told_(told) {}
+
+void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
+    const bool is_mesh = is_mesh_file(options_.input);
+    for (; told_ < warnings.size(); ++told_)
+        if (!options_.is_quiet || options_.is_strict)
+            fmt::print(stderr, "relief: warning: {}\n", name_setting(warnings[told_], is_mesh));
+    is_refused_ = options_.is_strict && !warnings.empty();
+    if (is_refused_) fmt::print(stderr, "relief: nothing is rendered with warnings under --strict\n");
+}
+
+bool RenderWatcher::is_cancelled() const { return is_refused_ || ProgressPrinter::is_cancelled(); }
+
+} // namespace relief::cli

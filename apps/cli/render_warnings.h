@@ -1,0 +1,38 @@
+// Warnings of a render: each is printed once, before the first ray, in the words of the command or the scene
+// file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress.h"
+#include "relief/scene.h"
+#include "render_options.h"
+
+namespace relief::cli {
+
+/// Adds to a scene's warnings what speaks against assumptions about its maps.
+void add_assumption_warnings(Scene& scene);
+
+/// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file.
+std::string name_setting(std::string warning, bool is_mesh);
+
+/// Prints progress and warnings; under --strict a warning cancels the render.
+class RenderWatcher final : public ProgressPrinter {
+  public:
+    /// `told`: warnings printed before, by other pictures of the same scene; outlives this object.
+    RenderWatcher(const RenderOptions& options, size_t& told);
+
+    void on_warnings(const std::vector<std::string>& warnings) override;
+    bool is_cancelled() const override;
+
+    /// Whether --strict stood in the way of the picture.
+    bool is_refused() const { return is_refused_; }
+
+  private:
+    const RenderOptions& options_;
+    size_t& told_;
+    bool is_refused_ = false;
+};
+
+} // namespace relief::cli

@@ -1,0 +1,17 @@
+// The samples that a picture says it holds.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include "relief/image.h"
+
+namespace relief {
+
+inline constexpr const char* kSamplesKey = "relief:samples"; ///< entry of the header, "A:B"
+
+/// [first, last) of the header; throws Error{bad_input} where it says nothing or nonsense. `part`: place
+/// among others, from 0, for the message.
+std::pair<int, int> read_sample_range(const Image& image, size_t part);
+
+} // namespace relief

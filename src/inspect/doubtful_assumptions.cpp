@@ -1,0 +1,158 @@
+// Maps whose convention nobody stated, against what their values look like.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "analysis/map_convention.h"
+#include "analysis/map_survey.h"
+#include "analysis/mesh_survey.h"
+#include "inspect/map_mistakes.h"
+#include "relief/convert.h"
+#include "relief/inspect.h"
+
+namespace relief {
+
+namespace {
+
+constexpr uint64_t kMostTexels = uint64_t(1) << 18; ///< 512 x 512: a few hundredths of a second
+constexpr size_t kMostFaces = 50000;                ///< of a mesh on which a map is tried
+
+uint64_t count_texels(const Displacement& map) {
+    uint64_t count = 0;
+    for (const MapTile& tile : map.tiles) count += uint64_t(tile.texture->width) * tile.texture->height;
+    return count;
+}
+
+/// Every `step`th texel of every `step`th row.
+std::shared_ptr<const Texture> thin_out(const Texture& texture, uint32_t step) {
+    auto result = std::make_shared<Texture>();
+    result->width = std::max(1u, texture.width / step), result->height = std::max(1u, texture.height / step);
+    result->channel_count = texture.channel_count;
+    result->source_type = texture.source_type;
+    result->file = texture.file, result->colour_tag = texture.colour_tag;
+    for (uint32_t y = 0; y < result->height; ++y)
+        for (uint32_t x = 0; x < result->width; ++x) {
+            const size_t at = 4 * ((size_t(y) * step + step / 2) % texture.height * texture.width +
+                                   (size_t(x) * step + step / 2) % texture.width);
+            const auto copy = [at](const auto& from, auto& to) {
+                if (!from.empty())
+                    to.insert(to.end(), from.begin() + ptrdiff_t(at), from.begin() + ptrdiff_t(at) + 4);
+            };
+            copy(texture.floats, result->floats), copy(texture.halves, result->halves);
+        }
+    return result;
+}
+
+/// The map, with fewer texels where it has more than can be looked at in a moment.
+Displacement thin_out(const Displacement& map) {
+    Displacement result = map;
+    const uint64_t count = count_texels(map);
+    if (count <= kMostTexels) return result;
+    const auto step = uint32_t(std::ceil(std::sqrt(double(count) / double(kMostTexels))));
+    for (MapTile& tile : result.tiles) tile.texture = thin_out(*tile.texture, step);
+    return result;
+}
+
+/// The setting that mends a mistake of the texels; null: no setting does.
+const char* find_setting(const std::string& code) {
+    if (code == "E-NONEG") return "displacement.encoding = signed";
+    if (code == "W-GRAY") return "displacement.type = height";
+    if (code == "W-BORDER") return "displacement.midlevel = R,G,B";
+    return nullptr;
+}
+
+/// What the reader of files has warned of already.
+bool is_told(const std::string& code) { return code == "W-8BIT" || code == "W-INT16" || code == "W-1CH"; }
+
+void add_mistakes(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
+    std::vector<Finding> found;
+    find_map_mistakes(map, MapMeaning::declared, survey, found);
+    for (Finding& finding : found) {
+        if (finding.severity == Severity::note || is_told(finding.code)) continue;
+        if (const char* setting = find_setting(finding.code)) finding.text += fmt::format(": {}", setting);
+        findings.push_back(std::move(finding));
+    }
+}
+
+void add_convention(const Displacement& map, const MapConvention& convention,
+                    std::vector<Finding>& findings) {
+    if (map.space != DisplacementSpace::tangent) return;
+    const bool is_object = convention.space.is_clear && convention.space.value == DisplacementSpace::object;
+    if (is_object && map.assumed.space && !convention.is_space_by_seams)
+        findings.push_back({Severity::warning, "I-SPACE",
+                            fmt::format("tangent space is assumed, but it looks like object space: {}; write "
+                                        "displacement.space = object",
+                                        convention.space.reason)});
+    if (is_object || !map.assumed.axes || !convention.axes.is_clear) return;
+    const auto find_normal = [](const AxisMap& axes) {
+        return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
+    };
+    const AxisMap& axes = convention.axes.value;
+    if (convention.is_order_clear ? axes == map.axes : find_normal(axes) == find_normal(map.axes)) return;
+    const std::string presets = list_presets(axes);
+    findings.push_back(
+        {Severity::warning, "I-AXES",
+         fmt::format("axes {} are assumed, but {}; write displacement.axes = {}{}",
+                     format_map_axes(map.axes, map.space), convention.axes.reason,
+                     format_map_axes(axes, map.space), presets.empty() ? "" : ", as presets " + presets)});
+}
+
+/// One image that does not repeat is stretched from its edge over uvs outside of it.
+void add_range(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
+    constexpr float kRounding = 1e-3f;
+    if (map.is_udim || !map.assumed.wrap) return;
+    const bool is_outside = std::any_of(mesh.uvs.begin(), mesh.uvs.end(), [](const Vec2f& uv) {
+        return std::min(uv.x, uv.y) < -kRounding || std::max(uv.x, uv.y) > 1 + kRounding;
+    });
+    if (is_outside)
+        findings.push_back(
+            {Severity::warning, "W-UVRANGE",
+             fmt::format(
+                 "the uvs of mesh '{}' leave the unit square, where one image ends: name all tiles as "
+                 "<UDIM>, or write displacement.wrap = repeat",
+                 mesh.name)});
+}
+
+std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
+    std::vector<Finding> findings;
+    const AssumedConvention& assumed = map.assumed;
+    const bool has_texels = std::all_of(map.tiles.begin(), map.tiles.end(), [](const MapTile& tile) {
+        return tile.texture && tile.texture->width > 0 && tile.texture->height > 0;
+    });
+    if (map.tiles.empty() || !has_texels) return findings;
+    add_range(map, mesh, findings);
+    if (!assumed.space && !assumed.axes && !assumed.midlevel) return findings;
+    const Displacement thin = thin_out(map);
+    std::optional<Vec3f> midlevel;
+    if (knows_midlevel(map, MapMeaning::declared)) midlevel = map.midlevel;
+    const MapSurvey survey = survey_map(thin.tiles, midlevel);
+    if (assumed.midlevel) add_mistakes(thin, survey, findings);
+    const bool is_vector = map.type == DisplacementType::vector;
+    if (is_vector && (assumed.space || assumed.axes) && mesh.face_sizes.size() <= kMostFaces &&
+        find_mesh_faults(mesh).is_sound())
+        add_convention(map, guess_convention(thin, survey, &mesh), findings);
+    return findings;
+}
+
+} // namespace
+
+std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
+    std::vector<Finding> findings;
+    for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
+        const Displacement& map = scene.displacements[index];
+        if (map.assumed == AssumedConvention{}) continue;
+        const auto object =
+            std::find_if(scene.objects.begin(), scene.objects.end(),
+                         [index](const Object& candidate) { return candidate.displacement == index; });
+        if (object == scene.objects.end()) continue;
+        for (Finding& finding : check_map(map, scene.meshes.at(object->mesh))) {
+            finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
+            findings.push_back(std::move(finding));
+        }
+    }
+    return findings;
+}
+
+} // namespace relief
