@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "base/check.h"
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -151,6 +152,7 @@ class Walks {
         case TraversalKind::skip_link:
             return run<TraversalKind::skip_link>(make_walk_view(tree));
         default:
+            DCHECK(query_.traversal == TraversalKind::stack);
             return run<TraversalKind::stack>(make_walk_view(tree));
         }
     }
@@ -169,6 +171,7 @@ class Walks {
         case TraversalKind::backtrack:
             return run<TraversalKind::backtrack>(make_walk_view(tree));
         default:
+            DCHECK(query_.traversal == TraversalKind::restart);
             return run<TraversalKind::restart>(make_walk_view(tree));
         }
     }

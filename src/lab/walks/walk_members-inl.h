@@ -45,8 +45,10 @@ void start_walk(uint root, Key key) {
         kd_restart_walk = start_kd_restart(root, make_own_kd_ray());
     else if constexpr (kTraversal == TraversalKind::push_down)
         kd_push_down_walk = start_kd_push_down(root, make_own_kd_ray());
-    else
+    else {
+        static_assert(kTraversal == TraversalKind::backtrack);
         kd_backtrack_walk = start_kd_backtrack(root, make_own_kd_ray());
+    }
 }
 
 /// False where a device ends the loop too early.
@@ -67,6 +69,8 @@ bool run_walk() {
         return walk_kd_restart();
     else if constexpr (kTraversal == TraversalKind::push_down)
         return walk_kd_push_down();
-    else
+    else {
+        static_assert(kTraversal == TraversalKind::backtrack);
         return walk_kd_backtrack();
+    }
 }
