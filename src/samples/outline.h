@@ -1,6 +1,7 @@
 // Closed and open curves of the plane and the signed distance from them.
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "math/vec.h"
@@ -23,6 +24,13 @@ class Outline {
   private:
     Kind kind_;
     std::vector<Vec2f> pieces_;
+};
+
+struct ClosedOutline : Outline {
+    ClosedOutline(std::initializer_list<Vec2f> points) : Outline(points, Kind::closed) {}
+};
+struct OpenOutline : Outline {
+    OpenOutline(std::initializer_list<Vec2f> points) : Outline(points, Kind::open) {}
 };
 
 } // namespace relief::samples
