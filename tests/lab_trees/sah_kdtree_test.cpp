@@ -169,7 +169,7 @@ TEST(SahKdTree, costs_less_than_one_leaf_and_grows_with_cheaper_nodes) {
               SahKdTreeBuilder::build(boxes, dear).nodes.size());
 }
 
-/// Rays in the order of kd_restart, kd_push_down, kd_backtrack; every one by all three.
+/// Rays in the order of restart, push-down, backtrack; every one by all three.
 template <test::Intersect kIntersect> class KdRays {
   public:
     explicit KdRays(const std::vector<Triangle>& triangles) : triangles_(triangles) {

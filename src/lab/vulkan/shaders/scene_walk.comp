@@ -5,9 +5,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 
-#if defined(WALK_KD_RESTART) || defined(WALK_KD_PUSH_DOWN) || defined(WALK_KD_BACKTRACK)
-#define WALK_KD
-#endif
 #ifdef WALK_KD
 const bool kMayOfferTwice = true; // a patch has entries in several leaves
 #else

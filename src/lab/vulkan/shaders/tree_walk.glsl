@@ -39,7 +39,7 @@ float get_limit() { return walk_best.t; }
 bool resume_walk() { return false; }
 bool visit_leaf(uint first, uint word, uint node);
 
-#if defined(WALK_KD_RESTART) || defined(WALK_KD_PUSH_DOWN) || defined(WALK_KD_BACKTRACK)
+#ifdef WALK_KD
 #include "lab/vulkan/shaders/kd_hooks.glsl"
 #else
 #include "lab/vulkan/shaders/box_hooks.glsl"
