@@ -11,7 +11,6 @@ namespace relief::samples {
 struct OutlineHit {
     float distance = 0; ///< closed: positive inside; open: positive to the left of the way the curve runs
     Vec2f inward;       ///< unit, the way the distance grows
-    float along = 0;    ///< of the nearest point on the curve, [0, 1]
 };
 
 /// Smooth curve through control points as short straight pieces.
