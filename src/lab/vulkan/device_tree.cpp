@@ -1,5 +1,8 @@
 #include "lab/vulkan/device_tree.h"
 
+#include <algorithm>
+#include <initializer_list>
+
 #include <fmt/format.h>
 
 #include "formulas/tree.h"
@@ -120,25 +123,15 @@ DeviceTree upload_tree(const Device& device, const KdTree& tree) {
 }
 
 bool can_walk(TraversalKind traversal, const DeviceTree& tree) {
-    switch (traversal) {
-    case TraversalKind::stack:
-    case TraversalKind::restart_trail:
-    case TraversalKind::parent_link:
-    case TraversalKind::skip_link:
-        return tree.form == TreeForm::linked;
-    case TraversalKind::trail:
-    case TraversalKind::pair_trail:
-        return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
-    case TraversalKind::restart:
-    case TraversalKind::push_down:
-        return tree.form == TreeForm::kd;
-    case TraversalKind::backtrack:
-        return tree.form == TreeForm::kd && (tree.node_count == 0 || tree.cells.byte_count() > 0);
-    case TraversalKind::automatic:
-    case TraversalKind::wide:
-        break;
-    }
-    return false;
+    using T = TraversalKind;
+    const auto is_one_of = [traversal](std::initializer_list<T> kinds) {
+        return std::find(kinds.begin(), kinds.end(), traversal) != kinds.end();
+    };
+    if (tree.form == TreeForm::linked)
+        return is_one_of({T::stack, T::restart_trail, T::parent_link, T::skip_link});
+    if (tree.form != TreeForm::kd) return is_one_of({T::trail, T::pair_trail});
+    const bool has_cells = tree.node_count == 0 || tree.cells.byte_count() > 0;
+    return is_one_of({T::restart, T::push_down}) || (has_cells && traversal == T::backtrack);
 }
 
 } // namespace relief::vulkan

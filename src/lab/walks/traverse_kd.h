@@ -28,13 +28,8 @@ KdState kd_walk;
 
 /// kNoNode: no tree.
 void start_kd(uint root, KdRay ray) {
-    kd_walk.ray = ray;
-    kd_walk.start = ray.end < 0.0f ? kNoNode : root;
-    kd_walk.node = root;
-    kd_walk.near = 0.0f;
-    kd_walk.far = ray.end;
-    kd_walk.is_pushing = 1u;
-    kd_walk.is_climbing = 0u;
+    KdState state = {ray, ray.end < 0.0f ? kNoNode : root, root, 0.0f, ray.end, 1u, 0u};
+    kd_walk = state;
 }
 
 /// From a cell that the ray has left at `near`. The test of its planes is counted as that of a box; a way
