@@ -37,12 +37,13 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     return verbs;
 }
 
-int run_verb(CLI::App& app, const std::vector<Verb>& verbs) {
+/// What the words on the command line name. Throws Error{usage} where they name nothing.
+const Command& find_command(CLI::App& app, const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs) {
         if (!verb.app->parsed()) continue;
         if (!verb.app->get_prefix_command()) refuse_extras(*verb.app, "relief " + verb.app->get_name());
         refuse_empty_names(*verb.app);
-        return verb.command();
+        return verb.command;
     }
     const std::vector<std::string> extras = app.remaining();
     const std::string help = "relief --help lists the commands";
@@ -55,17 +56,16 @@ int run_verb(CLI::App& app, const std::vector<Verb>& verbs) {
                 {fmt::format("unknown command '{}'", extras.front()), "", hint.empty() ? help : hint});
 }
 
-int parse_and_run(int argument_count, const char* const* arguments) {
-    CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
-    prepare_parsing(app);
-    const std::vector<Verb> verbs = add_verbs(app);
-    if (const auto answered = parse_words(app, argument_count, arguments)) return *answered;
-    return run_verb(app, verbs);
-}
-
 } // namespace
 } // namespace relief::cli
 
 int main(int argument_count, char** arguments) {
-    return relief::cli::run_guarded([&] { return relief::cli::parse_and_run(argument_count, arguments); });
+    using namespace relief::cli;
+    return run_guarded([&] {
+        CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
+        prepare_parsing(app);
+        const std::vector<Verb> verbs = add_verbs(app);
+        if (const auto answered = parse_words(app, argument_count, arguments)) return *answered;
+        return find_command(app, verbs)();
+    });
 }

@@ -232,20 +232,18 @@ int render_input(const RenderOptions& options, double start) {
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 
-int run_render(RenderOptions& options) {
-    const double start = get_seconds();
-    complete_render_options(options);
-    int exit_code = kExitDone;
-    with_io_threads(options.settings.device.threads, [&] { exit_code = render_input(options, start); });
-    return exit_code;
-}
-
 } // namespace
 
 Command add_render(CLI::App& verb) {
     const auto options = std::make_shared<RenderOptions>();
     add_render_options(verb, *options);
-    return [options] { return run_render(*options); };
+    return [options] {
+        const double start = get_seconds();
+        complete_render_options(*options);
+        int exit_code = kExitDone;
+        with_io_threads(options->settings.device.threads, [&] { exit_code = render_input(*options, start); });
+        return exit_code;
+    };
 }
 
 } // namespace relief::cli

@@ -21,12 +21,13 @@ const char* const kMeshGroup = "With a mesh in place of a scene";
 
 template <class T> using Word = std::pair<std::string_view, T>;
 
-constexpr std::array<std::string_view, 10> kLayers = {"depth", "N",  "Ng",      "P",        "albedo",
-                                                      "uv",    "id", "samples", "variance", "cost"};
+constexpr std::string_view kLayers[] = {"depth", "N",  "Ng",      "P",        "albedo",
+                                        "uv",    "id", "samples", "variance", "cost"};
 
 /// Adds an option parsed by `parse`; its value is called `value` in the help.
 template <class Parse>
-CLI::Option* add(CLI::App& verb, const std::string& name, const char* value, const char* help, Parse parse) {
+CLI::Option* add(CLI::App& verb, const std::string& name, const char* value, const std::string& help,
+                 Parse parse) {
     return verb.add_option_function<std::string>(name, parse, help)->type_name(value);
 }
 
@@ -46,10 +47,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--seed", "N", "of the random numbers; default 0", [&o](const std::string& text) {
         o.given.seed = uint32_t(parse_integer("--seed", text, 0, 0xffffffffll));
     });
-    add(verb, "--layers", "LIST", "of depth,N,Ng,P,albedo,uv,id,samples,variance,cost",
+    add(verb, "--layers", "LIST", fmt::format("of {}", fmt::join(kLayers, ",")),
         [&o](const std::string& text) {
             for (const std::string& layer : split(text, ',')) {
-                if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
+                if (std::find(std::begin(kLayers), std::end(kLayers), layer) == std::end(kLayers))
                     throw Error(ErrorKind::usage, {fmt::format("unknown layer '{}'", layer), "--layers",
                                                    suggest_word(layer, kLayers)});
                 o.settings.image.layers.push_back(layer);

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "relief/version.h"
+
 namespace relief {
 
 void count_scene(const PreparedScene& scene, Statistics& statistics) {
@@ -30,6 +32,16 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
             statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
         }
     }
+}
+
+void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
+                        Statistics& statistics) {
+    engine.add_statistics(statistics);
+    statistics.threads = thread_count();
+    statistics.first_image_s += statistics.prepare_s;
+    statistics.ray_buffers_bytes += film.byte_count();
+    statistics.warnings = scene.warnings;
+    count_scene(scene, statistics);
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {

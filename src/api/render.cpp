@@ -33,12 +33,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         result.is_complete = engine->render(film, observer);
         statistics.render_s = timer.seconds();
 
-        engine->add_statistics(statistics);
-        statistics.threads = thread_count();
-        statistics.first_image_s += statistics.prepare_s;
-        statistics.ray_buffers_bytes += film.byte_count();
-        statistics.warnings = prepared->warnings;
-        count_scene(*prepared, statistics);
+        collect_statistics(*engine, film, *prepared, statistics);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
         result.whole_samples = int(film.least_samples());

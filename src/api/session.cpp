@@ -85,12 +85,7 @@ RenderResult Session::render(RenderObserver* observer) {
         result.is_complete = self.trace_picture(observer);
         statistics.render_s = timer.seconds();
         statistics.prepare_s = std::exchange(self.prepare_s, 0);
-        self.engine->add_statistics(statistics);
-        statistics.first_image_s += statistics.prepare_s;
-        statistics.threads = thread_count();
-        statistics.ray_buffers_bytes += self.film->byte_count();
-        statistics.warnings = self.editor->scene()->warnings;
-        count_scene(*self.editor->scene(), statistics);
+        collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics);
         result.whole_samples = int(self.film->least_samples());
         result.image = self.film->resolve();
     });

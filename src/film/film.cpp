@@ -36,7 +36,7 @@ struct LayerKind {
     size_t sum_count;                    ///< sums a pixel that it needs
 };
 
-// In the order in which the layers stand in a picture.
+// In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
 constexpr std::array<LayerKind, 10> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
@@ -51,6 +51,9 @@ constexpr std::array<LayerKind, 10> kLayerKinds{{
 }};
 
 constexpr size_t kRadianceSums = 4;
+
+/// Of the samples that hit; other means are of all samples.
+bool is_mean_of_hits(Source source) { return source == Source::position || source == Source::uv; }
 
 const LayerKind& find_kind(const std::string& name) {
     for (const LayerKind& kind : kLayerKinds)
@@ -72,6 +75,7 @@ void add_to(double* sums, const Vec3f& v) {
 }
 
 void add_layer(double* sums, Source source, const FilmSample& film_sample, bool is_hit) {
+    if (is_mean_of_hits(source) && !is_hit) return;
     switch (source) {
     case Source::shading_normal:
         return add_to(sums, film_sample.shading_normal);
@@ -80,10 +84,9 @@ void add_layer(double* sums, Source source, const FilmSample& film_sample, bool 
     case Source::albedo:
         return add_to(sums, film_sample.albedo);
     case Source::position:
-        if (is_hit) add_to(sums, film_sample.position);
-        return;
+        return add_to(sums, film_sample.position);
     case Source::uv:
-        if (is_hit) sums[0] += film_sample.uv.x, sums[1] += film_sample.uv.y;
+        sums[0] += film_sample.uv.x, sums[1] += film_sample.uv.y;
         return;
     case Source::variance:
         sums[0] += double(film_sample.radiance.x) * film_sample.radiance.x;
@@ -167,7 +170,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_});
         stride_ += kind.sum_count;
         channels += channel_count(kind);
-        needs_hit_counts |= kind.source == Source::position || kind.source == Source::uv;
+        needs_hit_counts |= is_mean_of_hits(kind.source);
         needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
     }
     const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
@@ -251,12 +254,12 @@ void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
         return;
     case Source::position:
     case Source::uv:
-        return write_means(sums, kind.sum_count, hit_counts_[pixel], kind.source, target);
     case Source::shading_normal:
     case Source::geometric_normal:
     case Source::albedo:
     case Source::cost:
-        return write_means(sums, kind.sum_count, counts_[pixel], kind.source, target);
+        const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];
+        return write_means(sums, kind.sum_count, n, kind.source, target);
     }
 }
 

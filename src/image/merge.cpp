@@ -73,6 +73,7 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
                       "parts must come from one scene, one seed and one background");
 }
 
+/// As Film::resolve makes the layers; a layer that is not named is a mean over all samples.
 Rule find_rule(const std::string& channel) {
     if (channel == "samples.Y") return Rule::samples;
     const std::string layer = channel.substr(0, channel.find('.'));

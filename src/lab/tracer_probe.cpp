@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "cpu/path_tracer.h"
 #include "cpu/shading/shading_kernels.h"
+#include "cpu/tiles.h"
 #include "cpu/tracer.h"
 #include "cpu/traversal/kernels.h"
 #include "formulas/camera.h"
@@ -22,30 +23,8 @@ namespace relief {
 
 namespace {
 
-using cpu::kTileEdge;
-
 constexpr int kPacketEdge = 4;
 constexpr size_t kBatchSize = 1024; ///< rays that a worker takes at once, as cpu_engine does
-
-/// Pixels [x0, x1) x [y0, y1), and the number of its first ray.
-struct CameraTile {
-    int x0, y0, x1, y1;
-    size_t first;
-    size_t count() const { return size_t(x1 - x0) * size_t(y1 - y0); }
-};
-
-std::vector<CameraTile> make_tiles(int width, int height) {
-    std::vector<CameraTile> tiles;
-    size_t first = 0;
-    for (int y = 0; y < height; y += kTileEdge)
-        for (int x = 0; x < width; x += kTileEdge) {
-            const CameraTile tile{x, y, std::min(x + kTileEdge, width), std::min(y + kTileEdge, height),
-                                  first};
-            first += tile.count();
-            tiles.push_back(tile);
-        }
-    return tiles;
-}
 
 /// What a worker needs for a batch, kept from one to the next.
 struct BatchBuffers {
@@ -54,14 +33,13 @@ struct BatchBuffers {
 };
 
 /// The middles of all pixels, tile after tile, in the order of packets.
-std::vector<Vec2f> list_centres(const std::vector<CameraTile>& tiles) {
+std::vector<Vec2f> list_centres(const std::vector<Window>& tiles) {
     std::vector<Vec2f> centres;
-    for (const CameraTile& tile : tiles)
-        for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
-            for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
-                for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
-                    for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x)
-                        centres.push_back({float(x) + 0.5f, float(y) + 0.5f});
+    for (const Window& tile : tiles)
+        for (const Window& packet : cpu::cut_into_windows(tile, kPacketEdge))
+            for (int y = packet.y0; y < packet.y1; ++y)
+                for (int x = packet.x0; x < packet.x1; ++x)
+                    centres.push_back({float(x) + 0.5f, float(y) + 0.5f});
     return centres;
 }
 
@@ -100,7 +78,7 @@ struct TracerProbe::Implementation {
     const cpu::Kernels* kernels = nullptr;
     ProbePreparation preparation;
     std::vector<uint32_t> first_patches; ///< of each instance, one entry more than instances
-    std::vector<CameraTile> tiles;
+    std::vector<Window> tiles;
     std::vector<Vec2f> centres;        ///< of pixels, tile after tile
     std::vector<BatchBuffers> buffers; ///< one a worker
 
@@ -139,9 +117,12 @@ struct TracerProbe::Implementation {
         for (size_t k = 0; k < found.size(); ++k) result.hits[first + k] = make_probe_hit(found[k]);
     }
 
-    void trace_tile(const scalar::CameraFrame& frame, const CameraTile& tile, ProbeRun& result) {
+    void trace_tile(const scalar::CameraFrame& frame, const Window& tile, ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        const std::span<const Vec2f> positions = std::span(centres).subspan(tile.first, tile.count());
+        // All rows of tiles above, and the tiles to the left.
+        const size_t first =
+            size_t(tile.y0) * size_t(settings.image.width) + size_t(tile.y1 - tile.y0) * size_t(tile.x0);
+        const std::span<const Vec2f> positions = std::span(centres).subspan(first, cpu::count_pixels(tile));
         buffer.hits.resize(positions.size());
         if (frame.aperture_radius == 0) {
             tracer->camera_hits(frame, positions, {}, buffer.hits);
@@ -149,7 +130,7 @@ struct TracerProbe::Implementation {
             aim_rays(tracer->shading_kernels(), frame, positions, buffer.rays);
             tracer->closest_hits(buffer.rays, buffer.hits);
         }
-        store_hits(tile.first, buffer.hits, result);
+        store_hits(first, buffer.hits, result);
     }
 
     void trace_batch(std::span<const Ray> rays, size_t begin, RayGrouping grouping, HitKind kind,
@@ -194,7 +175,7 @@ TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
         self.buffers.resize(size_t(thread_count()));
     });
     self.number_patches();
-    self.tiles = make_tiles(settings.image.width, settings.image.height);
+    self.tiles = cpu::cut_into_windows({0, 0, settings.image.width, settings.image.height}, cpu::kTileEdge);
     self.centres = list_centres(self.tiles);
 }
 

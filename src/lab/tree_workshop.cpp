@@ -58,42 +58,27 @@ HostTree build_tree(std::span<const Box> boxes, TreeKind kind, int heap_levels) 
     return SahKdTreeBuilder::build(boxes, config);
 }
 
-TreeBuild describe(const LinkedBvh& tree) {
-    TreeBuild report;
-    report.bytes = tree.byte_count();
+void describe_form(const LinkedBvh& tree, TreeBuild& report) {
     report.link_bytes = tree.parents.size() * sizeof(uint32_t);
     report.slots = report.used = tree.nodes.size();
-    report.entries = tree.primitive_ids.size();
     report.depth = tree.depth;
-    return report;
 }
 
-TreeBuild describe(const DenseHeap& tree) {
-    TreeBuild report;
-    report.bytes = tree.byte_count();
+void describe_form(const DenseHeap& tree, TreeBuild& report) {
     report.slots = tree.slots.size(), report.used = count_used_slots(tree);
-    report.entries = tree.primitive_ids.size();
     report.depth = compute_depth(tree);
-    return report;
 }
 
-TreeBuild describe(const SuccinctHeap& tree) {
-    TreeBuild report;
-    report.bytes = tree.byte_count();
+void describe_form(const SuccinctHeap& tree, TreeBuild& report) {
     report.slots = tree.nodes.size(), report.used = tree.nodes.size() - 1;
-    report.entries = tree.primitive_ids.size();
     report.depth = tree.depth;
-    return report;
 }
 
-TreeBuild describe(const KdTree& tree) {
-    TreeBuild report;
+void describe_form(const KdTree& tree, TreeBuild& report) {
     report.link_bytes = tree.cells.size() * sizeof(scalar::KdBox);
-    report.bytes = tree.byte_count() - report.link_bytes;
+    report.bytes -= report.link_bytes;
     report.slots = report.used = tree.nodes.size();
-    report.entries = tree.primitive_ids.size();
     report.depth = tree.depth;
-    return report;
 }
 
 } // namespace
@@ -125,8 +110,13 @@ BuiltTree build_host_tree(std::span<const Box> boxes, TreeKind kind, int heap_le
     const Timer timer;
     BuiltTree built{build_tree(boxes, kind, heap_levels), {}};
     const double seconds = timer.seconds();
-    built.report = std::visit([](const auto& tree) { return describe(tree); }, built.tree);
     built.report.seconds = seconds;
+    const auto describe = [&report = built.report](const auto& tree) {
+        report.bytes = tree.byte_count();
+        report.entries = tree.primitive_ids.size();
+        describe_form(tree, report);
+    };
+    std::visit(describe, built.tree);
     return built;
 }
 

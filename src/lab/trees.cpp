@@ -69,25 +69,9 @@ std::vector<TreeKind> tree_kinds() {
 }
 
 const char* tree_name(TreeKind kind) {
-    switch (kind) {
-    case TreeKind::sah:
-        return "sah";
-    case TreeKind::sah_wide:
-        return "sah 3.0/1.5";
-    case TreeKind::lbvh30:
-        return "lbvh 30";
-    case TreeKind::lbvh63:
-        return "lbvh 63";
-    case TreeKind::heap:
-        return "heap";
-    case TreeKind::succinct_lbvh:
-        return "succinct lbvh";
-    case TreeKind::succinct_sah:
-        return "succinct sah";
-    case TreeKind::kdtree:
-        return "kdtree";
-    }
-    return "";
+    constexpr const char* kNames[] = {"sah",  "sah 3.0/1.5",   "lbvh 30",      "lbvh 63",
+                                      "heap", "succinct lbvh", "succinct sah", "kdtree"};
+    return kNames[size_t(kind)];
 }
 
 std::vector<TraversalKind> tree_traversals(TreeKind kind) {

@@ -83,7 +83,7 @@ struct TreeCastData {
 
 inline constexpr uint64_t kRootKey = 1;
 
-/// Sums over rays; zeros where they were not asked for.
+/// Sums over rays; zeros where counting is off.
 struct TreeCast {
     double seconds = 0; ///< of the walk alone; on a device without transfers
     uint64_t box_tests = 0, triangle_tests = 0, restarts = 0;

@@ -89,17 +89,8 @@ class BarkSculptor {
     PlateField plates_{{16, 5, 0.9f, 0.0030f, 201}}, flakes_{{52, 14, 0.95f, 0.0011f, 202}};
     // From the middle of a crack outwards: its floor, under the plate, up, over the curled edge, onto the
     // plate.
-    ProfileCurve crack_{{{0, 0},
-                         {0.22f, 0.02f},
-                         {0.42f, 0.10f},
-                         {0.50f, 0.30f},
-                         {0.40f, 0.55f},
-                         {0.22f, 0.80f},
-                         {0.20f, 1.02f},
-                         {0.34f, 1.15f},
-                         {0.60f, 1.08f},
-                         {1, 1.0f}},
-                        ProfileCurve::Ends::mirrored};
+    MirroredCurve crack_{{0, 0},         {0.22f, 0.02f}, {0.42f, 0.10f}, {0.50f, 0.30f}, {0.40f, 0.55f},
+                         {0.22f, 0.80f}, {0.20f, 1.02f}, {0.34f, 1.15f}, {0.60f, 1.08f}, {1, 1.0f}};
 };
 
 LatheShape make_trunk_profile(const TrunkShape& trunk) {
@@ -127,10 +118,8 @@ LatheBody make_trunk_body(const TrunkShape& shape) { return LatheBody(make_trunk
 
 Model make_trunk(const TrunkShape& shape) {
     const BarkSculptor sculptor;
-    const Maps maps =
-        bake_maps("bark", kMapSize, Texels::halves, [&](Vec2f uv) { return sculptor.sculpt(uv); });
-    Model model =
-        make_plain_model("bark", DisplacementSpace::tangent, WrapMode::repeat, maps.displacement, maps.color);
+    Model model = bake_model("bark", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
+                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
     model.displacement.scale = Vec3f{1, 1, 1} * (2 * kPi);
     model.material.roughness = 0.85f;
     const LatheBody body = make_trunk_body(shape);

@@ -78,18 +78,9 @@ class CoralSculptor {
     }
 
     // Floor of the cup, its inner wall, the rim, the outer wall drawn in to a waist, the foot.
-    ProfileCurve cup_{{{0, 0.50f},
-                       {0.16f, 0.42f},
-                       {0.28f, 0.50f},
-                       {0.36f, 0.85f},
-                       {0.50f, 1.05f},
-                       {0.62f, 1.0f},
-                       {0.60f, 0.75f},
-                       {0.46f, 0.45f},
-                       {0.42f, 0.25f},
-                       {0.55f, 0.08f},
-                       {1, 0}},
-                      ProfileCurve::Ends::free};
+    FreeCurve cup_{{0, 0.50f},     {0.16f, 0.42f}, {0.28f, 0.50f}, {0.36f, 0.85f},
+                   {0.50f, 1.05f}, {0.62f, 1.0f},  {0.60f, 0.75f}, {0.46f, 0.45f},
+                   {0.42f, 0.25f}, {0.55f, 0.08f}, {1, 0}};
     Scatter polyps_;
 };
 

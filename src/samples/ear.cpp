@@ -85,81 +85,29 @@ class EarSculptor {
         sample.color *= 1 - 0.12f * smooth_step(0.1f, 0.5f, pores) - 0.10f * lines;
     }
 
-    Outline outline_{{{-0.30f, 0.10f},
-                      {-0.29f, -0.10f},
-                      {-0.29f, -0.30f},
-                      {-0.27f, -0.48f},
-                      {-0.16f, -0.63f},
-                      {0.02f, -0.63f},
-                      {0.16f, -0.50f},
-                      {0.30f, -0.29f},
-                      {0.40f, -0.04f},
-                      {0.47f, 0.24f},
-                      {0.40f, 0.50f},
-                      {0.20f, 0.66f},
-                      {-0.06f, 0.66f},
-                      {-0.25f, 0.50f},
-                      {-0.32f, 0.30f}},
-                     Outline::Kind::closed};
-    Outline ridge_{
-        {{0.10f, 0.46f}, {0.16f, 0.30f}, {0.21f, 0.12f}, {0.205f, -0.06f}, {0.12f, -0.20f}, {0.02f, -0.29f}},
-        Outline::Kind::open};
-    Outline fork_{{{-0.16f, 0.30f}, {-0.04f, 0.31f}, {0.08f, 0.25f}, {0.17f, 0.15f}}, Outline::Kind::open};
-    Outline bowl_{{{-0.22f, -0.05f},
-                   {-0.17f, -0.20f},
-                   {-0.05f, -0.25f},
-                   {0.07f, -0.17f},
-                   {0.135f, -0.03f},
-                   {0.12f, 0.11f},
-                   {0.02f, 0.19f},
-                   {-0.12f, 0.18f},
-                   {-0.21f, 0.09f}},
-                  Outline::Kind::closed};
+    ClosedOutline outline_{{-0.30f, 0.10f},  {-0.29f, -0.10f}, {-0.29f, -0.30f}, {-0.27f, -0.48f},
+                           {-0.16f, -0.63f}, {0.02f, -0.63f},  {0.16f, -0.50f},  {0.30f, -0.29f},
+                           {0.40f, -0.04f},  {0.47f, 0.24f},   {0.40f, 0.50f},   {0.20f, 0.66f},
+                           {-0.06f, 0.66f},  {-0.25f, 0.50f},  {-0.32f, 0.30f}};
+    OpenOutline ridge_{{0.10f, 0.46f},   {0.16f, 0.30f},  {0.21f, 0.12f},
+                       {0.205f, -0.06f}, {0.12f, -0.20f}, {0.02f, -0.29f}};
+    OpenOutline fork_{{-0.16f, 0.30f}, {-0.04f, 0.31f}, {0.08f, 0.25f}, {0.17f, 0.15f}};
+    ClosedOutline bowl_{{-0.22f, -0.05f}, {-0.17f, -0.20f}, {-0.05f, -0.25f},
+                        {0.07f, -0.17f},  {0.135f, -0.03f}, {0.12f, 0.11f},
+                        {0.02f, 0.19f},   {-0.12f, 0.18f},  {-0.21f, 0.09f}};
     // From the head, under the rim, out and up to its edge, over it and down its inner roll to the hollow
     // inside.
-    ProfileCurve rolled_{{{-0.13f, 0},
-                          {-0.03f, 0.0f},
-                          {0.045f, 0.10f},
-                          {0.045f, 0.42f},
-                          {-0.005f, 0.70f},
-                          {-0.045f, 0.92f},
-                          {-0.03f, 1.12f},
-                          {0.03f, 1.17f},
-                          {0.085f, 1.06f},
-                          {0.085f, 0.90f},
-                          {0.065f, 0.76f},
-                          {0.10f, 0.68f},
-                          {0.15f, 0.70f},
-                          {0.21f, 0.75f}},
-                         ProfileCurve::Ends::free};
-    ProfileCurve plain_{{{-0.13f, 0},
-                         {-0.04f, 0.0f},
-                         {0.03f, 0.10f},
-                         {0.035f, 0.38f},
-                         {0.0f, 0.60f},
-                         {-0.03f, 0.78f},
-                         {-0.02f, 0.95f},
-                         {0.02f, 1.02f},
-                         {0.055f, 1.0f},
-                         {0.085f, 0.96f},
-                         {0.11f, 0.91f},
-                         {0.14f, 0.86f},
-                         {0.175f, 0.80f},
-                         {0.21f, 0.75f}},
-                        ProfileCurve::Ends::free};
-    ProfileCurve flat_{
-        {{-0.13f, 0}, {-0.06f, 0.15f}, {0.0f, 0.40f}, {0.06f, 0.60f}, {0.12f, 0.70f}, {0.21f, 0.75f}},
-        ProfileCurve::Ends::free};
+    FreeCurve rolled_{{-0.13f, 0},      {-0.03f, 0.0f},  {0.045f, 0.10f}, {0.045f, 0.42f}, {-0.005f, 0.70f},
+                      {-0.045f, 0.92f}, {-0.03f, 1.12f}, {0.03f, 1.17f},  {0.085f, 1.06f}, {0.085f, 0.90f},
+                      {0.065f, 0.76f},  {0.10f, 0.68f},  {0.15f, 0.70f},  {0.21f, 0.75f}};
+    FreeCurve plain_{{-0.13f, 0},     {-0.04f, 0.0f},  {0.03f, 0.10f},  {0.035f, 0.38f}, {0.0f, 0.60f},
+                     {-0.03f, 0.78f}, {-0.02f, 0.95f}, {0.02f, 1.02f},  {0.055f, 1.0f},  {0.085f, 0.96f},
+                     {0.11f, 0.91f},  {0.14f, 0.86f},  {0.175f, 0.80f}, {0.21f, 0.75f}};
+    FreeCurve flat_{{-0.13f, 0},    {-0.06f, 0.15f}, {0.0f, 0.40f},
+                    {0.06f, 0.60f}, {0.12f, 0.70f},  {0.21f, 0.75f}};
     // From outside of the bowl: its edge, the wall cut back under it, the floor.
-    ProfileCurve wall_{{{-0.05f, 0},
-                        {-0.015f, -0.04f},
-                        {0.02f, 0.0f},
-                        {0.022f, 0.25f},
-                        {-0.005f, 0.55f},
-                        {0.005f, 0.85f},
-                        {0.05f, 0.98f},
-                        {0.12f, 1.0f}},
-                       ProfileCurve::Ends::free};
+    FreeCurve wall_{{-0.05f, 0},      {-0.015f, -0.04f}, {0.02f, 0.0f},  {0.022f, 0.25f},
+                    {-0.005f, 0.55f}, {0.005f, 0.85f},   {0.05f, 0.98f}, {0.12f, 1.0f}};
 };
 
 } // namespace
@@ -167,10 +115,8 @@ class EarSculptor {
 Model make_ear() {
     const EarSculptor sculptor;
     // One quad carries the whole map, so steps of half floats at the height of the rim would show as grain.
-    const Maps maps =
-        bake_maps("ear", kMapSize, Texels::floats, [&](Vec2f uv) { return sculptor.sculpt(uv); });
-    Model model =
-        make_plain_model("ear", DisplacementSpace::tangent, WrapMode::clamp, maps.displacement, maps.color);
+    Model model = bake_model("ear", DisplacementSpace::tangent, WrapMode::clamp, Texels::floats,
+                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
     model.material.roughness = 0.45f;
     model.make_mesh = [](const Deformation& deform) {
         Mesh mesh = make_single_quad();

@@ -65,7 +65,6 @@ BodyPoint LatheBody::point_at(float theta, float s) const {
     const float c = std::cos(theta), w = std::sin(theta);
     BodyPoint point;
     point.theta = theta;
-    point.s = s;
     point.position = {p.x * c, p.y, -p.x * w};
     point.around = {-w, 0, -c};
     point.along = normalize(Vec3f{d.x * c, d.y, -d.x * w});

@@ -11,10 +11,9 @@ namespace relief::samples {
 /// A place on a body: where it is, and which way its frame looks.
 struct BodyPoint {
     float theta = 0; ///< angle about the y axis, radians; 0 is +x, a quarter turn is -z
-    float s = 0;     ///< arc length from the bottom pole over that of the whole profile, [0, 1]
     Vec3f position;
     Vec3f around; ///< unit, towards greater theta
-    Vec3f along;  ///< unit, towards greater s
+    Vec3f along;  ///< unit, along the profile from the bottom pole
     Vec3f normal; ///< unit, outward
     float radius() const;
 };
@@ -38,6 +37,7 @@ class LatheBody {
         return 2 * shape_.cap_cells * shape_.cap_cells + 4 * shape_.cap_cells * shape_.rows;
     }
 
+    /// `s`: arc length from the bottom pole over that of the whole profile, [0, 1].
     BodyPoint point_at(float theta, float s) const;
 
     /// Place that a uv of the atlas belongs to; outside of the charts the nearest chart goes on.

@@ -5,22 +5,23 @@
 
 namespace relief::samples {
 
-Model make_plain_model(const std::string& name, DisplacementSpace space, WrapMode wrap,
-                       std::shared_ptr<const Texture> map, std::shared_ptr<const Texture> color) {
+Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap, Texels texels,
+                 const std::function<MapSample(Vec2f uv)>& sample) {
+    Maps maps = bake_maps(name, kMapSize, texels, sample);
     Model model;
     model.displacement.name = name;
     model.displacement.space = space;
     model.displacement.wrap = wrap;
-    model.displacement.tiles = {{1001, std::move(map)}};
+    model.displacement.tiles = {{1001, std::move(maps.displacement)}};
     model.material.name = name;
     model.material.base_color = {1, 1, 1};
-    model.material.base_color_texture = std::move(color);
+    model.material.base_color_texture = std::move(maps.color);
     return model;
 }
 
 Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
                        const std::function<Sculpture(const BodyPoint&)>& sculpt) {
-    const Maps maps = bake_maps(name, kMapSize, Texels::halves, [&](Vec2f uv) {
+    const auto sample = [&](Vec2f uv) {
         const BodyPoint point = body.point_at_uv(uv);
         const Sculpture result = sculpt(point);
         MapSample sample{result.offset, result.color};
@@ -30,8 +31,8 @@ Model make_lathe_model(const std::string& name, const LatheBody& body, Displacem
                                    dot(result.offset, point.normal)};
         }
         return sample;
-    });
-    Model model = make_plain_model(name, space, WrapMode::repeat, maps.displacement, maps.color);
+    };
+    Model model = bake_model(name, space, WrapMode::repeat, Texels::halves, sample);
     model.make_mesh = [body, name](const Deformation& deform) { return body.make_mesh(name, deform); };
     return model;
 }

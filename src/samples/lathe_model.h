@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "samples/bake.h"
 #include "samples/lathe.h"
 #include "samples/models.h"
 
@@ -19,8 +20,9 @@ Model make_lathe_model(const std::string& name, const LatheBody& body, Displacem
                        const std::function<Sculpture(const BodyPoint&)>& sculpt);
 
 /// A displacement with one map and a material with one colour texture, both called `name`.
-Model make_plain_model(const std::string& name, DisplacementSpace space, WrapMode wrap,
-                       std::shared_ptr<const Texture> map, std::shared_ptr<const Texture> color);
+/// `sample`: as of bake_maps.
+Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap, Texels texels,
+                 const std::function<MapSample(Vec2f uv)>& sample);
 
 /// Edge length of all maps here, texels.
 inline constexpr uint32_t kMapSize = 2048;

@@ -139,47 +139,17 @@ class MushroomSculptor {
             lerp(result.color, Vec3f{0.80f, 0.62f, 0.34f}, 0.6f * weight * smooth_step(0.6f, 1.0f, shape.y));
     }
 
-    ProfileCurve wart_{{{0, 1.0f},
-                        {0.3f, 1.0f},
-                        {0.58f, 0.88f},
-                        {0.78f, 0.62f},
-                        {0.76f, 0.36f},
-                        {0.62f, 0.2f},
-                        {0.7f, 0.03f},
-                        {1, 0}},
-                       ProfileCurve::Ends::free};
-    ProfileCurve gill_{{{0, -0.2f},
-                        {0.25f, -0.1f},
-                        {0.5f, 0.1f},
-                        {0.58f, 0.4f},
-                        {0.5f, 0.72f},
-                        {0.46f, 0.9f},
-                        {0.62f, 1.0f},
-                        {1, 1.02f}},
-                       ProfileCurve::Ends::mirrored};
+    FreeCurve wart_{{0, 1.0f},      {0.3f, 1.0f},  {0.58f, 0.88f}, {0.78f, 0.62f},
+                    {0.76f, 0.36f}, {0.62f, 0.2f}, {0.7f, 0.03f},  {1, 0}};
+    MirroredCurve gill_{{0, -0.2f},    {0.25f, -0.1f}, {0.5f, 0.1f},  {0.58f, 0.4f},
+                        {0.5f, 0.72f}, {0.46f, 0.9f},  {0.62f, 1.0f}, {1, 1.02f}};
     // Out from the stem and down to the hem, then back up below it; y counts from the top of the skirt.
-    ProfileCurve skirt_{{{0, 0},
-                         {0.05f, 0.005f},
-                         {0.12f, -0.04f},
-                         {0.17f, -0.12f},
-                         {0.20f, -0.20f},
-                         {0.205f, -0.235f},
-                         {0.185f, -0.215f},
-                         {0.13f, -0.12f},
-                         {0.07f, -0.07f},
-                         {0.02f, -0.09f},
-                         {0, -0.17f}},
-                        ProfileCurve::Ends::free};
+    FreeCurve skirt_{{0, 0},          {0.05f, 0.005f},   {0.12f, -0.04f},   {0.17f, -0.12f},
+                     {0.20f, -0.20f}, {0.205f, -0.235f}, {0.185f, -0.215f}, {0.13f, -0.12f},
+                     {0.07f, -0.07f}, {0.02f, -0.09f},   {0, -0.17f}};
     // Down along a scale: its back, the lip beyond its own length, and under the lip back to the next one.
-    ProfileCurve scale_{{{0, 0},
-                         {0.4f, 0.5f},
-                         {0.9f, 0.95f},
-                         {1.3f, 1.05f},
-                         {1.35f, 0.85f},
-                         {1.1f, 0.5f},
-                         {0.9f, 0.15f},
-                         {1, 0}},
-                        ProfileCurve::Ends::free};
+    FreeCurve scale_{{0, 0},         {0.4f, 0.5f}, {0.9f, 0.95f}, {1.3f, 1.05f},
+                     {1.35f, 0.85f}, {1.1f, 0.5f}, {0.9f, 0.15f}, {1, 0}};
     Scatter warts_;
 };
 

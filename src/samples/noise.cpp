@@ -14,11 +14,6 @@ Cell locate(float x) {
     return {int32_t(floor), f, f * f * f * (f * (f * 6 - 15) + 10)};
 }
 
-int32_t wrap(int32_t index, int32_t period) {
-    const int32_t rest = index % period;
-    return rest < 0 ? rest + period : rest;
-}
-
 /// Dot product with one of the twelve edge directions of a cube.
 float dot_gradient(uint32_t bits, float x, float y, float z) {
     const uint32_t h = bits >> 28;

@@ -13,6 +13,12 @@ uint32_t hash(int32_t x, int32_t y, int32_t z, uint32_t seed);
 /// A fraction in [0, 1) from hashed bits.
 inline float to_unit(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
 
+/// The index within [0, period).
+inline int32_t wrap(int32_t index, int32_t period) {
+    const int32_t rest = index % period;
+    return rest < 0 ? rest + period : rest;
+}
+
 /// Gradient noise over space (Perlin 2002, Improving Noise), about [-1, 1].
 float noise(const Vec3f& p, uint32_t seed);
 

@@ -38,7 +38,6 @@ OutlineHit Outline::find(const Vec2f& p) const {
         const bool is_left = ab.x * ap.y - ab.y * ap.x > 0;
         hit.distance = is_left ? distance : -distance;
         hit.inward = offset * (1 / hit.distance);
-        hit.along = (float(i) + f) / float(pieces_.size() - 1);
     }
     if (kind_ == Kind::closed && (hit.distance > 0) != is_inside) {
         hit.distance = -hit.distance;

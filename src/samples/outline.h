@@ -1,6 +1,7 @@
 // Closed and open curves of the plane and the signed distance from them.
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "math/vec.h"
@@ -10,7 +11,6 @@ namespace relief::samples {
 struct OutlineHit {
     float distance = 0; ///< closed: positive inside; open: positive to the left of the way the curve runs
     Vec2f inward;       ///< unit, the way the distance grows
-    float along = 0;    ///< of the nearest point on the curve, [0, 1]
 };
 
 /// Smooth curve through control points as short straight pieces.
@@ -23,6 +23,13 @@ class Outline {
   private:
     Kind kind_;
     std::vector<Vec2f> pieces_;
+};
+
+struct ClosedOutline : Outline {
+    ClosedOutline(std::initializer_list<Vec2f> points) : Outline(points, Kind::closed) {}
+};
+struct OpenOutline : Outline {
+    OpenOutline(std::initializer_list<Vec2f> points) : Outline(points, Kind::open) {}
 };
 
 } // namespace relief::samples

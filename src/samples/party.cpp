@@ -14,6 +14,8 @@ namespace relief::samples {
 
 namespace {
 
+using Tints = std::vector<std::pair<std::string, Vec3f>>;
+
 struct Kind {
     const char* name;
     uint32_t model;
@@ -22,7 +24,7 @@ struct Kind {
     float footprint; ///< radius on the ground at scale 1
     float lift;      ///< height of the origin at scale 1
     float variation;
-    std::vector<std::pair<std::string, Vec3f>> tints; ///< of the model's colours, taken in turn
+    Tints tints; ///< of the model's colours, taken in turn
 };
 
 struct Disc {
@@ -123,49 +125,24 @@ Scene make_party_scene(Instancing instancing) {
     const uint32_t bark = stage.add_model(make_trunk(trunk));
     const uint32_t pumpkin = stage.add_model(make_pumpkin()), mushroom = stage.add_model(make_mushroom());
     const uint32_t coral = stage.add_model(make_coral()), ring = stage.add_model(make_scale_ring());
-    add_displaced(stage, floor, {"trunk", bark, 9, 0.55f, 0.95f, 1.15f, -0.2f, 0.04f, {{"bark", {1, 1, 1}}}});
-    add_displaced(stage, floor,
-                  {"ring",
-                   ring,
-                   16,
-                   0.45f,
-                   0.9f,
-                   1.42f,
-                   0.40f,
-                   0.05f,
-                   {{"scales", {1, 1, 1}}, {"scales_bronze", {1, 0.5f, 0.3f}}}});
-    add_displaced(stage, floor,
-                  {"pumpkin",
-                   pumpkin,
-                   52,
-                   0.35f,
-                   1.0f,
-                   1.1f,
-                   0.80f,
-                   0.10f,
-                   {{"pumpkin", {1, 1, 1}},
-                    {"pumpkin_red", {0.85f, 0.48f, 0.45f}},
-                    {"pumpkin_green", {0.40f, 0.78f, 0.8f}},
-                    {"pumpkin", {1, 1, 1}}}});
-    add_displaced(
-        stage, floor,
-        {"coral",
-         coral,
-         38,
-         0.25f,
-         0.7f,
-         1.2f,
-         0.95f,
-         0.08f,
-         {{"coral", {1, 1, 1}}, {"coral_violet", {0.55f, 0.6f, 1}}, {"coral_sand", {1, 0.9f, 0.55f}}}});
-    add_displaced(stage, floor,
-                  {"mushroom", mushroom, 40, 0.5f, 1.3f, 0.72f, 0.0f, 0.07f, {{"mushroom", {1, 1, 1}}}});
+    const Vec3f white{1, 1, 1};
+    const Tints rings{{"scales", white}, {"scales_bronze", {1, 0.5f, 0.3f}}};
+    const Tints pumpkins{{"pumpkin", white},
+                         {"pumpkin_red", {0.85f, 0.48f, 0.45f}},
+                         {"pumpkin_green", {0.40f, 0.78f, 0.8f}},
+                         {"pumpkin", white}};
+    const Tints corals{
+        {"coral", white}, {"coral_violet", {0.55f, 0.6f, 1}}, {"coral_sand", {1, 0.9f, 0.55f}}};
+    add_displaced(stage, floor, {"trunk", bark, 9, 0.55f, 0.95f, 1.15f, -0.2f, 0.04f, {{"bark", white}}});
+    add_displaced(stage, floor, {"ring", ring, 16, 0.45f, 0.9f, 1.42f, 0.40f, 0.05f, rings});
+    add_displaced(stage, floor, {"pumpkin", pumpkin, 52, 0.35f, 1.0f, 1.1f, 0.80f, 0.10f, pumpkins});
+    add_displaced(stage, floor, {"coral", coral, 38, 0.25f, 0.7f, 1.2f, 0.95f, 0.08f, corals});
+    const Tints mushrooms{{"mushroom", white}};
+    add_displaced(stage, floor, {"mushroom", mushroom, 40, 0.5f, 1.3f, 0.72f, 0.0f, 0.07f, mushrooms});
     add_plain_objects(stage, floor);
     stage.add_ground(0, 90, {0.30f, 0.26f, 0.20f});
     stage.light({-122, 36, {1.0f, 0.84f, 0.64f}, 3.8f});
-    Camera camera;
-    camera.from = {0.2f, 3.5f, 9.3f}, camera.to = {0, 0.75f, 0}, camera.fov_degrees = 36;
-    return stage.finish(camera);
+    return stage.finish({0.2f, 3.5f, 9.3f}, {0, 0.75f, 0}, 36);
 }
 
 } // namespace relief::samples

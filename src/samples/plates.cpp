@@ -7,15 +7,6 @@
 
 namespace relief::samples {
 
-namespace {
-
-int wrap(int i, int period) {
-    const int rest = i % period;
-    return rest < 0 ? rest + period : rest;
-}
-
-} // namespace
-
 PlateField::PlateField(const Config& config) : config_(config) {
     DCHECK(config.columns >= 4 && config.rows >= 4 && config.columns % 2 == 0);
     for (int y = 0; y < config.rows; ++y)

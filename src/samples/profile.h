@@ -1,6 +1,7 @@
 // Cross-sections that fold over: a curve (x, h) over a parameter, x moving back where the shape overhangs.
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "math/vec.h"
@@ -22,6 +23,13 @@ class ProfileCurve {
 
   private:
     std::vector<Vec2f> points_; ///< with one phantom point at each end
+};
+
+struct FreeCurve : ProfileCurve {
+    FreeCurve(std::initializer_list<Vec2f> points) : ProfileCurve(points, Ends::free) {}
+};
+struct MirroredCurve : ProfileCurve {
+    MirroredCurve(std::initializer_list<Vec2f> points) : ProfileCurve(points, Ends::mirrored) {}
 };
 
 } // namespace relief::samples

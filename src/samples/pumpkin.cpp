@@ -122,34 +122,12 @@ class PumpkinSculptor {
         result.color = lerp(result.color, lerp(cut, bark, smooth_step(0.22f, 0.34f, q)), fade);
     }
 
-    ProfileCurve rib_{{{0, 0},
-                       {0.11f, 0.0f},
-                       {0.20f, 0.18f},
-                       {0.17f, 0.42f},
-                       {0.10f, 0.62f},
-                       {0.15f, 0.80f},
-                       {0.36f, 0.95f},
-                       {0.66f, 1.03f},
-                       {1, 1.06f}},
-                      ProfileCurve::Ends::mirrored};
-    ProfileCurve wart_{{{0, 1.15f},
-                        {0.28f, 1.10f},
-                        {0.55f, 0.94f},
-                        {0.72f, 0.66f},
-                        {0.69f, 0.38f},
-                        {0.58f, 0.18f},
-                        {0.68f, 0.04f},
-                        {1, 0}},
-                       ProfileCurve::Ends::free};
-    ProfileCurve stem_{{{0, 0.49f},
-                        {0.07f, 0.495f},
-                        {0.105f, 0.47f},
-                        {0.095f, 0.40f},
-                        {0.075f, 0.27f},
-                        {0.08f, 0.14f},
-                        {0.12f, 0.04f},
-                        {0.19f, -0.01f}},
-                       ProfileCurve::Ends::free};
+    MirroredCurve rib_{{0, 0},         {0.11f, 0.0f},  {0.20f, 0.18f}, {0.17f, 0.42f}, {0.10f, 0.62f},
+                       {0.15f, 0.80f}, {0.36f, 0.95f}, {0.66f, 1.03f}, {1, 1.06f}};
+    FreeCurve wart_{{0, 1.15f},     {0.28f, 1.10f}, {0.55f, 0.94f}, {0.72f, 0.66f},
+                    {0.69f, 0.38f}, {0.58f, 0.18f}, {0.68f, 0.04f}, {1, 0}};
+    FreeCurve stem_{{0, 0.49f},      {0.07f, 0.495f}, {0.105f, 0.47f}, {0.095f, 0.40f},
+                    {0.075f, 0.27f}, {0.08f, 0.14f},  {0.12f, 0.04f},  {0.19f, -0.01f}};
     Scatter warts_;
 };
 

@@ -40,9 +40,7 @@ Scene make_pumpkin_scene(Instancing instancing) {
                         make_variation(3, 0.03f));
     stage.add_ground(0, 40, {0.42f, 0.37f, 0.31f});
     stage.light({-118, 34, {1.0f, 0.84f, 0.64f}, 3.6f});
-    Camera camera;
-    camera.from = {1.35f, 2.25f, 3.9f}, camera.to = {0.03f, 0.92f, 0}, camera.fov_degrees = 27;
-    return stage.finish(camera);
+    return stage.finish({1.35f, 2.25f, 3.9f}, {0.03f, 0.92f, 0}, 27);
 }
 
 Scene make_bark_scene(Instancing instancing) {
@@ -52,9 +50,7 @@ Scene make_bark_scene(Instancing instancing) {
     stage.add_displaced(bark, "trunk", place({0, -0.4f, 0}, 1, 200), make_trunk_growth(4, shape.height));
     stage.add_ground(0, 40, {0.20f, 0.17f, 0.12f});
     stage.light({-128, 30, {1.0f, 0.82f, 0.60f}, 4.2f});
-    Camera camera;
-    camera.from = {0.7f, 1.9f, 3.4f}, camera.to = {0.02f, 1.5f, 0}, camera.fov_degrees = 42;
-    return stage.finish(camera);
+    return stage.finish({0.7f, 1.9f, 3.4f}, {0.02f, 1.5f, 0}, 42);
 }
 
 Scene make_barks_scene(Instancing instancing) {
@@ -79,18 +75,14 @@ Scene make_barks_scene(Instancing instancing) {
     }
     stage.add_ground(0, 60, {0.19f, 0.17f, 0.11f});
     stage.light({-132, 32, {1.0f, 0.80f, 0.56f}, 4.6f});
-    Camera camera;
-    camera.from = {0.3f, 2.3f, 8.2f}, camera.to = {0.15f, 2.1f, -1}, camera.fov_degrees = 38;
-    return stage.finish(camera);
+    return stage.finish({0.3f, 2.3f, 8.2f}, {0.15f, 2.1f, -1}, 38);
 }
 
 Scene make_ear_scene(Instancing instancing) {
     Stage stage(instancing);
     stage.add_displaced(stage.add_model(make_ear()), "ear", Affine{}, [](const Vec3f& p) { return p; });
     stage.light({-125, 42, {1.0f, 0.90f, 0.78f}, 3.2f});
-    Camera camera;
-    camera.from = {1.15f, 0.45f, 3.6f}, camera.to = {0.02f, 0.03f, 0.12f}, camera.fov_degrees = 32;
-    return stage.finish(camera);
+    return stage.finish({1.15f, 0.45f, 3.6f}, {0.02f, 0.03f, 0.12f}, 32);
 }
 
 using Maker = Scene (*)(Instancing);

@@ -31,8 +31,6 @@ Vec2f offset_to_scale(int row, const Vec2f& p, int& column) {
     return {p.x - 0.5f * float(row), p.y - (float(column) + shift)};
 }
 
-int wrap(int i, int period) { return ((i % period) + period) % period; }
-
 ScaleHit find_scale(const Vec2f& p) {
     ScaleHit hit;
     hit.root = 1e30f;
@@ -89,27 +87,16 @@ class ScaleSculptor {
         return color * (0.35f + 0.65f * rooted);
     }
 
-    ProfileCurve lip_{{{0, 0.25f},
-                       {0.22f, 0.40f},
-                       {0.48f, 0.60f},
-                       {0.80f, 0.84f},
-                       {1.10f, 1.0f},
-                       {1.26f, 0.98f},
-                       {1.20f, 0.74f},
-                       {1.02f, 0.35f},
-                       {0.94f, 0.08f},
-                       {1, 0}},
-                      ProfileCurve::Ends::free};
+    FreeCurve lip_{{0, 0.25f},     {0.22f, 0.40f}, {0.48f, 0.60f}, {0.80f, 0.84f}, {1.10f, 1.0f},
+                   {1.26f, 0.98f}, {1.20f, 0.74f}, {1.02f, 0.35f}, {0.94f, 0.08f}, {1, 0}};
 };
 
 } // namespace
 
 Model make_scale_ring() {
     const ScaleSculptor sculptor;
-    const Maps maps =
-        bake_maps("scales", kMapSize, Texels::halves, [&](Vec2f uv) { return sculptor.sculpt(uv); });
-    Model model = make_plain_model("scales", DisplacementSpace::tangent, WrapMode::repeat, maps.displacement,
-                                   maps.color);
+    Model model = bake_model("scales", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
+                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
     model.displacement.scale = Vec3f{1, 1, 1} * kTileLength;
     model.material.roughness = 0.32f;
     TorusShape shape;

@@ -23,40 +23,13 @@ void add_face(Mesh& mesh, std::initializer_list<uint32_t> corners) {
 Mesh make_icosahedron() {
     Mesh mesh;
     const float g = (1 + std::sqrt(5.0f)) / 2;
-    for (const Vec3f& p : {Vec3f{-1, g, 0},
-                           {1, g, 0},
-                           {-1, -g, 0},
-                           {1, -g, 0},
-                           {0, -1, g},
-                           {0, 1, g},
-                           {0, -1, -g},
-                           {0, 1, -g},
-                           {g, 0, -1},
-                           {g, 0, 1},
-                           {-g, 0, -1},
-                           {-g, 0, 1}})
-        mesh.positions.push_back(normalize(p));
-    for (const std::array<uint32_t, 3>& f : {std::array<uint32_t, 3>{0, 11, 5},
-                                             {0, 5, 1},
-                                             {0, 1, 7},
-                                             {0, 7, 10},
-                                             {0, 10, 11},
-                                             {1, 5, 9},
-                                             {5, 11, 4},
-                                             {11, 10, 2},
-                                             {10, 7, 6},
-                                             {7, 1, 8},
-                                             {3, 9, 4},
-                                             {3, 4, 2},
-                                             {3, 2, 6},
-                                             {3, 6, 8},
-                                             {3, 8, 9},
-                                             {4, 9, 5},
-                                             {2, 4, 11},
-                                             {6, 2, 10},
-                                             {8, 6, 7},
-                                             {9, 8, 1}})
-        add_face(mesh, {f[0], f[1], f[2]});
+    const Vec3f corners[] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                             {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    for (const Vec3f& p : corners) mesh.positions.push_back(normalize(p));
+    mesh.position_indices = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                             4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                             6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
+    mesh.face_sizes.assign(20, 3);
     return mesh;
 }
 

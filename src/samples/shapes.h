@@ -19,7 +19,7 @@ Mesh make_single_quad();
 struct TorusShape {
     float major_radius = 1, minor_radius = 0.35f;
     int major_cells = 48, minor_cells = 16;
-    float uv_repeats = 1; ///< copies of the map along the ring; one copy goes around the tube; whole number
+    float uv_repeats = 1; ///< copies of the map along the ring; one copy goes around the tube; an integer
 };
 
 /// Torus about the y axis: u runs along the ring, v around the tube.

@@ -14,6 +14,12 @@ uint32_t Stage::add_material(const Material& material) {
     return uint32_t(scene_.materials.size() - 1);
 }
 
+uint32_t Stage::add_mesh(Mesh mesh, const std::string& name) {
+    mesh.name = name;
+    scene_.meshes.push_back(std::move(mesh));
+    return uint32_t(scene_.meshes.size() - 1);
+}
+
 uint32_t Stage::add_model(const Model& model) {
     Entry entry;
     entry.model = model;
@@ -29,18 +35,10 @@ void Stage::add_displaced(uint32_t model, const std::string& name, const Affine&
     Entry& entry = models_[model];
     if (instancing_ == Instancing::none || entry.mesh == kNoIndex) {
         const bool is_shared = instancing_ == Instancing::shared;
-        Mesh mesh = entry.model.make_mesh(is_shared ? Deformation([](const Vec3f& p) { return p; }) : deform);
-        mesh.name = is_shared ? entry.model.displacement.name : name;
-        entry.mesh = uint32_t(scene_.meshes.size());
-        scene_.meshes.push_back(std::move(mesh));
+        entry.mesh = add_mesh(entry.model.make_mesh(is_shared ? make_variation(0, 0) : deform),
+                              is_shared ? entry.model.displacement.name : name);
     }
-    Object object;
-    object.name = name;
-    object.mesh = entry.mesh;
-    object.displacement = entry.displacement;
-    object.material = entry.material;
-    object.world_from_object = world_from_object;
-    scene_.objects.push_back(std::move(object));
+    scene_.objects.push_back({name, entry.mesh, entry.displacement, entry.material, world_from_object});
 }
 
 void Stage::tint_last(uint32_t model, const std::string& name, const Vec3f& tint) {
@@ -58,23 +56,13 @@ void Stage::tint_last(uint32_t model, const std::string& name, const Vec3f& tint
 
 void Stage::add_plain(Mesh mesh, const std::string& name, const Material& material,
                       const Affine& world_from_object) {
-    mesh.name = name;
-    scene_.meshes.push_back(std::move(mesh));
-    Object object;
-    object.name = name;
-    object.mesh = uint32_t(scene_.meshes.size() - 1);
-    object.material = add_material(material);
-    object.world_from_object = world_from_object;
-    scene_.objects.push_back(std::move(object));
+    const uint32_t index = add_mesh(std::move(mesh), name);
+    scene_.objects.push_back({name, index, kNoIndex, add_material(material), world_from_object});
 }
 
 void Stage::repeat_plain(const std::string& name, const Affine& world_from_object) {
-    Object object;
-    object.name = name;
-    object.mesh = uint32_t(scene_.meshes.size() - 1);
-    object.material = uint32_t(scene_.materials.size() - 1);
-    object.world_from_object = world_from_object;
-    scene_.objects.push_back(std::move(object));
+    scene_.objects.push_back({name, uint32_t(scene_.meshes.size() - 1), kNoIndex,
+                              uint32_t(scene_.materials.size() - 1), world_from_object});
 }
 
 void Stage::light(const Sun& sun) {
@@ -98,9 +86,9 @@ void Stage::add_ground(float y, float half_size, const Vec3f& color) {
     add_plain(make_plane(half_size, 16), "ground", material, make_translation({0, y, 0}));
 }
 
-Scene Stage::finish(const Camera& camera) {
-    scene_.camera = camera;
-    scene_.camera.focus_distance = length(camera.to - camera.from); // for whoever opens the aperture
+Scene Stage::finish(const Vec3f& from, const Vec3f& to, float fov_degrees) {
+    scene_.camera.from = from, scene_.camera.to = to, scene_.camera.fov_degrees = fov_degrees;
+    scene_.camera.focus_distance = length(to - from); // for whoever opens the aperture
     scene_.picture.width = 1280, scene_.picture.height = 720;
     scene_.picture.spp = 64, scene_.picture.bounces = 4;
     return std::move(scene_);

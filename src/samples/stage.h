@@ -44,10 +44,11 @@ class Stage {
     void light(const Sun& sun);
     void add_ground(float y, float half_size, const Vec3f& color);
 
-    Scene finish(const Camera& camera);
+    Scene finish(const Vec3f& from, const Vec3f& to, float fov_degrees);
 
   private:
     uint32_t add_material(const Material& material);
+    uint32_t add_mesh(Mesh mesh, const std::string& name);
 
     Instancing instancing_;
     Scene scene_;

@@ -99,7 +99,7 @@ TEST_P(Traversals, find_hits_in_trees_that_are_deeper_than_words_are_long) {
     }
 }
 
-/// The choices whose trees are built by costs that can be asked for.
+/// The choices whose trees are built by costs that the settings name.
 class TraversalsWithCosts : public Traversals {
   public:
     static std::vector<Choice> list() {

@@ -13,7 +13,7 @@ float enter(const Box& box, const BoxRay& ray) {
     return SlabRay(ray).compute_entry(box, ray.t_min, ray.t_max);
 }
 
-/// Small whole numbers: sums and differences of them are exact, so that the target is exactly at t = 1.
+/// Small integers: sums and differences of them are exact, so that the target is exactly at t = 1.
 Vec3f make_grid_point(std::mt19937& random, int size) {
     std::uniform_int_distribution<int> number(-size, size);
     const int x = number(random), y = number(random), z = number(random);

@@ -162,14 +162,14 @@ TEST(SahKdTree, is_the_same_for_any_number_of_threads) {
 
 TEST(SahKdTree, costs_less_than_one_leaf_and_grows_with_cheaper_nodes) {
     const std::vector<Box> boxes = test::make_random_boxes(104, 3000, 10, 0.2f);
-    SahKdTreeBuilder::Config dear, cheap;
+    SahKdTreeBuilder::Config expensive, cheap;
     cheap.traversal_cost = 0.3f;
-    EXPECT_GT(SahKdTreeBuilder::build(boxes, dear).nodes.size(), 1000u);
+    EXPECT_GT(SahKdTreeBuilder::build(boxes, expensive).nodes.size(), 1000u);
     EXPECT_GT(SahKdTreeBuilder::build(boxes, cheap).nodes.size(),
-              SahKdTreeBuilder::build(boxes, dear).nodes.size());
+              SahKdTreeBuilder::build(boxes, expensive).nodes.size());
 }
 
-/// Rays in the order of kd_restart, kd_push_down, kd_backtrack; every one by all three.
+/// Rays in the order of restart, push-down, backtrack; every one by all three.
 template <test::Intersect kIntersect> class KdRays {
   public:
     explicit KdRays(const std::vector<Triangle>& triangles) : triangles_(triangles) {

@@ -1,4 +1,4 @@
-// The one walk through what a patch keeps (bottom_tree.h), whatever goes through it: one ray, a packet or a
+// The one walk through what a patch keeps (patch_tree.h), whatever goes through it: one ray, a packet or a
 // bundle.
 #if defined(RELIEF_PATCH_TREE_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_PATCH_TREE_WALK_INL_H

@@ -70,54 +70,30 @@ template <TraversalKind kTraversal, class View> class Caster {
         parallel_for("tree_cast", data_.rays.size(), kRaysOfAJob, [this](size_t begin, size_t end) {
             if (query_.counting == Counting::on) {
                 WalkCounts counts;
-                cast_range(begin, end, counts);
+                for (size_t k = begin; k < end; ++k) cast_ray(k, counts);
                 add(counts);
             } else {
                 NoCounts none;
-                cast_range(begin, end, none);
+                for (size_t k = begin; k < end; ++k) cast_ray(k, none);
             }
         });
         return {timer.seconds(), sums_.box_tests, sums_.primitive_tests, sums_.restarts, sums_.bytes};
     }
 
   private:
-    template <class Counts> void cast_range(size_t begin, size_t end, Counts& counts) {
+    template <class Counts> void cast_ray(size_t k, Counts& counts) {
+        const Ray& given = data_.rays[k];
+        BoxRay ray{given.origin, given.direction, given.t_min, given.t_max};
+        auto start = split_key(data_.keys.empty() ? kRootKey : data_.keys[k], typename View::Key{});
+        TriangleLeaf leaf(soup_, ray);
         if (query_.kind == HitKind::closest)
-            for (size_t k = begin; k < end; ++k) cast_closest(k, counts);
+            closest_hit_from<kTraversal>(
+                view_, start, ray, [&](uint32_t id, BoxRay& r) { leaf.offer(id, r); }, counts);
         else
-            for (size_t k = begin; k < end; ++k) cast_any(k, counts);
-    }
-
-    BoxRay get_ray(size_t k) const {
-        const Ray& ray = data_.rays[k];
-        return {ray.origin, ray.direction, ray.t_min, ray.t_max};
-    }
-
-    typename View::Key get_start(size_t k) const {
-        return split_key(data_.keys.empty() ? kRootKey : data_.keys[k], typename View::Key{});
-    }
-
-    template <class Counts> void cast_closest(size_t k, Counts& counts) {
-        BoxRay ray = get_ray(k);
-        auto start = get_start(k);
-        TriangleLeaf leaf(soup_, ray);
-        const auto visit = [&](uint32_t id, BoxRay& r) { leaf.offer(id, r); };
-        closest_hit_from<kTraversal>(view_, start, ray, visit, counts);
-        finish(k, leaf, start);
-    }
-
-    template <class Counts> void cast_any(size_t k, Counts& counts) {
-        BoxRay ray = get_ray(k);
-        auto start = get_start(k);
-        TriangleLeaf leaf(soup_, ray);
-        const auto visit = [&](uint32_t id, const BoxRay& r) { return leaf.stop_at(id, r); };
-        any_hit_from<kTraversal>(view_, start, ray, visit, counts);
-        finish(k, leaf, start);
-    }
-
-    void finish(size_t k, const TriangleLeaf& leaf, typename View::Key key) {
+            any_hit_from<kTraversal>(
+                view_, start, ray, [&](uint32_t id, const BoxRay& r) { return leaf.stop_at(id, r); }, counts);
         data_.hits[k] = leaf.best();
-        if (!data_.keys.empty()) data_.keys[k] = join_key(key);
+        if (!data_.keys.empty()) data_.keys[k] = join_key(start);
     }
 
     void add(const WalkCounts& counts) {
@@ -134,25 +110,17 @@ template <TraversalKind kTraversal, class View> class Caster {
     WalkCounts sums_;
 };
 
-/// The walks over one form of tree, and which of them was asked for.
+/// The walks over one form of tree, chosen by the query.
 class Walks {
   public:
     Walks(const TriangleSoup& soup, const TreeQuery& query, const TreeCastData& data)
         : soup_(soup), query_(query), data_(data) {}
 
     TreeCast operator()(const LinkedBvh& tree) const {
-        switch (query_.traversal) {
-        case TraversalKind::restart_trail:
-            return tree.depth <= int(scalar::kTrailLevels32)
-                       ? run<TraversalKind::restart_trail>(make_walk_view(tree))
-                       : run<TraversalKind::restart_trail>(make_wide_walk_view(tree));
-        case TraversalKind::parent_link:
-            return run<TraversalKind::parent_link>(make_walk_view(tree));
-        case TraversalKind::skip_link:
-            return run<TraversalKind::skip_link>(make_walk_view(tree));
-        default:
-            return run<TraversalKind::stack>(make_walk_view(tree));
-        }
+        if (tree.depth > int(scalar::kTrailLevels32) && query_.traversal == TraversalKind::restart_trail)
+            return run<TraversalKind::restart_trail>(make_wide_walk_view(tree));
+        return run<TraversalKind::stack, TraversalKind::restart_trail, TraversalKind::parent_link,
+                   TraversalKind::skip_link>(make_walk_view(tree));
     }
 
     TreeCast operator()(const DenseHeap& tree) const { return run_trail(make_walk_view(tree)); }
@@ -163,23 +131,21 @@ class Walks {
     }
 
     TreeCast operator()(const KdTree& tree) const {
-        switch (query_.traversal) {
-        case TraversalKind::push_down:
-            return run<TraversalKind::push_down>(make_walk_view(tree));
-        case TraversalKind::backtrack:
-            return run<TraversalKind::backtrack>(make_walk_view(tree));
-        default:
-            return run<TraversalKind::restart>(make_walk_view(tree));
-        }
+        return run<TraversalKind::restart, TraversalKind::push_down, TraversalKind::backtrack>(
+            make_walk_view(tree));
     }
 
   private:
-    template <TraversalKind kTraversal, class View> TreeCast run(const View& view) const {
-        return Caster<kTraversal, View>(soup_, view, query_, data_).run();
+    /// The one of these that the query names; the first where it names none.
+    template <TraversalKind kFirst, TraversalKind... kOthers, class View>
+    TreeCast run(const View& view) const {
+        if constexpr (sizeof...(kOthers) > 0)
+            if (query_.traversal != kFirst && ((query_.traversal == kOthers) || ...))
+                return run<kOthers...>(view);
+        return Caster<kFirst, View>(soup_, view, query_, data_).run();
     }
     template <class View> TreeCast run_trail(const View& view) const {
-        return query_.traversal == TraversalKind::trail ? run<TraversalKind::trail>(view)
-                                                        : run<TraversalKind::pair_trail>(view);
+        return run<TraversalKind::pair_trail, TraversalKind::trail>(view);
     }
 
     const TriangleSoup& soup_;

@@ -17,9 +17,15 @@
 
 namespace relief {
 
-namespace cpu {
+namespace scalar {
 
 namespace {
+
+using cpu::PrimitiveKernels;
+using cpu::SceneView;
+using cpu::TraceContext;
+using cpu::TraceHit;
+using cpu::TraceRay;
 
 /// What a walk reads.
 struct WalkView {
@@ -27,26 +33,6 @@ struct WalkView {
     const WalkTrees& trees;
     const PrimitiveKernels& primitive;
 };
-
-/// Of one traversal.
-struct WalkFunctions {
-    void (*closest_hits)(const WalkView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
-    void (*any_hits)(const WalkView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
-};
-
-} // namespace
-
-} // namespace cpu
-
-namespace scalar {
-
-namespace {
-
-using cpu::PrimitiveKernels;
-using cpu::TraceContext;
-using cpu::TraceHit;
-using cpu::TraceRay;
-using cpu::WalkView;
 
 /// Primitives of a kd-tree that a ray was tested against last: neighbouring leaves share them. Not cleared
 /// when made, since other trees need none.
@@ -137,13 +123,12 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
     /// In the order of TraversalKind.
     static constexpr size_t kIndex = size_t(kTraversal) - size_t(TraversalKind::stack);
     using State =
-        std::tuple_element_t<kIndex,
-                             std::tuple<StackState, RestartState, ParentLinkState, SkipLinkState, TrailState,
-                                        PairTrailState, KdRestartState, KdPushDownState, KdBacktrackState>>;
+        std::tuple_element_t<kIndex, std::tuple<StackState, RestartState, ParentLinkState, SkipLinkState,
+                                                TrailState, PairTrailState, KdState, KdState, KdState>>;
 
     State& state() {
         return std::get<kIndex>(std::tie(stack_walk, restart_walk, parent_walk, skip_walk, trail_walk,
-                                         pair_walk, kd_restart_walk, kd_push_down_walk, kd_backtrack_walk));
+                                         pair_walk, kd_walk, kd_walk, kd_walk));
     }
 
     /// The ids that leaves of the current tree count into.
@@ -246,112 +231,73 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
     State world_state_{};                        ///< of the tree of instances, past that leaf
 };
 
-/// Calls trace(k) for each of `count` rays.
-template <class Trace>
-void trace_each(const WalkView& view, TraceContext& context, size_t count, Trace trace) {
-    for (size_t k = 0; k < count; ++k) {
-        if (k % 16 == 0) view.scene.cache->refresh(context);
-        trace(k);
-    }
-}
-
-template <TraversalKind kTraversal, class Width>
-void closest_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, TraceHit* hits,
-                  size_t count) {
-    trace_each(view, context, count, [&](size_t k) {
-        TraceHit best;
-        if (can_hit(rays[k]))
-            RayWalk<kTraversal, Width>(view, context, rays[k], view.primitive.closest).run(best);
-        hits[k] = best;
-        hits[k].lod_bias = uint8_t(rays[k].lod_bias);
-    });
-}
-
-template <TraversalKind kTraversal, class Width>
-void any_hits(const WalkView& view, TraceContext& context, const TraceRay* rays, uint8_t* occluded,
-              size_t count) {
-    trace_each(view, context, count, [&](size_t k) {
-        TraceHit best;
-        occluded[k] = can_hit(rays[k]) &&
-                      RayWalk<kTraversal, Width>(view, context, rays[k], view.primitive.any).run(best);
-    });
-}
-
-template <TraversalKind kTraversal, class Width = uint>
-constexpr cpu::WalkFunctions kWalk = {closest_hits<kTraversal, Width>, any_hits<kTraversal, Width>};
-
-/// Of a walk with a key or a trail, which has room for `depth` levels.
-template <TraversalKind kTraversal> cpu::WalkFunctions choose_width(int depth) {
-    return depth <= int(kTrailLevels32) ? kWalk<kTraversal> : kWalk<kTraversal, HeapKey>;
-}
-
-} // namespace
-
-} // namespace scalar
-
-namespace cpu {
-
-namespace {
-
-/// Any traversal but automatic and wide, over trees of `depth` levels at most.
-WalkFunctions find_walk(TraversalKind traversal, int depth) {
-    using T = TraversalKind;
-    switch (traversal) {
-    case T::stack:
-        return scalar::kWalk<T::stack>;
-    case T::restart_trail:
-        return scalar::choose_width<T::restart_trail>(depth);
-    case T::parent_link:
-        return scalar::kWalk<T::parent_link>;
-    case T::skip_link:
-        return scalar::kWalk<T::skip_link>;
-    case T::trail:
-        return scalar::choose_width<T::trail>(depth);
-    case T::pair_trail:
-        return scalar::choose_width<T::pair_trail>(depth);
-    case T::restart:
-        return scalar::kWalk<T::restart>;
-    case T::push_down:
-        return scalar::kWalk<T::push_down>;
-    case T::backtrack:
-        return scalar::kWalk<T::backtrack>;
-    case T::automatic:
-    case T::wide:
-        break;
-    }
-    return {};
-}
-
-class NamedWalk final : public SceneWalk {
+/// `Width`: as of RayWalk.
+template <TraversalKind kTraversal, class Width = uint> class NamedWalk final : public cpu::SceneWalk {
   public:
-    explicit NamedWalk(WalkTrees trees)
-        : trees_(std::move(trees)), walk_(find_walk(trees_.traversal, trees_.depth)) {}
+    explicit NamedWalk(WalkTrees trees) : trees_(std::move(trees)) {}
 
     void closest_hits(const SceneView& scene, const PrimitiveKernels& primitive, TraceContext& context,
                       const TraceRay* rays, TraceHit* hits, size_t count) const override {
-        walk_.closest_hits({scene, trees_, primitive}, context, rays, hits, count);
+        const WalkView view{scene, trees_, primitive};
+        for (size_t k = 0; k < count; ++k) {
+            hits[k] = {};
+            trace(view, context, k, rays[k], primitive.closest, hits[k]);
+            hits[k].lod_bias = uint8_t(rays[k].lod_bias);
+        }
     }
 
     void any_hits(const SceneView& scene, const PrimitiveKernels& primitive, TraceContext& context,
                   const TraceRay* rays, uint8_t* occluded, size_t count) const override {
-        walk_.any_hits({scene, trees_, primitive}, context, rays, occluded, count);
+        const WalkView view{scene, trees_, primitive};
+        for (size_t k = 0; k < count; ++k) {
+            TraceHit best;
+            occluded[k] = trace(view, context, k, rays[k], primitive.any, best);
+        }
     }
 
     size_t byte_count() const override { return trees_.byte_count(); }
 
   private:
+    /// Ray `k` of a batch.
+    static bool trace(const WalkView& view, TraceContext& context, size_t k, const TraceRay& ray,
+                      PrimitiveKernels::Function visit, TraceHit& best) {
+        if (k % 16 == 0) view.scene.cache->refresh(context);
+        return can_hit(ray) && RayWalk<kTraversal, Width>(view, context, ray, visit).run(best);
+    }
+
     const WalkTrees trees_;
-    const WalkFunctions walk_;
 };
+
+using WalkPointer = std::unique_ptr<const cpu::SceneWalk>;
+
+template <TraversalKind kTraversal> WalkPointer make_walk(WalkTrees trees) {
+    return std::make_unique<NamedWalk<kTraversal>>(std::move(trees));
+}
+
+/// Of a walk with a key or a trail, as wide as the trees are deep.
+template <TraversalKind kTraversal> WalkPointer make_trail_walk(WalkTrees trees) {
+    if (trees.depth <= int(kTrailLevels32)) return make_walk<kTraversal>(std::move(trees));
+    return std::make_unique<NamedWalk<kTraversal, HeapKey>>(std::move(trees));
+}
+
+/// In the order of TraversalKind, from stack on.
+constexpr WalkPointer (*kMakers[])(WalkTrees) = {
+    make_walk<TraversalKind::stack>,       make_trail_walk<TraversalKind::restart_trail>,
+    make_walk<TraversalKind::parent_link>, make_walk<TraversalKind::skip_link>,
+    make_trail_walk<TraversalKind::trail>, make_trail_walk<TraversalKind::pair_trail>,
+    make_walk<TraversalKind::restart>,     make_walk<TraversalKind::push_down>,
+    make_walk<TraversalKind::backtrack>};
 
 } // namespace
 
-} // namespace cpu
+} // namespace scalar
 
 std::unique_ptr<const cpu::SceneWalk> make_scene_walk(const PreparedScene& scene,
                                                       const RenderSettings& settings) {
     if (is_default_traversal(settings, EngineKind::cpu)) return nullptr;
-    return std::make_unique<cpu::NamedWalk>(make_walk_trees(scene, settings, EngineKind::cpu));
+    WalkTrees trees = make_walk_trees(scene, settings, EngineKind::cpu);
+    const size_t maker = size_t(trees.traversal) - size_t(TraversalKind::stack);
+    return scalar::kMakers[maker](std::move(trees));
 }
 
 } // namespace relief

@@ -105,26 +105,19 @@ class RockMaker {
 };
 
 struct Layout {
+    const char* name;
     int count;
     float radius;
-    Camera camera;
+    Vec3f from, to;
 };
 
-Layout choose_layout(const std::string& name) {
-    Camera camera;
-    camera.fov_degrees = 40;
-    if (name == "rock") {
-        camera.from = {1.2f, 1.0f, 3.6f};
-        return {1, 1.0f, camera};
-    }
-    if (name == "rock_close") {
-        camera.from = {0.9f, 0.7f, 1.75f}, camera.to = {0, 0.2f, 0.2f};
-        return {1, 1.0f, camera};
-    }
-    if (name == "rocks") {
-        camera.from = {0.8f, 0.6f, 5.2f};
-        return {10, 0.52f, camera};
-    }
+constexpr Layout kLayouts[] = {{"rock", 1, 1.0f, {1.2f, 1.0f, 3.6f}, {}},
+                               {"rocks", 10, 0.52f, {0.8f, 0.6f, 5.2f}, {}},
+                               {"rock_close", 1, 1.0f, {0.9f, 0.7f, 1.75f}, {0, 0.2f, 0.2f}}};
+
+const Layout& find_layout(const std::string& name) {
+    for (const Layout& layout : kLayouts)
+        if (name == layout.name) return layout;
     throw Error(ErrorKind::usage,
                 {fmt::format("unknown scene '{}'", name), "", "rock, rocks and rock_close are there"});
 }
@@ -142,7 +135,7 @@ Vec3f place_rock(int index, int count, Random& random) {
 std::vector<std::string> peer_scene_names() { return {"rock", "rocks", "rock_close"}; }
 
 Scene make_peer_scene(const std::string& name, float roughness, PeerWorld world) {
-    const Layout layout = choose_layout(name);
+    const Layout& layout = find_layout(name);
     Scene scene;
     Displacement displacement;
     displacement.name = "rock", displacement.space = DisplacementSpace::object;
@@ -157,7 +150,7 @@ Scene make_peer_scene(const std::string& name, float roughness, PeerWorld world)
     for (int k = 0; k < layout.count; ++k) maker.add(place_rock(k, layout.count, random), layout.radius);
     scene.meshes.push_back(maker.finish(name));
     scene.objects.push_back({name, 0, 0, 0, {}});
-    scene.camera = layout.camera;
+    scene.camera.from = layout.from, scene.camera.to = layout.to, scene.camera.fov_degrees = 40;
     Environment environment;
     if (world == PeerWorld::sky) environment.texture = make_sky(sky_direction(40, 35), {1.0f, 0.86f, 0.68f});
     scene.environment = environment;

@@ -167,12 +167,12 @@ class Hall {
     MeshMaker maker_;
 };
 
-Scene make_scene(Mesh mesh, const Camera& camera, const Vec3f& light_direction) {
+Scene make_scene(Mesh mesh, const Camera& camera) {
     Scene scene;
     scene.meshes.push_back(std::move(mesh));
     scene.objects.push_back({.name = scene.meshes[0].name});
     Light sun;
-    sun.direction = light_direction;
+    sun.direction = {-0.5f, -0.8f, -0.35f};
     sun.angle_degrees = 0;
     sun.strength = 3;
     scene.lights.push_back(sun);
@@ -181,9 +181,7 @@ Scene make_scene(Mesh mesh, const Camera& camera, const Vec3f& light_direction) 
 }
 
 Camera look(const Vec3f& from, const Vec3f& to, float fov_degrees) {
-    Camera camera;
-    camera.from = from, camera.to = to, camera.fov_degrees = fov_degrees;
-    return camera;
+    return {.from = from, .to = to, .fov_degrees = fov_degrees};
 }
 
 } // namespace
@@ -192,16 +190,15 @@ std::vector<std::string> structure_scene_names() { return {"body", "hall", "knot
 
 Scene make_structure_scene(const std::string& name, MeshDetail detail) {
     const bool is_full = detail == MeshDetail::full;
-    const Vec3f light{-0.5f, -0.8f, -0.35f};
     if (name == "body")
-        return make_scene(make_body(is_full ? 76 : 9), look({1.6f, 1.4f, 3.4f}, {0, 0, 0}, 40), light);
+        return make_scene(make_body(is_full ? 76 : 9), look({1.6f, 1.4f, 3.4f}, {0, 0, 0}, 40));
     // No roof: the sun falls in.
     if (name == "hall")
         return make_scene(Hall(is_full ? HallDetail{46, 76, 46, 30} : HallDetail{6, 10, 6, 4}).make(),
-                          look({-18.5f, 2.5f, 0.4f}, {0, 3, 0}, 65), light);
+                          look({-18.5f, 2.5f, 0.4f}, {0, 3, 0}, 65));
     if (name == "knot")
-        return make_scene(is_full ? make_knot(4096, 256) : make_knot(256, 32), look({3, 6, 7}, {0, 0, 0}, 40),
-                          light);
+        return make_scene(is_full ? make_knot(4096, 256) : make_knot(256, 32),
+                          look({3, 6, 7}, {0, 0, 0}, 40));
     throw Error(ErrorKind::usage, {fmt::format("unknown scene '{}'", name), "", "known: body, hall, knot"});
 }
 

@@ -72,6 +72,13 @@ Cut cut_by_number(const Range& range) {
     return {range.last() >> bit << bit, 0};
 }
 
+template <class Left, class Right>
+void build_parts(uint32_t count, const Left& build_left, const Right& build_right) {
+    if (count >= kParallelCount) return parallel_invoke(build_left, build_right);
+    build_left();
+    build_right();
+}
+
 class CompactBuild {
   public:
     CompactBuild(std::span<const Box> boxes, const LbvhBuilder::Config& config)
@@ -97,12 +104,10 @@ class CompactBuild {
         if (codes[entry - 1] != code) return true;
         // The node that cuts here has the entries of this code whose numbers agree above the lowest bit of
         // `entry`.
-        const uint32_t half = entry & (0u - entry);
-        const uint32_t before = std::min(half, max_leaf_size_), after = std::min(half, max_leaf_size_);
-        uint32_t count = 0;
-        while (count < before && entry - count > 0 && codes[entry - count - 1] == code) ++count;
-        uint32_t right = 0;
-        while (right < after && entry + right < codes.size() && codes[entry + right] == code) ++right;
+        const uint32_t most = std::min(entry & (0u - entry), max_leaf_size_);
+        uint32_t count = 0, right = 0;
+        while (count < most && entry - count > 0 && codes[entry - count - 1] == code) ++count;
+        while (right < most && entry + right < codes.size() && codes[entry + right] == code) ++right;
         return count + right > max_leaf_size_;
     }
 
@@ -137,12 +142,7 @@ class CompactBuild {
         Subtree left, right;
         const auto build_left = [&] { left = build_node({range.begin, cut.cut}, left_slot); };
         const auto build_right = [&] { right = build_node({cut.cut, range.end}, left_slot + 1); };
-        if (range.count() >= kParallelCount) {
-            parallel_invoke(build_left, build_right);
-        } else {
-            build_left();
-            build_right();
-        }
+        build_parts(range.count(), build_left, build_right);
         const Box box = join(left.box, right.box);
         node = {box.lower, left_slot, box.upper, 0};
         return {box, 1 + std::max(left.depth, right.depth)};
@@ -184,12 +184,7 @@ class HeapBuild {
         Box left, right;
         const auto build_left = [&] { left = build_node({range.begin, cut.cut}, 2 * key); };
         const auto build_right = [&] { right = build_node({cut.cut, range.end}, 2 * key + 1); };
-        if (range.count() >= kParallelCount) {
-            parallel_invoke(build_left, build_right);
-        } else {
-            build_left();
-            build_right();
-        }
+        build_parts(range.count(), build_left, build_right);
         const Box box = join(left, right);
         node = {box.lower, 0, box.upper, scalar::make_inner_word(cut.axis)};
         return box;

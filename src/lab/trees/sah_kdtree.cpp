@@ -187,8 +187,8 @@ class KdBuild {
             const Plane plane = sweep(set, node.cell, axis, half_area);
             if (plane.cost < best.cost) best = plane;
         }
-        const bool is_dear = best.cost >= double(config_.intersection_cost) * double(set.ids.size());
-        if (is_dear || uint64_t(best.left_count) + best.right_count > node.budget) return {};
+        const bool is_expensive = best.cost >= double(config_.intersection_cost) * double(set.ids.size());
+        if (is_expensive || uint64_t(best.left_count) + best.right_count > node.budget) return {};
         return best;
     }
 
@@ -203,7 +203,7 @@ class KdBuild {
             numbers[k] = uint32_t(part.ids.size());
             part.ids.push_back(set.ids[k]);
         }
-        // No branch on what is left out, which no machine foresees: the next one is written over it.
+        // No branch on what is left out, which is unpredictable: the next one is written over it.
         for (size_t a = 0; a < 3; ++a) {
             std::vector<Event>& events = part.events[a];
             events.resize(2 * part.ids.size() + 1);

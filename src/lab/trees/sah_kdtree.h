@@ -16,7 +16,7 @@ struct KdTree {
     Box bounds;                          ///< cell of the root
     std::vector<scalar::KdNode> nodes;   ///< node 0 is the root; none: no primitives
     std::vector<uint32_t> primitive_ids; ///< of the leaves
-    std::vector<scalar::KdBox> cells;    ///< for walk_kd_backtrack, as asked for; faces of `bounds`: infinity
+    std::vector<scalar::KdBox> cells;    ///< for backtracking, where Cells::kept; faces of `bounds`: infinity
     int depth = 0;                       ///< edges on the longest way down
 
     size_t byte_count() const {

@@ -1,5 +1,8 @@
 #include "lab/vulkan/device_tree.h"
 
+#include <algorithm>
+#include <initializer_list>
+
 #include <fmt/format.h>
 
 #include "formulas/tree.h"
@@ -14,6 +17,18 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t bytes, Texel
 
 template <class T> void fill(Buffer& buffer, const std::vector<T>& values) {
     if (!values.empty()) buffer.upload(values);
+}
+
+/// What all forms have; `capacity` names the rest.
+template <class Tree, class Node>
+DeviceTree upload_nodes(const Device& device, TreeForm form, const Tree& tree, const std::vector<Node>& nodes,
+                        TreeCapacity capacity) {
+    capacity.nodes = nodes.size(), capacity.primitive_ids = tree.primitive_ids.size();
+    DeviceTree result = make_device_tree(device, form, capacity);
+    result.node_count = uint32_t(nodes.size());
+    fill(result.nodes, nodes);
+    fill(result.primitive_ids, tree.primitive_ids);
+    return result;
 }
 
 Buffer make_geometry(const Device& device, const char* name, TexelFormat format,
@@ -75,80 +90,48 @@ DeviceTree make_device_tree(const Device& device, TreeForm form, const TreeCapac
 }
 
 DeviceTree upload_tree(const Device& device, const LinkedBvh& tree) {
-    DeviceTree result = make_device_tree(device, TreeForm::linked,
-                                         {.nodes = tree.nodes.size(),
-                                          .primitive_ids = tree.primitive_ids.size(),
-                                          .parents = tree.parents.size(),
-                                          .skips = tree.skips.size()});
-    result.node_count = uint32_t(tree.nodes.size());
+    DeviceTree result = upload_nodes(device, TreeForm::linked, tree, tree.nodes,
+                                     {.parents = tree.parents.size(), .skips = tree.skips.size()});
     result.depth = tree.depth;
-    fill(result.nodes, tree.nodes);
-    fill(result.primitive_ids, tree.primitive_ids);
     fill(result.parents, tree.parents);
     fill(result.skips, tree.skips);
     return result;
 }
 
 DeviceTree upload_tree(const Device& device, const DenseHeap& tree) {
-    DeviceTree result =
-        make_device_tree(device, TreeForm::dense_heap,
-                         {.nodes = tree.slots.size(), .primitive_ids = tree.primitive_ids.size()});
-    result.node_count = uint32_t(tree.slots.size());
+    DeviceTree result = upload_nodes(device, TreeForm::dense_heap, tree, tree.slots, {});
     result.depth = std::max(tree.levels - 1, 0);
-    fill(result.nodes, tree.slots);
-    fill(result.primitive_ids, tree.primitive_ids);
     return result;
 }
 
 DeviceTree upload_tree(const Device& device, const SuccinctHeap& tree) {
-    DeviceTree result = make_device_tree(device, TreeForm::succinct_heap,
-                                         {.nodes = tree.nodes.size(),
-                                          .primitive_ids = tree.primitive_ids.size(),
-                                          .blocks = tree.blocks.size(),
-                                          .bricks = tree.bricks.size()});
-    result.node_count = uint32_t(tree.nodes.size());
+    DeviceTree result = upload_nodes(device, TreeForm::succinct_heap, tree, tree.nodes,
+                                     {.blocks = tree.blocks.size(), .bricks = tree.bricks.size()});
     result.depth = tree.depth;
     result.heap_form = tree.form;
-    fill(result.nodes, tree.nodes);
-    fill(result.primitive_ids, tree.primitive_ids);
     fill(result.blocks, tree.blocks);
     fill(result.bricks, tree.bricks);
     return result;
 }
 
 DeviceTree upload_tree(const Device& device, const KdTree& tree) {
-    DeviceTree result = make_device_tree(
-        device, TreeForm::kd,
-        {.nodes = tree.nodes.size(), .primitive_ids = tree.primitive_ids.size(), .cells = tree.cells.size()});
-    result.node_count = uint32_t(tree.nodes.size());
+    DeviceTree result = upload_nodes(device, TreeForm::kd, tree, tree.nodes, {.cells = tree.cells.size()});
     result.depth = tree.depth;
     result.bounds = tree.bounds;
-    fill(result.nodes, tree.nodes);
-    fill(result.primitive_ids, tree.primitive_ids);
     fill(result.cells, tree.cells);
     return result;
 }
 
 bool can_walk(TraversalKind traversal, const DeviceTree& tree) {
-    switch (traversal) {
-    case TraversalKind::stack:
-    case TraversalKind::restart_trail:
-    case TraversalKind::parent_link:
-    case TraversalKind::skip_link:
-        return tree.form == TreeForm::linked;
-    case TraversalKind::trail:
-    case TraversalKind::pair_trail:
-        return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
-    case TraversalKind::restart:
-    case TraversalKind::push_down:
-        return tree.form == TreeForm::kd;
-    case TraversalKind::backtrack:
-        return tree.form == TreeForm::kd && (tree.node_count == 0 || tree.cells.byte_count() > 0);
-    case TraversalKind::automatic:
-    case TraversalKind::wide:
-        break;
-    }
-    return false;
+    using T = TraversalKind;
+    const auto is_one_of = [traversal](std::initializer_list<T> kinds) {
+        return std::find(kinds.begin(), kinds.end(), traversal) != kinds.end();
+    };
+    if (tree.form == TreeForm::linked)
+        return is_one_of({T::stack, T::restart_trail, T::parent_link, T::skip_link});
+    if (tree.form != TreeForm::kd) return is_one_of({T::trail, T::pair_trail});
+    const bool has_cells = tree.node_count == 0 || tree.cells.byte_count() > 0;
+    return is_one_of({T::restart, T::push_down}) || (has_cells && traversal == T::backtrack);
 }
 
 } // namespace relief::vulkan

@@ -19,21 +19,12 @@ using scalar::WalkTreeData;
 static_assert(sizeof(WalkTreeData) == scalar::kWalkTreeWords * sizeof(uint32_t));
 static_assert(sizeof(scalar::KdBox) == sizeof(NodeTexels) && sizeof(TreeNode) == sizeof(NodeTexels));
 
-/// Copies anything made of words to the end; returns its first word.
-template <class T> uint32_t append_words(const std::vector<T>& values, std::vector<uint32_t>& words) {
-    static_assert(sizeof(T) % sizeof(uint32_t) == 0);
-    const size_t first = words.size();
-    words.resize(first + values.size() * sizeof(T) / sizeof(uint32_t));
-    if (!values.empty()) std::memcpy(words.data() + first, values.data(), values.size() * sizeof(T));
-    return uint32_t(first);
-}
-
-/// The same for records of the size of a node.
-template <class T> uint32_t append_nodes(const std::vector<T>& values, std::vector<NodeTexels>& nodes) {
-    static_assert(sizeof(T) == sizeof(NodeTexels));
-    const size_t first = nodes.size();
-    nodes.resize(first + values.size());
-    if (!values.empty()) std::memcpy(nodes.data() + first, values.data(), values.size() * sizeof(T));
+/// Copies anything made of units to the end; returns its first unit.
+template <class T, class Unit> uint32_t append(const std::vector<T>& values, std::vector<Unit>& units) {
+    static_assert(sizeof(T) % sizeof(Unit) == 0);
+    const size_t first = units.size();
+    units.resize(first + values.size() * sizeof(T) / sizeof(Unit));
+    if (!values.empty()) std::memcpy(units.data() + first, values.data(), values.size() * sizeof(T));
     return uint32_t(first);
 }
 
@@ -51,26 +42,26 @@ WalkTreeData append_tree(const WalkTree& tree, TraversalKind traversal, std::vec
     switch (traversal) {
     case TraversalKind::trail:
     case TraversalKind::pair_trail:
-        data.nodes = append_nodes(tree.heap.nodes, nodes);
-        data.ids = append_words(tree.heap.primitive_ids, words);
-        data.links = append_words(tree.heap.blocks, words);
-        data.bricks = append_words(tree.heap.bricks, words);
+        data.nodes = append(tree.heap.nodes, nodes);
+        data.ids = append(tree.heap.primitive_ids, words);
+        data.links = append(tree.heap.blocks, words);
+        data.bricks = append(tree.heap.bricks, words);
         data.flat_levels = tree.heap.form.flat_levels, data.flat_pairs = tree.heap.form.flat_pairs;
         break;
     case TraversalKind::restart:
     case TraversalKind::push_down:
     case TraversalKind::backtrack:
         data.lower = tree.kd.bounds.lower, data.upper = tree.kd.bounds.upper;
-        data.nodes = append_nodes(tree.kd.cells, nodes);
-        data.ids = append_words(tree.kd.primitive_ids, words);
-        data.links = append_words(tree.kd.nodes, words);
+        data.nodes = append(tree.kd.cells, nodes);
+        data.ids = append(tree.kd.primitive_ids, words);
+        data.links = append(tree.kd.nodes, words);
         data.boxes = append_boxes(tree.boxes, nodes);
         break;
     default:
-        data.nodes = append_nodes(tree.linked.nodes, nodes);
-        data.ids = append_words(tree.linked.primitive_ids, words);
-        if (traversal == TraversalKind::parent_link) data.links = append_words(tree.linked.parents, words);
-        if (traversal == TraversalKind::skip_link) data.links = append_words(tree.linked.skips, words);
+        data.nodes = append(tree.linked.nodes, nodes);
+        data.ids = append(tree.linked.primitive_ids, words);
+        if (traversal == TraversalKind::parent_link) data.links = append(tree.linked.parents, words);
+        if (traversal == TraversalKind::skip_link) data.links = append(tree.linked.skips, words);
     }
     return data;
 }
@@ -82,7 +73,7 @@ std::optional<SceneWalk> make_device_walk(const PreparedScene& scene, const Rend
     const WalkTrees trees = make_walk_trees(scene, settings, EngineKind::vulkan);
     SceneWalk walk;
     std::vector<WalkTreeData> records(1 + trees.surfaces.size());
-    append_words(records, walk.words); // their place; filled in below
+    append(records, walk.words); // their place; filled in below
     for (size_t s = 0; s < trees.surfaces.size(); ++s) {
         records[1 + s] = append_tree(trees.surfaces[s], trees.traversal, walk.nodes, walk.words);
         walk.has_patches.push_back(!trees.surfaces[s].bounds.is_empty());

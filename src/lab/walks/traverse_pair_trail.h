@@ -19,14 +19,7 @@ PairTrailState pair_walk;
 
 /// 0: no tree.
 PairTrailState start_pair_trail(Key key) {
-    PairTrailState state;
-    state.key = key;
-    state.trail = make_postponed(key);
-    state.leaf = key;
-    state.is_tested = 0u;
-    state.slot = 0u;
-    state.first = 0u;
-    state.word = 0u;
+    PairTrailState state = {key, make_postponed(key), key, 0u, 0u, 0u, 0u};
     return state;
 }
 

@@ -17,11 +17,7 @@ ParentLinkState parent_walk;
 
 /// kNoNode: no tree.
 ParentLinkState start_parent_link(uint root) {
-    ParentLinkState state;
-    state.root = root;
-    state.node = root;
-    state.from = kFromParent;
-    state.pair = root;
+    ParentLinkState state = {root, root, kFromParent, root};
     return state;
 }
 

@@ -23,14 +23,7 @@ float short_stack_entries[kShortStackSize];
 
 /// `root_level`: make_root_level32 or 64; kNoNode: no tree.
 RestartState start_restart_trail(uint root, Key root_level) {
-    RestartState state;
-    state.root = root;
-    state.node = root;
-    state.entry = 0.0f;
-    state.trail = root_level;
-    state.level = root_level;
-    state.stack_top = 0u;
-    state.stack_count = 0u;
+    RestartState state = {root, root, 0.0f, root_level, root_level, 0u, 0u};
     if (root == kNoNode) return state;
     count_bytes(kNodeBytes);
     count_box_test();

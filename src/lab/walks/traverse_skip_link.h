@@ -13,8 +13,7 @@ SkipLinkState skip_walk;
 
 /// kNoNode: no tree.
 SkipLinkState start_skip_link(uint root) {
-    SkipLinkState state;
-    state.node = root;
+    SkipLinkState state = {root};
     return state;
 }
 

@@ -17,10 +17,7 @@ TrailState trail_walk;
 
 /// 0: no tree.
 TrailState start_trail(Key key) {
-    TrailState state;
-    state.key = key;
-    state.trail = make_trail(key);
-    state.leaf = key;
+    TrailState state = {key, make_trail(key), key};
     return state;
 }
 

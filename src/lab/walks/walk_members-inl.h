@@ -3,10 +3,12 @@
 // formulas/tree.h, `Key`, and for kd-trees
 // - KdRay make_own_kd_ray() const: the part of the ray inside the root's cell.
 
+static constexpr bool kIsPushDown = kTraversal == TraversalKind::push_down;
+static constexpr bool kIsBacktrack = kTraversal == TraversalKind::backtrack;
+static constexpr bool kIsKd = kTraversal == TraversalKind::restart || kIsPushDown || kIsBacktrack;
+
 #include "lab/walks/succinct_heap.h"
-#include "lab/walks/traverse_kd_backtrack.h"
-#include "lab/walks/traverse_kd_push_down.h"
-#include "lab/walks/traverse_kd_restart.h"
+#include "lab/walks/traverse_kd.h"
 #include "lab/walks/traverse_pair_trail.h"
 #include "lab/walks/traverse_parent_link.h"
 #include "lab/walks/traverse_restart_trail.h"
@@ -15,9 +17,6 @@
 #include "lab/walks/traverse_trail.h"
 
 static constexpr bool kIsWide = sizeof(Key) == sizeof(HeapKey);
-static constexpr bool kIsKd = kTraversal == TraversalKind::restart ||
-                              kTraversal == TraversalKind::push_down ||
-                              kTraversal == TraversalKind::backtrack;
 
 static Key make_root_level() {
     if constexpr (kIsWide)
@@ -41,12 +40,10 @@ void start_walk(uint root, Key key) {
         trail_walk = start_trail(key);
     else if constexpr (kTraversal == TraversalKind::pair_trail)
         pair_walk = start_pair_trail(key);
-    else if constexpr (kTraversal == TraversalKind::restart)
-        kd_restart_walk = start_kd_restart(root, make_own_kd_ray());
-    else if constexpr (kTraversal == TraversalKind::push_down)
-        kd_push_down_walk = start_kd_push_down(root, make_own_kd_ray());
-    else
-        kd_backtrack_walk = start_kd_backtrack(root, make_own_kd_ray());
+    else {
+        static_assert(kIsKd);
+        start_kd(root, make_own_kd_ray());
+    }
 }
 
 /// False where a device ends the loop too early.
@@ -63,10 +60,8 @@ bool run_walk() {
         return walk_trail();
     else if constexpr (kTraversal == TraversalKind::pair_trail)
         return walk_pair_trail();
-    else if constexpr (kTraversal == TraversalKind::restart)
-        return walk_kd_restart();
-    else if constexpr (kTraversal == TraversalKind::push_down)
-        return walk_kd_push_down();
-    else
-        return walk_kd_backtrack();
+    else {
+        static_assert(kIsKd);
+        return walk_kd();
+    }
 }

@@ -1,5 +1,5 @@
 // The walks of lab/walks/traverse_*.h over the trees of this folder: the reference for the kernels of a
-// device, and what the CPU runs when a traversal is asked for by name.
+// device, and what the CPU runs when a traversal is named.
 //   closest_hit<TraversalKind::trail>(make_walk_view(heap), ray, leaf);
 #pragma once
 

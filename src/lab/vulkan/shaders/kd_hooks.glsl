@@ -6,14 +6,12 @@ KdNode load_kd_node(uint node) {
     return KdNode(data.x, data.y);
 }
 
-#if defined(WALK_KD_BACKTRACK)
 layout(set = 0, binding = kBindKdBoxes) uniform usamplerBuffer kd_boxes;
 KdBox load_kd_box(uint node) {
     uvec4 low = texelFetch(kd_boxes, int(2u * node));
     uvec4 high = texelFetch(kd_boxes, int(2u * node + 1u));
     return KdBox(uintBitsToFloat(low.xyz), low.w, uintBitsToFloat(high.xyz), high.w);
 }
-#endif
 
 KdRay enter_root_cell() {
     return make_kd_ray(walk_ray, push.cell_lower, push.cell_upper, walk_t_min, walk_best.t);

@@ -1,5 +1,6 @@
 // One ray through one tree over a triangle mesh: the hooks of formulas/tree.h from buffers. The including file has
-// defined one of WALK_..., and Key where the walk has one. begin_walk(), then walk_tree(); the result is in walk_best.
+// defined one of WALK_..., WALK_KD besides for kd-trees, and Key where the walk has one. begin_walk(), then walk_tree();
+// the result is in walk_best.
 #include "formulas/lang.h"
 #include "formulas/constants.h"
 #include "formulas/exact.h"
@@ -39,7 +40,7 @@ float get_limit() { return walk_best.t; }
 bool resume_walk() { return false; }
 bool visit_leaf(uint first, uint word, uint node);
 
-#if defined(WALK_KD_RESTART) || defined(WALK_KD_PUSH_DOWN) || defined(WALK_KD_BACKTRACK)
+#ifdef WALK_KD
 #include "lab/vulkan/shaders/kd_hooks.glsl"
 #else
 #include "lab/vulkan/shaders/box_hooks.glsl"

@@ -10,10 +10,9 @@ foreach(shader tree_walk scene_walk)
     list(APPEND variants ${shader}_${walk}_32:${shader}:WALK_${macro},Key=uint
                          ${shader}_${walk}_64:${shader}:WALK_${macro},Key=HeapKey)
   endforeach()
-  foreach(walk restart push_down backtrack)
-    string(TOUPPER ${walk} macro)
-    list(APPEND variants ${shader}_${walk}:${shader}:WALK_KD_${macro})
-  endforeach()
+  list(APPEND variants ${shader}_restart:${shader}:WALK_KD,kIsPushDown=false,kIsBacktrack=false
+                       ${shader}_push_down:${shader}:WALK_KD,kIsPushDown=true,kIsBacktrack=false
+                       ${shader}_backtrack:${shader}:WALK_KD,kIsPushDown=false,kIsBacktrack=true)
 endforeach()
 set(scene_walks ${variants})
 list(FILTER scene_walks INCLUDE REGEX ^scene_walk)

@@ -1,6 +1,6 @@
 // The walk of lab/walks/traverse_*.h that a WALK_... macro names, under common names: start_walk(root), walk_on(), and its
 // state in walk_state. The hooks of formulas/tree.h come before, and enter_root_cell() of kd-trees; Key is defined where
-// the walk has one. A trail starts at a key.
+// the walk has one, kIsPushDown and kIsBacktrack where it is of kd-trees. A trail starts at a key.
 #ifndef RELIEF_WALK_KIND_GLSL
 #define RELIEF_WALK_KIND_GLSL
 
@@ -47,24 +47,12 @@ bool walk_on() { return walk_trail(); }
 #define walk_state pair_walk
 void start_walk(Key key) { pair_walk = start_pair_trail(key); }
 bool walk_on() { return walk_pair_trail(); }
-#elif defined(WALK_KD_RESTART)
-#include "lab/walks/traverse_kd_restart.h"
-#define KindState KdRestartState
-#define walk_state kd_restart_walk
-void start_walk(uint root) { kd_restart_walk = start_kd_restart(root, enter_root_cell()); }
-bool walk_on() { return walk_kd_restart(); }
-#elif defined(WALK_KD_PUSH_DOWN)
-#include "lab/walks/traverse_kd_push_down.h"
-#define KindState KdPushDownState
-#define walk_state kd_push_down_walk
-void start_walk(uint root) { kd_push_down_walk = start_kd_push_down(root, enter_root_cell()); }
-bool walk_on() { return walk_kd_push_down(); }
-#elif defined(WALK_KD_BACKTRACK)
-#include "lab/walks/traverse_kd_backtrack.h"
-#define KindState KdBacktrackState
-#define walk_state kd_backtrack_walk
-void start_walk(uint root) { kd_backtrack_walk = start_kd_backtrack(root, enter_root_cell()); }
-bool walk_on() { return walk_kd_backtrack(); }
+#elif defined(WALK_KD)
+#include "lab/walks/traverse_kd.h"
+#define KindState KdState
+#define walk_state kd_walk
+void start_walk(uint root) { start_kd(root, enter_root_cell()); }
+bool walk_on() { return walk_kd(); }
 #endif
 
 #endif
