@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,13 @@ struct WideBvh {
 /// Collapses the binary tree into the nodes of least area (bvh/wide_children.h).
 /// Inner children of a node are adjacent. Throws Error for more than 2^28 primitives.
 WideBvh make_wide_bvh(const Bvh& bvh);
+
+/// New boxes after some primitives have moved, in a tree whose leaves hold one primitive each; it keeps its
+/// shape. `is_moved` holds a byte a primitive; `find_box` gives the
+/// box of a primitive as it is now and is called from several threads, also for some that have not moved.
+/// Boxes of what has not moved may come out a little larger than before, but do not grow from call to call.
+void refit_wide_bvh(WideBvh& tree, std::span<const uint8_t> is_moved,
+                    const std::function<Box(uint32_t primitive)>& find_box);
 
 inline Box WideNode::child_box(int k) const {
     float low[3], high[3];

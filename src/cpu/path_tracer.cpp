@@ -42,6 +42,10 @@ Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
     return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
 }
 
+void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
+    vectors[0][lane] = v.x, vectors[1][lane] = v.y, vectors[2][lane] = v.z;
+}
+
 struct ShadowRay {
     uint32_t path;
     Vec3f contribution;
@@ -65,7 +69,7 @@ class TileTracer {
     void gather_lights();
     void drop_misses();
     void draw_random();
-    void draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
+    void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     void reflect(size_t first, size_t count);
@@ -74,9 +78,7 @@ class TileTracer {
     void add_emission(size_t k, const Vec3f& emission);
     void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
     bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
-    bool survives_roulette(Path& path, float u_roulette) const;
     void trace_shadow_rays();
-    void finish_paths();
 
     static constexpr size_t kBlock = 64; ///< vertices that are at work at once: as many as a cache holds
 
@@ -142,11 +144,13 @@ void TileTracer::trace_sample(int index) {
         shade_paths();
         trace_shadow_rays();
     }
-    finish_paths();
+    const Timer timer;
+    for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
+    counters_.film_s += timer.seconds();
 }
 
 void TileTracer::start_paths() {
-    draw_pairs(seeds_, scalar::kPixelPair, places_);
+    sample_2d(seeds_, scalar::kPixelPair, places_);
     active_.resize(paths_.size());
     for (uint32_t i = 0; i < paths_.size(); ++i) {
         Path& path = paths_[i];
@@ -223,10 +227,10 @@ void TileTracer::gather_lights() {
         Path& path = paths_[active_[k]];
         path.result.radiance +=
             path.throughput *
-            lights_.gather({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, behind);
+            lights_.evaluate_mis({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, behind);
     };
     for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
-    if (!lights_.has_lamps()) return;
+    if (!lights_.has_analytic_lights()) return;
     for (size_t k = 0; k < active_.size(); ++k)
         if (hits_[k].is_hit()) gather(k, {});
 }
@@ -239,9 +243,9 @@ void TileTracer::drop_misses() {
     active_.resize(kept), rays_.resize(kept), hits_.resize(kept);
 }
 
-void TileTracer::draw_pairs(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
+void TileTracer::sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
     drawn.resize(seeds.size());
-    tracer_.shading_kernels().draw_pairs(seeds.data(), seeds.size(), sample_index_, pair, drawn.data());
+    tracer_.shading_kernels().sample_2d(seeds.data(), seeds.size(), sample_index_, pair, drawn.data());
 }
 
 /// The roulette's pair only where it is needed.
@@ -254,7 +258,7 @@ void TileTracer::draw_random() {
         if (kind == scalar::kRoulettePair && !needs_roulette)
             random_[kind].assign(active_.size(), Vec2f{});
         else
-            draw_pairs(wave_seeds_, scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
+            sample_2d(wave_seeds_, scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
     }
 }
 
@@ -267,9 +271,9 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     size_t lit_count = 0;
     for (size_t n = 0; n < count; ++n) {
         lit[lit_count] = uint32_t(n);
-        lit_count += lanes_[n / 16].is_lit >> n % 16 & 1;
+        lit_count += lanes_[n / 16].needs_shadow_ray >> n % 16 & 1;
     }
-    lights_.weigh(lights_drawn_, {lit.data(), lit_count});
+    lights_.complete_weight(lights_drawn_, {lit.data(), lit_count});
     for (size_t n = 0; n < count; ++n) {
         if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
         if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
@@ -277,7 +281,7 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     for (size_t n = 0; n < lit_count; ++n)
         add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
     for (size_t n = 0; n < count; ++n)
-        if (lanes_[n / 16].goes_on >> n % 16 & 1)
+        if (lanes_[n / 16].has_bounce >> n % 16 & 1)
             next += continue_path(first + n, lanes_[n / 16], n % 16, next) ? 1 : 0;
     return next;
 }
@@ -299,27 +303,24 @@ void TileTracer::reflect(size_t first, size_t count) {
         const PointMaterial m = make_material(hits_[first + n].instance, points_[first + n].uv);
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
-        lanes.base_color[0][lane] = m.base_color.x, lanes.base_color[1][lane] = m.base_color.y;
-        lanes.base_color[2][lane] = m.base_color.z;
+        set_lane(m.base_color, lane, lanes.base_color);
         lanes.roughness[lane] = m.roughness, lanes.metallic[lane] = m.metallic, lanes.ior[lane] = m.ior;
         emissions_[n] = m.emission;
-        const LightSample& light = lights_drawn_[n];
-        lanes.light_direction[0][lane] = light.direction.x;
-        lanes.light_direction[1][lane] = light.direction.y;
-        lanes.light_direction[2][lane] = light.direction.z;
-        lanes.light_pdf[lane] = light.pdf;
+        set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
+        lanes.light_pdf[lane] = lights_drawn_[n].pdf;
     }
     for (size_t n = count; n % 16 != 0; ++n)
         lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
-    const bool goes_on = depth_ < settings_.image.bounces;
+    const bool has_bounce = depth_ < settings_.image.bounces;
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
-        tracer_.shading_kernels().reflect({.count = std::min(size_t(16), count - n),
-                                           .points = &points_[k],
-                                           .rays = &rays_[k],
-                                           .pick_pairs = goes_on ? &random_[scalar::kPickPair][k] : nullptr,
-                                           .bsdf_pairs = goes_on ? &random_[scalar::kBsdfPair][k] : nullptr},
-                                          lanes_[n / 16]);
+        tracer_.shading_kernels().reflect(
+            {.count = std::min(size_t(16), count - n),
+             .points = &points_[k],
+             .rays = &rays_[k],
+             .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
+             .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr},
+            lanes_[n / 16]);
     }
 }
 
@@ -378,22 +379,15 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
 bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
     Path& path = paths_[active_[k]];
     path.throughput = path.throughput * get_lane(lanes.bounce_weight, lane);
-    if (!is_finite(path.throughput) || !survives_roulette(path, random_[scalar::kRoulettePair][k].x))
-        return false;
+    const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
+    if (!is_finite(path.throughput) || random_[scalar::kRoulettePair][k].x >= probability) return false;
+    path.throughput *= 1 / probability;
     path.previous = points_[k].position;
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
-    const uint32_t lod_bias = hits_[k].lod_bias;
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
-                   lod_bias};
-    return true;
-}
-
-bool TileTracer::survives_roulette(Path& path, float u_roulette) const {
-    const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
-    if (u_roulette >= probability) return false;
-    path.throughput *= 1 / probability;
+                   uint32_t(hits_[k].lod_bias)};
     return true;
 }
 
@@ -406,12 +400,6 @@ void TileTracer::trace_shadow_rays() {
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
     counters_.shadow_rays += shadow_rays_.size();
-}
-
-void TileTracer::finish_paths() {
-    const Timer timer;
-    for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
-    counters_.film_s += timer.seconds();
 }
 
 } // namespace

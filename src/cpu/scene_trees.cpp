@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "bvh/wide_refit.h"
 #include "prepare/scene_trees.h"
 
 namespace relief::cpu {

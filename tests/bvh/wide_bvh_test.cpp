@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "bvh/sah_bvh.h"
-#include "bvh/wide_refit.h"
 #include "support/box_sets.h"
 
 namespace relief {

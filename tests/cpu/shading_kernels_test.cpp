@@ -171,8 +171,8 @@ void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
     const scalar::Bsdf bsdf = scalar::make_bsdf(c.material, wo_local.z);
 
     const scalar::BsdfValue value = scalar::evaluate_bsdf(bsdf, wo_local, scalar::to_local(basis, c.light));
-    const bool is_lit = c.light_pdf > 0 && dot(c.light, geometric) > 0 && !(value.value == Vec3f{});
-    ASSERT_EQ(lanes.is_lit >> lane & 1, is_lit);
+    const bool needs_shadow_ray = c.light_pdf > 0 && dot(c.light, geometric) > 0 && !(value.value == Vec3f{});
+    ASSERT_EQ(lanes.needs_shadow_ray >> lane & 1, needs_shadow_ray);
     EXPECT_EQ(get_lane(lanes.light_reflected, lane), value.value);
     EXPECT_EQ(lanes.light_bsdf_pdf[lane], value.pdf);
     const auto offset = [&](const Vec3f& direction) {
@@ -182,9 +182,9 @@ void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
 
     const scalar::BsdfSample drawn = scalar::sample_bsdf(bsdf, wo_local, c.pick.y, c.u);
     const Vec3f direction = normalize(scalar::from_local(basis, drawn.direction));
-    const bool goes_on = !(drawn.weight == Vec3f{}) && dot(geometric, direction) > 0;
-    ASSERT_EQ(lanes.goes_on >> lane & 1, goes_on);
-    if (!goes_on) return;
+    const bool has_bounce = !(drawn.weight == Vec3f{}) && dot(geometric, direction) > 0;
+    ASSERT_EQ(lanes.has_bounce >> lane & 1, has_bounce);
+    if (!has_bounce) return;
     EXPECT_EQ(get_lane(lanes.bounce_direction, lane), direction);
     EXPECT_EQ(get_lane(lanes.bounce_weight, lane), drawn.weight);
     EXPECT_EQ(lanes.bounce_pdf[lane], drawn.pdf);
@@ -209,12 +209,13 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
             }
             cpu::find_shading_kernels(isa.c_str())
                 .reflect({count, points.data(), rays.data(), picks.data(), pairs.data()}, lanes);
-            EXPECT_EQ((lanes.is_lit | lanes.goes_on) >> count, 0);
+            EXPECT_EQ((lanes.needs_shadow_ray | lanes.has_bounce) >> count, 0);
             for (size_t lane = 0; lane < count; ++lane) {
                 expect_lane(cases[first + lane], lanes, lane);
                 ASSERT_FALSE(testing::Test::HasFailure()) << isa << ", case " << first + lane;
             }
-            lit += uint32_t(std::popcount(lanes.is_lit)), going += uint32_t(std::popcount(lanes.goes_on));
+            lit += uint32_t(std::popcount(lanes.needs_shadow_ray)),
+                going += uint32_t(std::popcount(lanes.has_bounce));
         }
         EXPECT_GT(lit, 100);
         EXPECT_GT(going, 250);
@@ -226,9 +227,9 @@ TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
     for (const std::string& isa : available_isas()) {
         cpu::VertexLanes lanes{};
         set_lane(c, 0, lanes);
-        lanes.goes_on = 1;
+        lanes.has_bounce = 1;
         cpu::find_shading_kernels(isa.c_str()).reflect({1, &c.point, &c.ray, nullptr, nullptr}, lanes);
-        EXPECT_EQ(lanes.goes_on, 0) << isa;
+        EXPECT_EQ(lanes.has_bounce, 0) << isa;
     }
 }
 
@@ -265,7 +266,7 @@ TEST(Lights, are_drawn_for_many_points_as_for_each) {
     lights.draw(at, random, drawn);
     std::vector<uint32_t> odd;
     for (uint32_t k = 1; k < kMany; k += 2) odd.push_back(k);
-    lights.weigh(drawn, odd);
+    lights.complete_weight(drawn, odd);
     std::array<size_t, 4> counts{}; // environment, sun, lamps, quad
     for (uint32_t k = 0; k < kMany; ++k) {
         cpu::LightSample one;
@@ -273,7 +274,7 @@ TEST(Lights, are_drawn_for_many_points_as_for_each) {
         lights.draw({&at[k], 1}, {&random[k], 1}, {&one, 1});
         const bool is_environment = one.lacks_radiance;
         counts[is_environment ? 0 : one.emitter ? 3 : std::isinf(one.distance) ? 1 : 2] += 1;
-        if (k % 2 == 1) lights.weigh({&one, 1}, {&first, 1});
+        if (k % 2 == 1) lights.complete_weight({&one, 1}, {&first, 1});
         EXPECT_EQ(drawn[k].lacks_radiance, is_environment && k % 2 == 0) << k;
         EXPECT_EQ(drawn[k].direction, one.direction) << k;
         EXPECT_EQ(drawn[k].distance, one.distance) << k;

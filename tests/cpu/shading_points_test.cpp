@@ -196,7 +196,7 @@ TEST(RandomPairs, are_the_same_many_at_once_and_one_by_one) {
             const cpu::Tracer tracer(
                 prepare_scene(make_scene(test::make_displacement(map, DisplacementSpace::object)), settings),
                 settings);
-            tracer.shading_kernels().draw_pairs(seeds.data(), seeds.size(), sample_index, 5, drawn.data());
+            tracer.shading_kernels().sample_2d(seeds.data(), seeds.size(), sample_index, 5, drawn.data());
             for (size_t k = 0; k < seeds.size(); ++k)
                 ASSERT_EQ(drawn[k], scalar::sobol_pair(seeds[k], sample_index, 5))
                     << tracer.shading_kernels().name << " " << k;

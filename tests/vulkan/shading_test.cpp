@@ -141,7 +141,7 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
             if (depth > 0)
                 expected =
                     c.path.throughput *
-                    lights.gather({c.path.previous, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
+                    lights.evaluate_mis({c.path.previous, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
             else if (!c.hit.is_hit())
                 expected = behind.radiance;
             if (!(compare(paths[k].radiance, expected) < 2e-3f)) ++flips;
@@ -163,7 +163,7 @@ std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const Shadi
     const uint32_t first = 0;
     bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
     if (!(light.pdf > 0) || dot(light.direction, v.point.geometric_normal) <= 0) return std::nullopt;
-    bench.cpu_lights.weigh({&light, 1}, {&first, 1});
+    bench.cpu_lights.complete_weight({&light, 1}, {&first, 1});
     const scalar::BsdfValue bsdf =
         scalar::evaluate_bsdf(v.bsdf, v.wo_local, scalar::to_local(v.basis, light.direction));
     const Vec3f contribution =

@@ -1,10 +1,5 @@
 // Vertices of a tile, sixteen at a time.
-#if defined(RELIEF_PATCH_EVALUATION_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_PATCH_EVALUATION_INL_H
-#undef RELIEF_PATCH_EVALUATION_INL_H
-#else
-#define RELIEF_PATCH_EVALUATION_INL_H
-#endif
+#pragma once
 
 #include <optional>
 
@@ -131,5 +126,3 @@ HWY_INLINE void evaluate_tile(const Surface& surface, const TileRange& range, Ve
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

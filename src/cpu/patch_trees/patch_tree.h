@@ -87,9 +87,9 @@ struct PatchTree : CachedTree {
         return (3 * size_t(vertex_count(level)) + 1) * sizeof(float);
     }
     static constexpr size_t size_bytes(int level);
-
-    const char* data() const;
-    char* data();
+    /// Behind the head, whose size is a multiple of 64 bytes.
+    const char* data() const { return reinterpret_cast<const char*>(this + 1); }
+    char* data() { return reinterpret_cast<char*>(this + 1); }
     const Node16& root() const { return *reinterpret_cast<const Node16*>(data()); }
     Node16& root() { return *reinterpret_cast<Node16*>(data()); }
     /// The node above the leaves: of group g, or the only one (g = 0). kLevel is the tree's.
@@ -140,12 +140,8 @@ struct PatchTree : CachedTree {
 };
 
 constexpr size_t PatchTree::size_bytes(int level) {
-    return (sizeof(PatchTree) + 63) / 64 * 64 + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
+    return sizeof(PatchTree) + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
 }
-inline const char* PatchTree::data() const {
-    return reinterpret_cast<const char*>(this) + (sizeof(PatchTree) + 63) / 64 * 64;
-}
-inline char* PatchTree::data() { return reinterpret_cast<char*>(this) + (sizeof(PatchTree) + 63) / 64 * 64; }
 
 /// Tree over the quarters of the tiles of a patch above kTileLevel, 2^depth of them a side: their boxes come
 /// from the map, and those of whole tiles would be a good deal larger. Step s has step_side(s)^2 nodes, row
@@ -175,16 +171,14 @@ struct TileDirectory : CachedTree {
     static constexpr uint32_t find_tile_of_node(uint32_t child) {
         return (child >> 2 & 2) | (child >> 1 & 1);
     }
-    static constexpr size_t size_bytes(uint32_t depth) {
-        return (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64 +
-               size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
-    }
-    const Node16* nodes() const {
-        return reinterpret_cast<const Node16*>(reinterpret_cast<const char*>(this) +
-                                               (sizeof(CachedTree) + sizeof(uint32_t) + 63) / 64 * 64);
-    }
-    Node16* nodes() { return const_cast<Node16*>(const_cast<const TileDirectory*>(this)->nodes()); }
+    static constexpr size_t size_bytes(uint32_t depth);
+    const Node16* nodes() const { return reinterpret_cast<const Node16*>(this + 1); }
+    Node16* nodes() { return reinterpret_cast<Node16*>(this + 1); }
 };
+
+constexpr size_t TileDirectory::size_bytes(uint32_t depth) {
+    return sizeof(TileDirectory) + size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
+}
 
 /// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
 using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, PatchTree& tree);

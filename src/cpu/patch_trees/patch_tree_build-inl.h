@@ -1,10 +1,5 @@
 // From the vertices of a tile to its patch tree: the grid without padding, then boxes upward.
-#if defined(RELIEF_BOTTOM_BUILD_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_BOTTOM_BUILD_INL_H
-#undef RELIEF_BOTTOM_BUILD_INL_H
-#else
-#define RELIEF_BOTTOM_BUILD_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -117,5 +112,3 @@ void build_tree(const Surface& surface, const PatchLevels& levels, cpu::PatchTre
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -109,27 +109,21 @@ CachedTree* PatchTreeCache::find(TraceContext& context, const TreeKey& key) cons
             if (!tree->is_recent.load(std::memory_order_relaxed))
                 tree->is_recent.store(1, std::memory_order_relaxed);
             ++context.counters.reused;
-            remember(context, *tree);
+            context.recent.place(key) = {key, tree, context.epoch.load(std::memory_order_relaxed)};
             return tree;
         }
     }
     return nullptr;
 }
 
-void PatchTreeCache::remember(TraceContext& context, const CachedTree& tree) {
-    context.recent.place(tree.key) = {tree.key, &tree, context.epoch.load(std::memory_order_relaxed)};
-}
-
 const CachedTree& PatchTreeCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                                           const TreeKey& key) {
     if (const CachedTree* found = find(context, key)) return *found;
-    throw_if_stopped();
+    if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
     const Timer timer;
-    CachedTree* tree = nullptr;
-    if (key.tile == kDirectoryTile)
-        tree = make_directory(context, surface, key);
-    else
-        tree = make_tree(context, surface, key);
+    CachedTree* tree = key.tile == kDirectoryTile
+                           ? static_cast<CachedTree*>(make_directory(context, surface, key))
+                           : make_tree(context, surface, key);
     const bool is_scratch = tree == context.tree_scratch.get() || tree == context.directory_scratch.get();
     if (!is_scratch) offer(context, tree);
     context.counters.bottom_build_s += timer.seconds();
@@ -170,10 +164,6 @@ TileDirectory* PatchTreeCache::make_directory(TraceContext& context, const Surfa
     directory->depth = depth;
     build_tile_directory(surface, levels, *directory);
     return directory;
-}
-
-void PatchTreeCache::throw_if_stopped() const {
-    if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
 }
 
 void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {

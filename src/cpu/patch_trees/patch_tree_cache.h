@@ -122,14 +122,6 @@ class PatchTreeCache {
                                                  const TreeKey& key) {
         return static_cast<const TileDirectory&>(find_or_build(context, surface, key));
     }
-    /// One that this worker met lately, or null.
-    const CachedTree* find_recent(TraceContext& context, const TreeKey& key) const {
-        const RecentTrees::Entry& entry = context.recent.place(key);
-        if (entry.epoch != context.epoch.load(std::memory_order_relaxed) || !(entry.key == key))
-            return nullptr;
-        return entry.tree;
-    }
-
     /// Bytes held now and at most so far, table included.
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
     size_t peak_byte_count() const { return peak_.load() + table_bytes(); }
@@ -138,18 +130,17 @@ class PatchTreeCache {
 
   private:
     const CachedTree& find_or_build(TraceContext& context, const Surface& surface, const TreeKey& key) {
-        const CachedTree* recent = find_recent(context, key);
-        if (!recent) return find_or_build_elsewhere(context, surface, key);
+        const RecentTrees::Entry& recent = context.recent.place(key);
+        if (recent.epoch != context.epoch.load(std::memory_order_relaxed) || !(recent.key == key))
+            return find_or_build_elsewhere(context, surface, key);
         ++context.counters.reused;
-        return *recent;
+        return *recent.tree;
     }
     const CachedTree& find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                               const TreeKey& key);
     PatchTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
     TileDirectory* make_directory(TraceContext& context, const Surface& surface, const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
-    static void remember(TraceContext& context, const CachedTree& tree);
-    void throw_if_stopped() const;
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);

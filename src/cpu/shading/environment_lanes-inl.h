@@ -1,11 +1,6 @@
 // The environment as a light, sixteen directions at a time: the same operations in the same order as
 // EnvironmentLight for one, hence the same bits.
-#if defined(RELIEF_ENVIRONMENT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_ENVIRONMENT_LANES_INL_H
-#undef RELIEF_ENVIRONMENT_LANES_INL_H
-#else
-#define RELIEF_ENVIRONMENT_LANES_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -92,8 +87,9 @@ struct ImagePlaces {
         }
     }
 
-    /// Bilinear colours; of the other lanes 0.
-    HWY_INLINE Vec3 fetch(const Texture& texture, LaneMask which) const {
+    /// Radiance, bilinear; of the other lanes 0.
+    HWY_INLINE Vec3 fetch(const cpu::EnvironmentTables& tables, LaneMask which) const {
+        const Texture& texture = *tables.texture;
         LaneQuads colors;
         if (which != 0xffffu) std::memset(&colors, 0, sizeof colors);
         for (; which != 0; which &= which - 1) {
@@ -107,12 +103,25 @@ struct ImagePlaces {
         }
         Float r, g, b, alpha;
         colors.transpose(r, g, b, alpha);
-        return texture.channel_count < 3 ? Vec3{r, r, r} : Vec3{r, g, b};
+        const bool is_grey = texture.channel_count < 3;
+        const Vec3f& scale = tables.data.scale;
+        return {r * Float(scale.x), (is_grey ? r : g) * Float(scale.y), (is_grey ? r : b) * Float(scale.z)};
     }
 };
 
-/// Rounds of sixteen whose texels are asked for before the first is read.
-inline constexpr size_t kRounds = 4;
+/// Calls step(round, first, count - first) for each sixteen of `count`, one step after another for a few
+/// rounds: each step has asked for what the next one reads.
+template <class Round, class... Steps> HWY_INLINE void run_rounds(size_t count, Steps... steps) {
+    constexpr size_t kRounds = 4;
+    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
+        Round rounds[kRounds];
+        const auto run = [&](auto step) HWY_ATTR {
+            for (size_t k = 0, first = begin; k < kRounds && first < count; ++k, first += 16)
+                step(rounds[k], first, count - first);
+        };
+        (run(steps), ...);
+    }
+}
 
 /// EnvironmentLight::look_up of each direction.
 inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3f* directions, size_t count,
@@ -120,54 +129,42 @@ inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3
     static_assert(sizeof(cpu::EnvironmentLookup) == 16);
     const scalar::EnvironmentData& data = tables.data;
     const Float cells_x(float(data.cells_x)), cells_y(float(data.cells_y));
-    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
-        ImagePlaces places[kRounds];
-        alignas(64) float densities[kRounds][16];
-        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
-        for (size_t k = 0; k < rounds; ++k) {
-            const size_t first = begin + 16 * k;
-            const Vec3 direction = load_vectors(directions + first, count - first);
-            const Vec2 position = locate_in_environment(data, direction);
-            places[k].locate(*tables.texture, position);
-            places[k].prefetch(*tables.texture, first_lanes(count - first));
-            const auto find_cell = [](const Float& at, const Float& cells, uint32_t cell_count) HWY_ATTR {
-                return min(Uint(locate_environment_cell(at, cells)), Uint(cell_count - 1));
-            };
-            find_cell_density(tables, find_cell(position.x, cells_x, data.cells_x),
-                              find_cell(position.y, cells_y, data.cells_y), direction)
-                .store(densities[k]);
-        }
-        for (size_t k = 0; k < rounds; ++k) {
-            const size_t first = begin + 16 * k;
-            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
-            LaneQuads quads;
-            quads.set(color.x * Float(data.scale.x), color.y * Float(data.scale.y),
-                      color.z * Float(data.scale.z), Float::load(densities[k]));
-            std::memcpy(found + first, quads.lane, 16 * HWY_MIN(size_t(16), count - first));
-        }
-    }
+    struct Round {
+        ImagePlaces places;
+        alignas(64) float densities[16];
+    };
+    const auto find_cell = [](const Float& at, const Float& cells, uint32_t cell_count) HWY_ATTR {
+        return min(Uint(locate_environment_cell(at, cells)), Uint(cell_count - 1));
+    };
+    const auto locate = [&](Round& round, size_t first, size_t left) HWY_ATTR {
+        const Vec3 direction = load_vectors(directions + first, left);
+        const Vec2 position = locate_in_environment(data, direction);
+        round.places.locate(*tables.texture, position);
+        round.places.prefetch(*tables.texture, first_lanes(left));
+        find_cell_density(tables, find_cell(position.x, cells_x, data.cells_x),
+                          find_cell(position.y, cells_y, data.cells_y), direction)
+            .store(round.densities);
+    };
+    const auto fetch = [&](const Round& round, size_t first, size_t left) HWY_ATTR {
+        const Vec3 radiance = round.places.fetch(tables, first_lanes(left));
+        LaneQuads quads;
+        quads.set(radiance.x, radiance.y, radiance.z, Float::load(round.densities));
+        std::memcpy(found + first, quads.lane, 16 * HWY_MIN(size_t(16), left));
+    };
+    run_rounds<Round>(count, locate, fetch);
 }
 
 /// EnvironmentLight::radiance of each place.
 inline void fetch_environment(const cpu::EnvironmentTables& tables, const Vec2f* positions, size_t count,
                               Vec3f* radiances) {
-    const scalar::EnvironmentData& data = tables.data;
-    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
-        ImagePlaces places[kRounds];
-        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
-        for (size_t k = 0; k < rounds; ++k) {
-            const size_t first = begin + 16 * k;
-            places[k].locate(*tables.texture, load_pairs(positions + first, count - first));
-            places[k].prefetch(*tables.texture, first_lanes(count - first));
-        }
-        for (size_t k = 0; k < rounds; ++k) {
-            const size_t first = begin + 16 * k;
-            const Vec3 color = places[k].fetch(*tables.texture, first_lanes(count - first));
-            store_vectors(
-                {color.x * Float(data.scale.x), color.y * Float(data.scale.y), color.z * Float(data.scale.z)},
-                count - first, radiances + first);
-        }
-    }
+    const auto locate = [&](ImagePlaces& places, size_t first, size_t left) HWY_ATTR {
+        places.locate(*tables.texture, load_pairs(positions + first, left));
+        places.prefetch(*tables.texture, first_lanes(left));
+    };
+    const auto fetch = [&](const ImagePlaces& places, size_t first, size_t left) HWY_ATTR {
+        store_vectors(places.fetch(tables, first_lanes(left)), left, radiances + first);
+    };
+    run_rounds<ImagePlaces>(count, locate, fetch);
 }
 
 template <class T> HWY_INLINE void prefetch(const T* base, const Uint& index) {
@@ -214,23 +211,19 @@ struct DrawLanes {
     }
 };
 
-/// EnvironmentLight::draw_direction of each pair. Each step has loaded what the next one reads.
+/// EnvironmentLight::draw_direction of each pair.
 inline void draw_directions(const cpu::EnvironmentTables& tables, const Vec2f* u, size_t count,
                             cpu::DirectionSample* drawn) {
     static_assert(offsetof(cpu::DirectionSample, pdf) == 12);
-    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
-        DrawLanes lanes[kRounds];
-        const size_t rounds = HWY_MIN(kRounds, (count - begin + 15) / 16);
-        for (size_t k = 0; k < rounds; ++k)
-            lanes[k].find_row(tables, u + begin + 16 * k, count - begin - 16 * k);
-        for (size_t k = 0; k < rounds; ++k) lanes[k].find_guide(tables);
-        for (size_t k = 0; k < rounds; ++k)
-            lanes[k].finish(tables, count - begin - 16 * k, drawn + begin + 16 * k);
-    }
+    run_rounds<DrawLanes>(
+        count,
+        [&](DrawLanes& lanes, size_t first, size_t left)
+            HWY_ATTR { lanes.find_row(tables, u + first, left); },
+        [&](DrawLanes& lanes, size_t, size_t) HWY_ATTR { lanes.find_guide(tables); },
+        [&](const DrawLanes& lanes, size_t first, size_t left)
+            HWY_ATTR { lanes.finish(tables, left, drawn + first); });
 }
 
 } // namespace wide
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

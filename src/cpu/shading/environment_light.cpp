@@ -20,14 +20,10 @@ struct Interval {
 };
 
 /// Number of the interval of a cumulative distribution (0 ... 1) that u falls into, which lies in [first,
-/// last]. Without branches: they would be taken at random.
+/// last].
 uint32_t search_interval(std::span<const float> cumulative, float u, uint32_t first, uint32_t last) {
-    for (uint32_t length = last - first; length > 0;) {
-        const uint32_t half = (length + 1) / 2;
-        first += cumulative[first + half] <= u ? half : 0;
-        length -= half;
-    }
-    return first;
+    const auto begin = cumulative.begin() + first + 1, end = cumulative.begin() + last + 1;
+    return first + uint32_t(std::upper_bound(begin, end, u) - begin);
 }
 
 /// Writes where the search for u in [k, k + 1) / kGuides starts and ends.
@@ -42,11 +38,9 @@ void fill_guide(std::span<const float> cumulative, std::span<uint32_t> guide) {
     }
 }
 
-uint32_t find_guide(float u) { return std::min(uint32_t(u * float(kGuides)), kGuides - 1); }
-
 /// Interval that u falls into; never one of zero width.
 Interval find_interval(std::span<const float> cumulative, const uint32_t* guides, float u) {
-    const uint32_t guide = guides[find_guide(u)];
+    const uint32_t guide = guides[std::min(uint32_t(u * float(kGuides)), kGuides - 1)];
     const uint32_t index = search_interval(cumulative, u, guide & 0xffff, guide >> 16);
     return {index, scalar::locate_in_interval(u, cumulative[index], cumulative[index + 1])};
 }

@@ -29,9 +29,10 @@ void LightSet::find_sources() {
     emitters_ = make_emitter_table(tracer_.scene());
     sources_ =
         make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
-    has_lamps_ = std::any_of(sources_.begin(), sources_.end(), [](const scalar::LightSourceData& source) {
-        return source.kind == scalar::kSourcePoint && source.radius > 0;
-    });
+    has_analytic_lights_ =
+        std::any_of(sources_.begin(), sources_.end(), [](const scalar::LightSourceData& source) {
+            return source.kind == scalar::kSourcePoint && source.radius > 0;
+        });
 }
 
 float LightSet::total_irradiance(const Vec3f& position) const {
@@ -104,7 +105,7 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
     }
 }
 
-void LightSet::weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const {
+void LightSet::complete_weight(std::span<LightSample> drawn, std::span<const uint32_t> which) const {
     std::array<uint32_t, kBlock> samples;
     std::array<Vec2f, kBlock> places;
     std::array<Vec3f, kBlock> radiances;
@@ -162,7 +163,7 @@ void LightSet::look_up_environment(std::span<const Vec3f> directions,
         std::fill_n(found.begin(), directions.size(), EnvironmentLookup{});
 }
 
-Vec3f LightSet::gather(const BounceRay& ray, const EnvironmentLookup& behind) const {
+Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const {
     Vec3f sum{};
     const float total = total_irradiance(ray.origin);
     for (const scalar::LightSourceData& source : sources_) {

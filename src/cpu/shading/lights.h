@@ -16,7 +16,7 @@ namespace relief::cpu {
 /// A direction towards a light; `pdf` and `weight` hold the probability of having picked the light.
 struct LightSample : scalar::LightDraw {
     Vec2f place{}; ///< in the environment's image, where the light is from there
-    /// The radiance of `place` is not in `weight` yet: LightSet::weigh().
+    /// The radiance of `place` is not in `weight` yet: LightSet::complete_weight().
     bool lacks_radiance = false;
     /// Set when the light is a surface that the shadow ray must stop short of.
     std::optional<SurfacePoint> emitter;
@@ -50,7 +50,7 @@ class LightSet {
     /// Completes the weights of drawn[which[...]], before they are used: those from the environment lack its
     /// radiance. Many directions lead into the surface, and the image, too large for a cache, need not be
     /// read for them.
-    void weigh(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
+    void complete_weight(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
 
     /// False: `u_emitter` is never looked at.
     bool has_emitters() const { return emitters_.size() > 0; }
@@ -59,7 +59,7 @@ class LightSet {
     void look_up_environment(std::span<const Vec3f> directions, std::span<EnvironmentLookup> found) const;
 
     /// Whether rays that hit a surface may have met a light on their way.
-    bool has_lamps() const { return has_lamps_; }
+    bool has_analytic_lights() const { return has_analytic_lights_; }
 
     /// A bounce ray, and how far it came.
     struct BounceRay {
@@ -70,7 +70,7 @@ class LightSet {
     /// Light of the environment, suns and point lights that a bounce ray meets, each weighted against its
     /// chance of being drawn from the origin. `behind`: the environment along the ray, where the distance is
     /// infinite.
-    Vec3f gather(const BounceRay& ray, const EnvironmentLookup& behind) const;
+    Vec3f evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const;
 
     /// Density with which draw() from `origin` would have found a point of an emissive surface.
     float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
@@ -97,7 +97,7 @@ class LightSet {
     std::optional<EnvironmentLight> environment_;
     EmitterTable emitters_;
     std::vector<scalar::LightSourceData> sources_;
-    bool has_lamps_ = false;
+    bool has_analytic_lights_ = false;
 };
 
 } // namespace relief::cpu

@@ -1,11 +1,6 @@
 // Surface points of hits on plain polygons, sixteen at a time: the same operations in the same order as
 // Tracer::make_surface_point for one, hence the same bits.
-#if defined(RELIEF_POLYGON_POINTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_POLYGON_POINTS_INL_H
-#undef RELIEF_POLYGON_POINTS_INL_H
-#else
-#define RELIEF_POLYGON_POINTS_INL_H
-#endif
+#pragma once
 
 #include "cpu/shading/surface_points-inl.h"
 #include "formulas/frame.h"
@@ -85,12 +80,5 @@ HWY_NOINLINE inline void make_polygon_points(const cpu::PointBatch& batch, size_
                  wide::blend_polygon_uv(c[0].uv, c[1].uv, c[2].uv, c[3].uv, at));
 }
 
-inline void make_polygon_batch(const cpu::PointBatch& batch) {
-    for (size_t first = 0; first < batch.count; first += 16)
-        make_polygon_points(batch, first, HWY_MIN(size_t(16), batch.count - first));
-}
-
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

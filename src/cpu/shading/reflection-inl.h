@@ -1,10 +1,5 @@
 // Sixteen vertices of paths at once: what they reflect of the light that was drawn, and the rays that go on.
-#if defined(RELIEF_REFLECTION_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_REFLECTION_INL_H
-#undef RELIEF_REFLECTION_INL_H
-#else
-#define RELIEF_REFLECTION_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -92,9 +87,9 @@ HWY_INLINE void reflect_light(const PointLanes& point, const Scattering& scatter
     const BsdfValue toward =
         evaluate_bsdf(scattering.bsdf, scattering.wo_local, to_local(scattering.basis, direction));
     const Float zero(0.0f);
-    const Bool is_lit = Float::load(v.light_pdf) > zero && dot(direction, point.geometric_normal) > zero &&
-                        !is_black(toward.value);
-    v.is_lit = to_mask(is_lit);
+    const Bool needs_shadow_ray = Float::load(v.light_pdf) > zero &&
+                                  dot(direction, point.geometric_normal) > zero && !is_black(toward.value);
+    v.needs_shadow_ray = to_mask(needs_shadow_ray);
     store_vectors(toward.value, v.light_reflected), toward.pdf.store(v.light_bsdf_pdf);
     store_vectors(offset_origin(point.position, point.geometric_normal, point.position_error, direction),
                   v.shadow_origin);
@@ -104,7 +99,7 @@ HWY_INLINE void reflect_path(const PointLanes& point, const Scattering& scatteri
                              const Vec2& u, cpu::VertexLanes& v) {
     const BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
     const Vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
-    v.goes_on = to_mask(dot(point.geometric_normal, direction) > Float(0.0f) && !is_black(drawn.weight));
+    v.has_bounce = to_mask(dot(point.geometric_normal, direction) > Float(0.0f) && !is_black(drawn.weight));
     store_vectors(direction, v.bounce_direction), store_vectors(drawn.weight, v.bounce_weight);
     drawn.pdf.store(v.bounce_pdf);
     store_vectors(offset_origin(point.position, point.geometric_normal, point.position_error, direction),
@@ -130,15 +125,13 @@ inline void reflect(const cpu::VertexBatch& batch, cpu::VertexLanes& v) {
         scattering.wo_local.z);
     const LaneMask lanes = first_lanes(count);
     reflect_light(point, scattering, v);
-    v.goes_on = 0;
+    v.has_bounce = 0;
     if (batch.pick_pairs)
         reflect_path(point, scattering, load_pairs(batch.pick_pairs, count).y,
                      load_pairs(batch.bsdf_pairs, count), v);
-    v.is_lit &= lanes, v.goes_on &= lanes;
+    v.needs_shadow_ray &= lanes, v.has_bounce &= lanes;
 }
 
 } // namespace wide
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

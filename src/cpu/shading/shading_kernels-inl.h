@@ -1,5 +1,6 @@
 // The kernels that shade for one instruction set, RELIEF_TARGET: each has a source of its own
-// (cmake/Kernels.cmake), so that processors compile them side by side, and a build may leave some out.
+// (cmake/Kernels.cmake), so that processors compile them side by side, and a build may leave some out. The
+// headers below are thus compiled for one target and need no guards that Highway can toggle.
 #include "math/lane_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -8,9 +9,10 @@
 
 #if HWY_TARGET == RELIEF_TARGET
 
+#include <cstring>
+
 #include "cpu/shading/environment_lanes-inl.h"
 #include "cpu/shading/polygon_points-inl.h"
-#include "cpu/shading/random_pairs-inl.h"
 #include "cpu/shading/reflection-inl.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/surface_points-inl.h"
@@ -18,11 +20,27 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
+namespace {
+
+/// scalar::sobol_pair for each seed.
+void sample_2d(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair, Vec2f* drawn) {
+    for (size_t first = 0; first < count; first += 16) {
+        const size_t size = HWY_MIN(size_t(16), count - first);
+        alignas(64) uint32_t seed[16] = {};
+        std::memcpy(seed, seeds + first, size * sizeof(uint32_t));
+        const wide::Vec2 u = wide::sobol_pair(wide::Uint::load(seed), sample_index, pair);
+        alignas(64) float x[16], y[16];
+        u.x.store(x), u.y.store(y);
+        for (size_t lane = 0; lane < size; ++lane) drawn[first + lane] = {x[lane], y[lane]};
+    }
+}
+
+} // namespace
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
     static const cpu::ShadingKernels kKernels{
-        name,          make_point_batch,          make_polygon_batch,      draw_pairs,
-        wide::reflect, wide::look_up_environment, wide::fetch_environment, wide::draw_directions,
+        name,          make_batch<make_points>,   make_batch<make_polygon_points>, sample_2d,
+        wide::reflect, wide::look_up_environment, wide::fetch_environment,         wide::draw_directions,
         aim_rays};
     return kKernels;
 }

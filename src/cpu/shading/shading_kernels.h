@@ -43,8 +43,8 @@ struct VertexLanes {
     alignas(64) float shadow_origin[3][16];
     alignas(64) float bounce_direction[3][16], bounce_origin[3][16];
     alignas(64) float bounce_weight[3][16], bounce_pdf[16];
-    uint32_t is_lit;  ///< some of the light could arrive
-    uint32_t goes_on; ///< a ray leaves the surface
+    uint32_t needs_shadow_ray; ///< some of the light could arrive
+    uint32_t has_bounce;       ///< a ray leaves the surface
 };
 
 struct ShadingKernels {
@@ -52,8 +52,8 @@ struct ShadingKernels {
     void (*make_points)(const PointBatch&);         ///< as Tracer::make_surface_point, on a displaced surface
     void (*make_polygon_points)(const PointBatch&); ///< the same on one that is not
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
-    void (*draw_pairs)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
-                       Vec2f* drawn);
+    void (*sample_2d)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
+                      Vec2f* drawn);
     /// What the vertices of a batch reflect (formulas/bsdf.h).
     void (*reflect)(const VertexBatch&, VertexLanes&);
     /// As the functions of EnvironmentLight for one direction, place or pair.

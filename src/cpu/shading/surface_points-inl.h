@@ -1,11 +1,6 @@
 // Surface points of hits on displaced patches, sixteen at a time: the same operations in the same order as
 // Tracer::make_surface_point for one, hence the same bits.
-#if defined(RELIEF_SURFACE_POINTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_SURFACE_POINTS_INL_H
-#undef RELIEF_SURFACE_POINTS_INL_H
-#else
-#define RELIEF_SURFACE_POINTS_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -98,10 +93,7 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
     const Instance& instance = batch.scene.instances[hit.instance];
     const Surface& surface = batch.scene.surfaces[instance.surface];
     const PatchSamples& samples = batch.patches.get(surface, hit.patch);
-    for (size_t k = 0; k < 4; ++k)
-        for (size_t q = 0; q < 4; ++q)
-            load_quads(reinterpret_cast<const char*>(&samples.corners()[k]) + 16 * q, lane,
-                       &lanes.corner[k][q], 1);
+    for (size_t k = 0; k < 4; ++k) load_quads(&samples.corners()[k], lane, lanes.corner[k], 4);
     if (!surface.controls.empty()) load_quads(&surface.controls[hit.patch], lane, lanes.controls, 9);
     const PatchLevels levels = unpack_levels(hit.levels);
     load_place(instance, hit, levels, lane, lanes);
@@ -115,7 +107,6 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
     load_cell_vertex(samples, levels, {2, {i + (hit.is_upper ? 0u : 1u), j + 1}}, lane, lanes);
 }
 
-/// Corners of sixteen patches, and what is interpolated between them.
 /// Bicubic bases of sixteen patches.
 struct BaseLanes {
     Lanes16 control[16][3]; ///< by number (formulas/control_points.h) and axis
@@ -143,34 +134,26 @@ struct BaseLanes {
         }
         return {result[0], result[1], result[2]};
     }
-    HWY_INLINE WideVec3 differentiate_u(const WideVec2& place) const {
-        const wide::CubicWeights across = wide::weigh_cubic(place.y);
+    /// Along u, or v.
+    template <bool kIsAlongU> HWY_INLINE WideVec3 differentiate(const WideVec2& place) const {
+        const wide::CubicWeights across = wide::weigh_cubic(kIsAlongU ? place.y : place.x);
         Lanes16 result[3];
         for (int axis = 0; axis < 3; ++axis) {
             Lanes16 d[3];
-            for (uint32_t c = 0; c < 3; ++c)
-                d[c] = wide::blend_cubic(
-                    at(c + 1, 0, axis) - at(c, 0, axis), at(c + 1, 1, axis) - at(c, 1, axis),
-                    at(c + 1, 2, axis) - at(c, 2, axis), at(c + 1, 3, axis) - at(c, 3, axis), across);
-            result[axis] = wide::blend_slope(d[0], d[1], d[2], place.x);
-        }
-        return {result[0], result[1], result[2]};
-    }
-    HWY_INLINE WideVec3 differentiate_v(const WideVec2& place) const {
-        const wide::CubicWeights along = wide::weigh_cubic(place.x);
-        Lanes16 result[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            Lanes16 d[3];
-            for (uint32_t r = 0; r < 3; ++r)
-                d[r] = wide::blend_cubic(
-                    at(0, r + 1, axis) - at(0, r, axis), at(1, r + 1, axis) - at(1, r, axis),
-                    at(2, r + 1, axis) - at(2, r, axis), at(3, r + 1, axis) - at(3, r, axis), along);
-            result[axis] = wide::blend_slope(d[0], d[1], d[2], place.y);
+            for (uint32_t k = 0; k < 3; ++k) {
+                const auto step = [&](uint32_t other) HWY_ATTR {
+                    return kIsAlongU ? at(k + 1, other, axis) - at(k, other, axis)
+                                     : at(other, k + 1, axis) - at(other, k, axis);
+                };
+                d[k] = wide::blend_cubic(step(0), step(1), step(2), step(3), across);
+            }
+            result[axis] = wide::blend_slope(d[0], d[1], d[2], kIsAlongU ? place.x : place.y);
         }
         return {result[0], result[1], result[2]};
     }
 };
 
+/// Corners of sixteen patches, and what is interpolated between them.
 struct CornerLanes {
     Lanes16 value[4][16];
     bool is_bicubic;
@@ -308,7 +291,8 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
     wide::SurfaceDerivative along_u = differentiate(from, corners, {0, 1, 3, 2}, at.y);
     wide::SurfaceDerivative along_v = differentiate(from, corners, {0, 3, 1, 2}, at.x);
     if (corners.is_bicubic)
-        along_u.base = corners.base.differentiate_u(at), along_v.base = corners.base.differentiate_v(at);
+        along_u.base = corners.base.differentiate<true>(at),
+        along_v.base = corners.base.differentiate<false>(at);
     const Lanes16 zero(0.0f), half_cell = Lanes16(0.5f) / Lanes16::load(lanes.normal_side);
     WideVec3 normal = wide::make_unit(corners.blend_vector(kFrame + 6, at));
     normal = wide::select(normal == WideVec3{zero, zero, zero},
@@ -379,12 +363,12 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
                  {corners.blend(kUv, at), corners.blend(kUv + 1, at)});
 }
 
-inline void make_point_batch(const cpu::PointBatch& batch) {
+/// All points of a batch.
+template <void (*kMakePoints)(const cpu::PointBatch&, size_t first, size_t count)>
+void make_batch(const cpu::PointBatch& batch) {
     for (size_t first = 0; first < batch.count; first += 16)
-        make_points(batch, first, HWY_MIN(size_t(16), batch.count - first));
+        kMakePoints(batch, first, HWY_MIN(size_t(16), batch.count - first));
 }
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

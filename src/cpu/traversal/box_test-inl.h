@@ -1,10 +1,5 @@
 // The boxes of nodes, and one ray against them.
-#if defined(RELIEF_BOX_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_BOX_TEST_INL_H
-#undef RELIEF_BOX_TEST_INL_H
-#else
-#define RELIEF_BOX_TEST_INL_H
-#endif
+#pragma once
 
 #include "bvh/wide_bvh.h"
 #include "cpu/patch_trees/polygon_tree.h"
@@ -59,5 +54,3 @@ HWY_INLINE LaneMask test_node(const Node& node, const RayState& ray, Lanes<W>& e
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,10 +1,5 @@
 // Rays that travel together through all instances, up to 256: what they ask, and what they have met so far.
-#if defined(RELIEF_BUNDLE_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_BUNDLE_RAYS_INL_H
-#undef RELIEF_BUNDLE_RAYS_INL_H
-#else
-#define RELIEF_BUNDLE_RAYS_INL_H
-#endif
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -20,6 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 inline constexpr uint32_t kBundleSize = 256, kGroupSize = 16, kGroupCount = kBundleSize / kGroupSize;
+inline constexpr uint32_t kRangeCount = kGroupCount + 1;
 
 struct HitLog;
 
@@ -154,5 +150,3 @@ inline bool are_neighbours_close(const BundleRays& rays) {
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

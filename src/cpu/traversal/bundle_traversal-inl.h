@@ -1,12 +1,7 @@
 // A bundle of rays (ray_bundle-inl.h) through the scene: what the projection of micro-polygons onto the
 // picture is in a rasteriser, with every box, patch and block visited once for all rays of a tile, nearest
 // first.
-#if defined(RELIEF_BUNDLE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_BUNDLE_TRAVERSAL_INL_H
-#undef RELIEF_BUNDLE_TRAVERSAL_INL_H
-#else
-#define RELIEF_BUNDLE_TRAVERSAL_INL_H
-#endif
+#pragma once
 
 #include <cstddef>
 
@@ -75,13 +70,6 @@ template <class Bundle> struct BundleProbe {
     Bundle& bundle;
     LaneMask tested[kGroupCount] = {}, hit[kGroupCount] = {};
 
-    struct Entry {
-        uint32_t child;
-        float nearest;
-
-        static bool is_nearer(const Entry& a, const Entry& b) { return a.nearest < b.nearest; }
-    };
-
     template <size_t W, class Visit>
     HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
         Lanes<W> bound[6], nearest;
@@ -89,13 +77,13 @@ template <class Bundle> struct BundleProbe {
         LaneMask mask = test_boxes(bound, bundle, nearest);
         alignas(64) float depth[W];
         nearest.store(depth);
-        Entry order[W];
+        StackEntry order[W];
         uint32_t count = 0;
         for (; mask; mask &= mask - 1) {
             const uint32_t child = uint32_t(__builtin_ctz(mask));
-            insert_sorted({child, depth[child]}, order, count, Entry::is_nearer);
+            insert_sorted<kNearestFirst>({child, depth[child]}, order, count);
         }
-        for (uint32_t k = 0; k < count && order[k].nearest * kDepthSlack <= bundle.farthest; ++k)
+        for (uint32_t k = 0; k < count && order[k].entry * kDepthSlack <= bundle.farthest[kGroupCount]; ++k)
             visit_child(order[k].child, rays);
         return false;
     }
@@ -168,10 +156,8 @@ HWY_INLINE ProjectedBounds find_bounds(const Lanes8 (&bound)[6], uint32_t k, con
 
 struct BundleEntry {
     uint32_t child;
-    float nearest;
+    float entry;           ///< least depth
     uint32_t parent, slot; ///< the node and its slot that name the child
-
-    static bool is_farther(const BundleEntry& a, const BundleEntry& b) { return a.nearest > b.nearest; }
 };
 
 /// A bundle in a wide tree: leaves that rays may meet something nearer in.
@@ -184,7 +170,7 @@ template <class Nodes, class Bundle> struct BundleWalker {
     ProjectedBounds bounds{}; ///< of the leaf
 
     HWY_INLINE bool enter(const BundleEntry& top) {
-        if (top.nearest * kDepthSlack > bundle.farthest) return false;
+        if (top.entry * kDepthSlack > bundle.farthest[kGroupCount]) return false;
         if (!Node::is_leaf(top.child)) return true;
         Lanes8 bound[6];
         load_bounds(nodes[top.parent], bound);
@@ -200,8 +186,7 @@ template <class Nodes, class Bundle> struct BundleWalker {
         uint32_t count = 0;
         for (; mask; mask &= mask - 1) {
             const uint32_t k = uint32_t(__builtin_ctz(mask));
-            insert_sorted({node.child[k], depth[k], top.child, k}, stack + size, count,
-                          BundleEntry::is_farther);
+            insert_sorted<kFarthestFirst>({node.child[k], depth[k], top.child, k}, stack + size, count);
         }
         size += count;
         return false;
@@ -305,8 +290,8 @@ void trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, Bu
         else
             trace_singly(scene, context, instance, *world.rays);
         for (uint32_t group = 0; group < kGroupCount; ++group)
-            world.group_farthest[group] = find_farthest(world, group);
-        update_farthest(world);
+            world.farthest[group] = find_farthest(world, group);
+        join_upper(world.farthest);
         return false;
     });
 }
@@ -336,5 +321,3 @@ bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, Bundl
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

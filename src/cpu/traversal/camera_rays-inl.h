@@ -1,10 +1,5 @@
 // Camera rays of many pixels, sixteen at a time.
-#if defined(RELIEF_CAMERA_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_CAMERA_RAYS_INL_H
-#undef RELIEF_CAMERA_RAYS_INL_H
-#else
-#define RELIEF_CAMERA_RAYS_INL_H
-#endif
+#pragma once
 
 #include <cstddef>
 #include <cstring>
@@ -69,5 +64,3 @@ inline void aim_rays(const scalar::CameraFrame& camera, const Vec2f* positions, 
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

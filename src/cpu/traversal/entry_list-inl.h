@@ -1,10 +1,5 @@
 // Children that a ray is to visit, sorted by the distance at which it enters them.
-#if defined(RELIEF_ENTRY_LIST_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_ENTRY_LIST_INL_H
-#undef RELIEF_ENTRY_LIST_INL_H
-#else
-#define RELIEF_ENTRY_LIST_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -58,5 +53,3 @@ template <uint32_t kCapacity> struct EntryList {
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,11 +1,6 @@
 // Rays from one point, in the space of one object: a pinhole camera's. Projected from there everything lies
 // on a plane at distance 1, where each ray is a point.
-#if defined(RELIEF_FRUSTUM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_FRUSTUM_INL_H
-#undef RELIEF_FRUSTUM_INL_H
-#else
-#define RELIEF_FRUSTUM_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/ray_bundle-inl.h"
 
@@ -35,10 +30,10 @@ HWY_INLINE float find_farthest(const RayFrustum& frustum, uint32_t group) {
 
 /// The sides of the pyramid about all rays, a margin outside of them.
 HWY_INLINE void make_sides(RayFrustum& frustum) {
-    const float left = reduce_min(Lanes16::load(frustum.lower_x)) - 2 * kBoundsMargin;
-    const float right = reduce_max(Lanes16::load(frustum.upper_x)) + 2 * kBoundsMargin;
-    const float bottom = reduce_min(Lanes16::load(frustum.lower_y)) - 2 * kBoundsMargin;
-    const float top = reduce_max(Lanes16::load(frustum.upper_y)) + 2 * kBoundsMargin;
+    const float left = frustum.lower_x[kGroupCount] - 2 * kBoundsMargin;
+    const float right = frustum.upper_x[kGroupCount] + 2 * kBoundsMargin;
+    const float bottom = frustum.lower_y[kGroupCount] - 2 * kBoundsMargin;
+    const float top = frustum.upper_y[kGroupCount] + 2 * kBoundsMargin;
     frustum.plane[0] = frustum.right - frustum.forward * left;
     frustum.plane[1] = frustum.forward * right - frustum.right;
     frustum.plane[2] = frustum.up - frustum.forward * bottom;
@@ -62,10 +57,10 @@ HWY_INLINE bool enter_space(const Affine& object_from_world, RayFrustum& frustum
         if (!store_directions(d, group * kGroupSize, frustum, rcp_dz_dt)) return false;
         store_range(dot_lanes(d, frustum.right) * rcp_dz_dt, dot_lanes(d, frustum.up) * rcp_dz_dt, group,
                     frustum);
-        frustum.group_farthest[group] = find_farthest(frustum, group);
+        frustum.farthest[group] = find_farthest(frustum, group);
     }
+    join_ranges(frustum);
     make_sides(frustum);
-    update_farthest(frustum);
     return true;
 }
 
@@ -75,7 +70,7 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayFrustum& fru
     const RelativeBoxes<W> box(bound, frustum.origin);
     const Lanes<W> least = Lanes<W>(0.0f) - box.reach * Lanes<W>(kBoxMargin);
     nearest = least - find_greatest(box.bound, -frustum.forward);
-    LaneMask mask = less_equal(nearest * Lanes<W>(kDepthSlack), Lanes<W>(frustum.farthest)) &
+    LaneMask mask = less_equal(nearest * Lanes<W>(kDepthSlack), Lanes<W>(frustum.farthest[kGroupCount])) &
                     less_equal(least, find_greatest(box.bound, frustum.forward));
     for (const Vec3f& side : frustum.plane) mask &= less_equal(least, find_greatest(box.bound, side));
     return mask;
@@ -127,51 +122,30 @@ HWY_INLINE void widen_bounds(const RayFrustum&, PartBounds& part) {
     part.depth = part.depth * (Lanes8(kDepthSlack) - margin);
 }
 
-/// The groups of rays that may be inside.
-HWY_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const RayFrustum& frustum) {
-    return less_equal(Lanes16(bounds.lower_x), Lanes16::load(frustum.upper_x)) &
-           less_equal(Lanes16::load(frustum.lower_x), Lanes16(bounds.upper_x)) &
-           less_equal(Lanes16(bounds.lower_y), Lanes16::load(frustum.upper_y)) &
-           less_equal(Lanes16::load(frustum.lower_y), Lanes16(bounds.upper_y)) &
-           less_equal(Lanes16(bounds.depth), Lanes16::load(frustum.group_farthest));
+template <size_t W, class Get>
+HWY_INLINE RayRanges<W> find_ranges(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
+    return {get(frustum.lower_x), get(frustum.upper_x), get(frustum.lower_y), get(frustum.upper_y),
+            get(frustum.farthest)};
 }
-
-/// The parts that any ray of a group may meet.
-HWY_INLINE LaneMask find_parts_of_group(const PartBounds& part, const RayFrustum& frustum, uint32_t group) {
-    return less_equal(part.lower_x, Lanes8(frustum.upper_x[group])) &
-           less_equal(Lanes8(frustum.lower_x[group]), part.upper_x) &
-           less_equal(part.lower_y, Lanes8(frustum.upper_y[group])) &
-           less_equal(Lanes8(frustum.lower_y[group]), part.upper_y) &
-           less_equal(part.depth, Lanes8(frustum.group_farthest[group]));
-}
-
-/// The parts that one ray may meet.
-HWY_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const RayFrustum& frustum, uint32_t ray) {
-    const Lanes8 x(frustum.x[ray]), y(frustum.y[ray]);
-    return less_equal(part.lower_x, x) & less_equal(x, part.upper_x) & less_equal(part.lower_y, y) &
-           less_equal(y, part.upper_y) &
-           less_equal(part.depth, Lanes8(frustum.rays->t[ray] * frustum.dz_dt[ray]));
+template <size_t W, class Get>
+HWY_INLINE RayRanges<W> find_places(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
+    const Lanes<W> x = get(frustum.x), y = get(frustum.y);
+    return {x, x, y, y, get(frustum.rays->t) * get(frustum.dz_dt)};
 }
 
 /// Sixteen rays as the bounds see them.
 struct FrustumLanes {
-    Lanes16 x, y, depth; ///< depth of the nearest hit
+    RayRanges<16> places;
     Lanes16 pair_value[RayFrustum::kPairValues];
 
-    HWY_INLINE FrustumLanes(const RayFrustum& frustum, uint32_t group) {
-        const size_t at = group * kGroupSize;
-        x = Lanes16::load(frustum.x + at), y = Lanes16::load(frustum.y + at);
-        depth = Lanes16::load(frustum.rays->t + at) * Lanes16::load(frustum.dz_dt + at);
-        for (int k = 0; k < RayFrustum::kPairValues; ++k)
-            pair_value[k] = Lanes16::load(frustum.shear[k] + at);
-    }
     HWY_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
-        return less_equal(Lanes16(bounds.lower_x), x) & less_equal(x, Lanes16(bounds.upper_x)) &
-               less_equal(Lanes16(bounds.lower_y), y) & less_equal(y, Lanes16(bounds.upper_y)) &
-               less_equal(Lanes16(bounds.depth), depth);
+        return places.overlap(spread<16>(bounds));
     }
 };
-HWY_INLINE FrustumLanes load_lanes(const RayFrustum& frustum, uint32_t group) { return {frustum, group}; }
+HWY_INLINE FrustumLanes load_lanes(const RayFrustum& frustum, uint32_t group) {
+    const auto get = [&](const float* of_rays) { return Lanes16::load(of_rays + group * kGroupSize); };
+    return {find_places(frustum, ProjectedLanes<16>{}, get), {get(frustum.shear[0]), get(frustum.shear[1])}};
+}
 
 /// Corners of sixteen triangles or quads, one of a pair's each, relative to the ray: x and y as the ray sees
 /// them, z along its major axis. `value` is pair_value of the rays; `v` is relative to the frustum's origin.
@@ -182,5 +156,3 @@ HWY_INLINE void shear_corner(const Lanes16 (&value)[RayFrustum::kPairValues], La
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,12 +1,7 @@
 // Hits of a bundle as they are found: a ray keeps the number of its nearest one in a log, and what a TraceHit
 // says besides is worked out sixteen at a time when the bundle is done with an instance, or the log is full.
 // Most rays meet more than one hit on the way to the nearest. All of the log is of one instance.
-#if defined(RELIEF_HIT_LOG_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_HIT_LOG_INL_H
-#undef RELIEF_HIT_LOG_INL_H
-#else
-#define RELIEF_HIT_LOG_INL_H
-#endif
+#pragma once
 
 #include <cstddef>
 #include <cstring>
@@ -170,5 +165,3 @@ template <class Bundle> class BlockHits {
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

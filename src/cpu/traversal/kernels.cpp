@@ -1,8 +1,11 @@
-// Picks the kernels of an instruction set by name.
+// Picks the kernels of an instruction set, of traversal and of shading.
 #include "cpu/traversal/kernels.h"
+
+#include <cstring>
 
 #include <hwy/targets.h>
 
+#include "cpu/shading/shading_kernels.h"
 #include "kernel_isas.h"
 
 namespace relief {
@@ -10,6 +13,7 @@ namespace relief {
 #define X(isa, space, target)                                                                                \
     namespace space {                                                                                        \
     const cpu::Kernels& kernels(const char* name);                                                           \
+    const cpu::ShadingKernels& shading_kernels(const char* name);                                            \
     }
 RELIEF_EACH_ISA(X)
 #undef X
@@ -39,6 +43,16 @@ const Kernels* find_kernels(Isa isa) {
     for (const Isa candidate : {Isa::avx512, Isa::avx2, Isa::neon, Isa::sse4, Isa::scalar})
         if (const Kernels* found = pick(candidate)) return found;
     return nullptr;
+}
+
+const ShadingKernels& find_shading_kernels(const char* name) {
+#define X(isa, space, target) &space::shading_kernels(#isa),
+    const ShadingKernels* const all[] = {RELIEF_EACH_ISA(X)};
+#undef X
+    const ShadingKernels* found = all[0];
+    for (const ShadingKernels* kernels : all)
+        if (std::strcmp(kernels->name, name) == 0) found = kernels;
+    return *found;
 }
 
 } // namespace cpu

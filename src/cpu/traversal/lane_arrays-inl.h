@@ -1,10 +1,5 @@
 // Sixteen members of an array, or what is left of it, in lanes and back.
-#if defined(RELIEF_LANE_ARRAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_LANE_ARRAYS_INL_H
-#undef RELIEF_LANE_ARRAYS_INL_H
-#else
-#define RELIEF_LANE_ARRAYS_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -46,5 +41,3 @@ HWY_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* target) 
 
 } // namespace relief::HWY_NAMESPACE::wide
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -2,12 +2,7 @@
 // enter it. Boxes and triangles are the very tests of the single ray: hits are bit-identical to single-ray
 // traversal.
 // Many rays from one point, and those through a lens, travel as a bundle instead (bundle_traversal-inl.h).
-#if defined(RELIEF_PACKET_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_PACKET_TRAVERSAL_INL_H
-#undef RELIEF_PACKET_TRAVERSAL_INL_H
-#else
-#define RELIEF_PACKET_TRAVERSAL_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/ray_packet-inl.h"
 #include "cpu/traversal/scene_traversal-inl.h"
@@ -55,9 +50,6 @@ struct PacketEntry {
     uint32_t child;
     LaneMask mask;
     float entry;
-
-    static bool is_nearer(const PacketEntry& a, const PacketEntry& b) { return a.entry < b.entry; }
-    static bool is_farther(const PacketEntry& a, const PacketEntry& b) { return a.entry > b.entry; }
 };
 
 /// Calls take(child, lanes, nearest entry) for the boxes of a node that lanes of `mask` enter.
@@ -87,7 +79,7 @@ template <Query kQuery> struct PacketProbe {
         PacketEntry order[W];
         uint32_t size = 0;
         find_entered(bounds, packet, rays, [&](uint32_t k, LaneMask entered, float nearest) {
-            insert_sorted({k, entered, nearest}, order, size, PacketEntry::is_nearer);
+            insert_sorted<kNearestFirst>({k, entered, nearest}, order, size);
         });
         for (uint32_t k = 0; k < size; ++k)
             if (const LaneMask left = order[k].mask & packet.active) visit_child(order[k].child, left);
@@ -133,7 +125,7 @@ template <class TraverseSingle> struct PacketWalker {
     HWY_INLINE bool open(const Node& node, PacketEntry& top, PacketEntry* stack, uint32_t& size) {
         uint32_t count = 0;
         find_entered(node, packet, top.mask, [&](uint32_t k, LaneMask entered, float nearest) {
-            insert_sorted({node.child[k], entered, nearest}, stack + size, count, PacketEntry::is_farther);
+            insert_sorted<kFarthestFirst>({node.child[k], entered, nearest}, stack + size, count);
         });
         size += count;
         return false;
@@ -239,5 +231,3 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,12 +1,7 @@
 // Rays that go about the same way from places of their own, in the space of one object: those through a lens.
 // They are seen along their mean direction, in parallel: there a ray is a line whose place at a
 // depth is x + (depth - pivot) * slope.
-#if defined(RELIEF_PARALLEL_BEAM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_PARALLEL_BEAM_INL_H
-#undef RELIEF_PARALLEL_BEAM_INL_H
-#else
-#define RELIEF_PARALLEL_BEAM_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/ray_bundle-inl.h"
 
@@ -21,12 +16,11 @@ struct ParallelBeam : RayBundle {
     float pivot;                  ///< depth at which the rays lie closest together
     float extent;                 ///< greatest |x|, |y| or |depth| of where rays begin, or are closest
     float steepest_x, steepest_y; ///< greatest |slope|
-    float all[4], slopes[4];      ///< ranges of x and of y, and of their slopes: lower, upper, lower, upper
     alignas(64) float from[3][kBundleSize];
     alignas(64) float start[kBundleSize]; ///< depth of the origin
     alignas(64) float slope_x[kBundleSize], slope_y[kBundleSize];
-    alignas(64) float lower_slope_x[kGroupCount], upper_slope_x[kGroupCount];
-    alignas(64) float lower_slope_y[kGroupCount], upper_slope_y[kGroupCount];
+    alignas(64) float lower_slope_x[kRangeCount], upper_slope_x[kRangeCount];
+    alignas(64) float lower_slope_y[kRangeCount], upper_slope_y[kRangeCount];
 
     /// What the test of a ray against a triangle reads of it.
     float pair_value(int k, uint32_t ray) const { return k < 2 ? shear[k][ray] : from[axis[k - 2]][ray]; }
@@ -130,20 +124,8 @@ HWY_INLINE bool place_group(uint32_t group, ParallelBeam& beam, Lanes16& extent)
     beam.lower_slope_x[group] = reduce_min(slope_x), beam.upper_slope_x[group] = reduce_max(slope_x);
     beam.lower_slope_y[group] = reduce_min(slope_y), beam.upper_slope_y[group] = reduce_max(slope_y);
     store_range(x, y, group, beam);
-    beam.group_farthest[group] = find_farthest(beam, group);
+    beam.farthest[group] = find_farthest(beam, group);
     return extend(x, y, extent);
-}
-
-/// Ranges of all rays.
-HWY_INLINE void make_ranges(ParallelBeam& beam) {
-    const auto least = [](const float(&of)[kGroupCount]) { return reduce_min(Lanes16::load(of)); };
-    const auto greatest = [](const float(&of)[kGroupCount]) { return reduce_max(Lanes16::load(of)); };
-    beam.all[0] = least(beam.lower_x), beam.all[1] = greatest(beam.upper_x);
-    beam.all[2] = least(beam.lower_y), beam.all[3] = greatest(beam.upper_y);
-    beam.slopes[0] = least(beam.lower_slope_x), beam.slopes[1] = greatest(beam.upper_slope_x);
-    beam.slopes[2] = least(beam.lower_slope_y), beam.slopes[3] = greatest(beam.upper_slope_y);
-    beam.steepest_x = HWY_MAX(-beam.slopes[0], beam.slopes[1]);
-    beam.steepest_y = HWY_MAX(-beam.slopes[2], beam.slopes[3]);
 }
 
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
@@ -164,24 +146,13 @@ HWY_INLINE bool enter_space(const Affine& object_from_world, ParallelBeam& beam)
     for (uint32_t group = 0; group < kGroupCount; ++group)
         if (!place_group(group, beam, extent)) return false;
     beam.extent = HWY_MAX(reduce_max(extent), beam.pivot);
-    make_ranges(beam);
-    update_farthest(beam);
+    join_ranges(beam);
+    join_lower(beam.lower_slope_x), join_upper(beam.upper_slope_x);
+    join_lower(beam.lower_slope_y), join_upper(beam.upper_slope_y);
+    beam.steepest_x = HWY_MAX(-beam.lower_slope_x[kGroupCount], beam.upper_slope_x[kGroupCount]);
+    beam.steepest_y = HWY_MAX(-beam.lower_slope_y[kGroupCount], beam.upper_slope_y[kGroupCount]);
     return true;
 }
-
-/// Where W lines of slopes between two bounds and W places between two may be at W depths, from the pivot.
-template <size_t W> struct LineRange {
-    Lanes<W> lower, upper;
-
-    HWY_INLINE LineRange(const Lanes<W>& lower_place, const Lanes<W>& upper_place,
-                         const Lanes<W>& lower_slope, const Lanes<W>& upper_slope, const Lanes<W>& depth) {
-        const Lanes<W> a = lower_slope * depth, b = upper_slope * depth;
-        lower = lower_place + min(a, b), upper = upper_place + max(a, b);
-    }
-    HWY_INLINE LaneMask overlaps(const Lanes<W>& least, const Lanes<W>& greatest) const {
-        return less_equal(least, upper) & less_equal(lower, greatest);
-    }
-};
 
 /// Makes room in bounds for rounding, and for how far rays move while they go from the middle of one to an
 /// end.
@@ -206,17 +177,20 @@ HWY_INLINE ProjectedLanes<W> find_box_bounds(const Lanes<W> (&bound)[6], const P
     return bounds;
 }
 
-/// The bounds that any ray may lie in.
-template <size_t W>
-HWY_INLINE LaneMask find_inside(const ProjectedLanes<W>& bounds, const ParallelBeam& beam) {
+/// Lines of slopes between two bounds and places between two, at the middle depth.
+template <size_t W, class Get>
+HWY_INLINE RayRanges<W> find_ranges(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
     const Lanes<W> middle = bounds.middle() - Lanes<W>(beam.pivot);
-    const auto spread = [](float of_all) { return Lanes<W>(of_all); };
-    const LineRange<W> x(spread(beam.all[0]), spread(beam.all[1]), spread(beam.slopes[0]),
-                         spread(beam.slopes[1]), middle);
-    const LineRange<W> y(spread(beam.all[2]), spread(beam.all[3]), spread(beam.slopes[2]),
-                         spread(beam.slopes[3]), middle);
-    return x.overlaps(bounds.lower_x, bounds.upper_x) & y.overlaps(bounds.lower_y, bounds.upper_y) &
-           less_equal(Lanes<W>(0.0f), bounds.far) & less_equal(bounds.depth, Lanes<W>(beam.farthest));
+    const Lanes<W> x0 = get(beam.lower_slope_x) * middle, x1 = get(beam.upper_slope_x) * middle;
+    const Lanes<W> y0 = get(beam.lower_slope_y) * middle, y1 = get(beam.upper_slope_y) * middle;
+    return {get(beam.lower_x) + min(x0, x1), get(beam.upper_x) + max(x0, x1), get(beam.lower_y) + min(y0, y1),
+            get(beam.upper_y) + max(y0, y1), get(beam.farthest)};
+}
+template <size_t W, class Get>
+HWY_INLINE RayRanges<W> find_places(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
+    const Lanes<W> middle = bounds.middle() - Lanes<W>(beam.pivot);
+    const Lanes<W> x = get(beam.x) + get(beam.slope_x) * middle, y = get(beam.y) + get(beam.slope_y) * middle;
+    return {x, x, y, y, get(beam.start) + get(beam.rays->t) * get(beam.dz_dt)};
 }
 
 /// Points relative to the origin.
@@ -233,25 +207,12 @@ template <class T> HWY_INLINE void widen_bounds(const ParallelBeam& beam, Bounds
           bounds);
 }
 
-/// The groups of rays that may be inside.
-HWY_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const ParallelBeam& beam) {
-    const Lanes16 middle(bounds.middle() - beam.pivot);
-    const auto load = [](const float* of_groups) { return Lanes16::load(of_groups); };
-    const LineRange<16> x(load(beam.lower_x), load(beam.upper_x), load(beam.lower_slope_x),
-                          load(beam.upper_slope_x), middle);
-    const LineRange<16> y(load(beam.lower_y), load(beam.upper_y), load(beam.lower_slope_y),
-                          load(beam.upper_slope_y), middle);
-    return x.overlaps(Lanes16(bounds.lower_x), Lanes16(bounds.upper_x)) &
-           y.overlaps(Lanes16(bounds.lower_y), Lanes16(bounds.upper_y)) &
-           less_equal(Lanes16(bounds.depth), load(beam.group_farthest));
-}
-
 /// The boxes that a group of rays may enter, and the least depth of each.
 template <size_t W>
 HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const ParallelBeam& beam, Lanes<W>& nearest) {
     const ProjectedLanes<W> bounds = find_box_bounds(bound, beam);
     nearest = bounds.depth;
-    LaneMask mask = find_inside(bounds, beam);
+    LaneMask mask = find_parts_of_group(bounds, beam, kGroupCount) & less_equal(Lanes<W>(0.0f), bounds.far);
     alignas(64) float lower_x[W], upper_x[W], lower_y[W], upper_y[W], depth[W], far[W];
     bounds.lower_x.store(lower_x), bounds.upper_x.store(upper_x);
     bounds.lower_y.store(lower_y), bounds.upper_y.store(upper_y);
@@ -264,52 +225,29 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const ParallelBeam& b
     return mask;
 }
 
-/// The parts that any ray of a group may meet.
-HWY_INLINE LaneMask find_parts_of_group(const PartBounds& part, const ParallelBeam& beam, uint32_t group) {
-    const Lanes8 middle = part.middle() - Lanes8(beam.pivot);
-    const auto spread = [&](const float* of_groups) { return Lanes8(of_groups[group]); };
-    const LineRange<8> x(spread(beam.lower_x), spread(beam.upper_x), spread(beam.lower_slope_x),
-                         spread(beam.upper_slope_x), middle);
-    const LineRange<8> y(spread(beam.lower_y), spread(beam.upper_y), spread(beam.lower_slope_y),
-                         spread(beam.upper_slope_y), middle);
-    return x.overlaps(part.lower_x, part.upper_x) & y.overlaps(part.lower_y, part.upper_y) &
-           less_equal(part.depth, Lanes8(beam.group_farthest[group]));
-}
-
-/// The parts that one ray may meet.
-HWY_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const ParallelBeam& beam, uint32_t ray) {
-    const Lanes8 middle = part.middle() - Lanes8(beam.pivot);
-    const Lanes8 x = Lanes8(beam.x[ray]) + Lanes8(beam.slope_x[ray]) * middle;
-    const Lanes8 y = Lanes8(beam.y[ray]) + Lanes8(beam.slope_y[ray]) * middle;
-    const float end = beam.start[ray] + beam.rays->t[ray] * beam.dz_dt[ray];
-    return less_equal(part.lower_x, x) & less_equal(x, part.upper_x) & less_equal(part.lower_y, y) &
-           less_equal(y, part.upper_y) & less_equal(part.depth, Lanes8(end));
-}
-
 /// Sixteen rays as the bounds see them.
 struct BeamLanes {
     float pivot;
     Lanes16 x, y, slope_x, slope_y, end;
     Lanes16 pair_value[ParallelBeam::kPairValues];
 
-    HWY_INLINE BeamLanes(const ParallelBeam& beam, uint32_t group) {
-        const size_t at = group * kGroupSize;
-        pivot = beam.pivot;
-        x = Lanes16::load(beam.x + at), y = Lanes16::load(beam.y + at);
-        slope_x = Lanes16::load(beam.slope_x + at), slope_y = Lanes16::load(beam.slope_y + at);
-        end = find_ends(beam, group);
-        for (int k = 0; k < 2; ++k) pair_value[k] = Lanes16::load(beam.shear[k] + at);
-        for (int k = 0; k < 3; ++k) pair_value[2 + k] = Lanes16::load(beam.from[beam.axis[k]] + at);
-    }
     HWY_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
         const Lanes16 middle(bounds.middle() - pivot);
         const Lanes16 at_x = x + slope_x * middle, at_y = y + slope_y * middle;
-        return less_equal(Lanes16(bounds.lower_x), at_x) & less_equal(at_x, Lanes16(bounds.upper_x)) &
-               less_equal(Lanes16(bounds.lower_y), at_y) & less_equal(at_y, Lanes16(bounds.upper_y)) &
-               less_equal(Lanes16(bounds.depth), end);
+        return RayRanges<16>{at_x, at_x, at_y, at_y, end}.overlap(spread<16>(bounds));
     }
 };
-HWY_INLINE BeamLanes load_lanes(const ParallelBeam& beam, uint32_t group) { return {beam, group}; }
+HWY_INLINE BeamLanes load_lanes(const ParallelBeam& beam, uint32_t group) {
+    const auto get = [&](const float* of_rays) { return Lanes16::load(of_rays + group * kGroupSize); };
+    const auto get_from = [&](int k) { return get(beam.from[beam.axis[k]]); };
+    return {beam.pivot,
+            get(beam.x),
+            get(beam.y),
+            get(beam.slope_x),
+            get(beam.slope_y),
+            find_ends(beam, group),
+            {get(beam.shear[0]), get(beam.shear[1]), get_from(0), get_from(1), get_from(2)}};
+}
 
 /// As of a RayFrustum; `v` is as it lies in the space, the major axis last.
 HWY_INLINE void shear_corner(const Lanes16 (&value)[ParallelBeam::kPairValues], Lanes16 (&v)[3]) {
@@ -320,5 +258,3 @@ HWY_INLINE void shear_corner(const Lanes16 (&value)[ParallelBeam::kPairValues], 
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,10 +1,5 @@
 // One ray inside one patch, and its tests of leaf blocks.
-#if defined(RELIEF_PATCH_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_PATCH_TRAVERSAL_INL_H
-#undef RELIEF_PATCH_TRAVERSAL_INL_H
-#else
-#define RELIEF_PATCH_TRAVERSAL_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/block_lanes-inl.h"
 #include "cpu/traversal/box_test-inl.h"
@@ -75,8 +70,7 @@ HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::PatchTre
     TriangleTest<16> test;
     if (!test_edges(cx, cy, test)) return false;
     gather_corners(z, cz[0], cz[1], cz[2]);
-    test_distances(cz, ray, test);
-    if (!test.mask) return false;
+    if (!test_distances(cz, ray, test)) return false;
     if constexpr (kQuery == Query::any) return true;
     offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
         locate_in_block(visit, tree, block, lane, weight_b, weight_c, hit);
@@ -104,7 +98,6 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::PatchTree&
     uint32_t column = 0, row = 0;
     cpu::PatchTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
-    const float cell_size = visit.cell_size();
     alignas(32) float distance[8];
     entry.store(distance);
     bool has_hit = false;
@@ -114,14 +107,9 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::PatchTree&
             continue;
         if constexpr (kQuery == Query::any) return true;
         cpu::TraceHit hit;
-        hit.t = distance[cell];
-        hit.instance = ray.instance;
-        hit.patch = visit.patch;
-        hit.levels = visit.levels;
-        hit.i = uint16_t(tree.cell_x + column + (cell & 3)),
-        hit.j = uint16_t(tree.cell_y + row + (cell >> 2));
-        hit.u = (float(hit.i) + 0.5f) * cell_size, hit.v = (float(hit.j) + 0.5f) * cell_size;
-        offer_hit(ray.hit, ray.t_max, hit);
+        hit.t = distance[cell], hit.instance = ray.instance;
+        locate_in_block(visit, tree, block, cell, 0.0f, 0.5f, hit); // its middle
+        offer_hit(ray, hit);
         has_hit = true;
     }
     return has_hit;
@@ -202,5 +190,3 @@ HWY_INLINE bool trace_patch(const cpu::SceneView& scene, cpu::TraceContext& cont
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

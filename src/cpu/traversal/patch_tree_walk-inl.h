@@ -1,11 +1,6 @@
 // The one walk through what a patch keeps (patch_tree.h), whatever goes through it: one ray, a packet or a
 // bundle.
-#if defined(RELIEF_PATCH_TREE_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_PATCH_TREE_WALK_INL_H
-#undef RELIEF_PATCH_TREE_WALK_INL_H
-#else
-#define RELIEF_PATCH_TREE_WALK_INL_H
-#endif
+#pragma once
 
 #include <concepts>
 #include <optional>
@@ -169,5 +164,3 @@ template <PatchProbe Probe> HWY_INLINE void visit_patch(Probe& probe, LaneMask r
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

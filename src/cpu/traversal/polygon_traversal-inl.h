@@ -1,10 +1,5 @@
 // One ray through the tree of a surface without displacement.
-#if defined(RELIEF_POLYGON_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_POLYGON_TRAVERSAL_INL_H
-#undef RELIEF_POLYGON_TRAVERSAL_INL_H
-#else
-#define RELIEF_POLYGON_TRAVERSAL_INL_H
-#endif
+#pragma once
 
 #include "cpu/patch_trees/polygon_tree.h"
 #include "cpu/traversal/triangle_test-inl.h"
@@ -17,8 +12,6 @@ struct StackEntry {
     uint32_t child;
     float entry;
 };
-
-HWY_INLINE bool is_farther(const StackEntry& a, const StackEntry& b) { return a.entry > b.entry; }
 
 /// Puts the nearer one second, without a branch to guess wrong.
 HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
@@ -43,8 +36,7 @@ template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleB
                        y[corner], z[corner]);
     TriangleTest<8> test;
     if (!test_edges(x, y, test)) return false;
-    test_distances(z, ray, test);
-    if (!test.mask) return false;
+    if (!test_distances(z, ray, test)) return false;
     if constexpr (kQuery == Query::closest)
         offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
             hit.patch = block.triangle[lane] / 2;
@@ -67,7 +59,7 @@ HWY_INLINE void push_children(const Node& node, LaneMask mask, const float* dist
     StackEntry* const base = stack + size;
     base[0] = a, base[1] = b, base[2] = c;
     uint32_t count = 3;
-    while (mask) insert_sorted(take(), base, count, is_farther);
+    while (mask) insert_sorted<kFarthestFirst>(take(), base, count);
     size += count;
 }
 
@@ -143,5 +135,3 @@ template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

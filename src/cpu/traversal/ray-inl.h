@@ -1,10 +1,5 @@
 // One ray in the space of one object.
-#if defined(RELIEF_RAY_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_RAY_INL_H
-#undef RELIEF_RAY_INL_H
-#else
-#define RELIEF_RAY_INL_H
-#endif
+#pragma once
 
 #include <cmath>
 
@@ -66,5 +61,3 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

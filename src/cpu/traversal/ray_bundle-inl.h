@@ -5,12 +5,7 @@
 //
 // Bounds are wider than rounding asks for; what decides a hit is the test of triangle_test-inl.h, operation
 // for operation: hits are bit-identical to single-ray traversal.
-#if defined(RELIEF_RAY_BUNDLE_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_RAY_BUNDLE_INL_H
-#undef RELIEF_RAY_BUNDLE_INL_H
-#else
-#define RELIEF_RAY_BUNDLE_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/bundle_rays-inl.h"
 
@@ -33,6 +28,22 @@ template <class T> struct BoundsOf {
 using ProjectedBounds = BoundsOf<float>;
 template <size_t W> using ProjectedLanes = BoundsOf<Lanes<W>>;
 
+template <size_t W> HWY_INLINE ProjectedLanes<W> spread(const ProjectedBounds& bounds) {
+    return {Lanes<W>(bounds.lower_x), Lanes<W>(bounds.upper_x), Lanes<W>(bounds.lower_y),
+            Lanes<W>(bounds.upper_y), Lanes<W>(bounds.depth),   Lanes<W>(bounds.far)};
+}
+
+/// Where rays or groups of rays are on the plane, and the depth that they still ask about, after hits.
+template <size_t W> struct RayRanges {
+    Lanes<W> lower_x, upper_x, lower_y, upper_y, farthest;
+
+    HWY_INLINE LaneMask overlap(const ProjectedLanes<W>& bounds) const {
+        return less_equal(bounds.lower_x, upper_x) & less_equal(lower_x, bounds.upper_x) &
+               less_equal(bounds.lower_y, upper_y) & less_equal(lower_y, bounds.upper_y) &
+               less_equal(bounds.depth, farthest);
+    }
+};
+
 /// Those of the eight quads of a block, in the order of the lower triangles' lanes, or of eight triangles.
 using PartBounds = ProjectedLanes<8>;
 
@@ -44,18 +55,27 @@ struct RayBundle {
     Vec3f origin;             ///< what depths are measured from
     Vec3f right, up, forward; ///< of the plane; orthonormal
     int axis[3];              ///< as in RayState; one choice for all rays
-    float farthest;           ///< depth of the farthest nearest hit
     uint32_t instance;
     alignas(64) float x[kBundleSize],
         y[kBundleSize];                   ///< where a ray meets the plane; of a beam, at its pivot
     alignas(64) float dz_dt[kBundleSize]; ///< depth for a length of t
     alignas(64) float shear[3][kBundleSize];
-    alignas(64) float lower_x[kGroupCount], upper_x[kGroupCount], lower_y[kGroupCount], upper_y[kGroupCount];
-    alignas(64) float group_farthest[kGroupCount];
+    // Of each group, then of all rays.
+    alignas(64) float lower_x[kRangeCount], upper_x[kRangeCount], lower_y[kRangeCount], upper_y[kRangeCount];
+    alignas(64) float farthest[kRangeCount]; ///< depth of the farthest nearest hit
 };
 
-HWY_INLINE void update_farthest(RayBundle& bundle) {
-    bundle.farthest = reduce_max(Lanes16::load(bundle.group_farthest));
+/// From the ranges of groups to those of all rays.
+HWY_INLINE void join_lower(float (&of_groups)[kRangeCount]) {
+    of_groups[kGroupCount] = reduce_min(Lanes16::load(of_groups));
+}
+HWY_INLINE void join_upper(float (&of_groups)[kRangeCount]) {
+    of_groups[kGroupCount] = reduce_max(Lanes16::load(of_groups));
+}
+HWY_INLINE void join_ranges(RayBundle& bundle) {
+    join_lower(bundle.lower_x), join_upper(bundle.upper_x);
+    join_lower(bundle.lower_y), join_upper(bundle.upper_y);
+    join_upper(bundle.farthest);
 }
 
 /// Depths of groups after hits.
@@ -63,9 +83,9 @@ template <class Bundle> HWY_INLINE void update_groups(Bundle& bundle, LaneMask d
     if (!dirty) return;
     for (; dirty; dirty &= dirty - 1) {
         const uint32_t group = uint32_t(__builtin_ctz(dirty));
-        bundle.group_farthest[group] = find_farthest(bundle, group);
+        bundle.farthest[group] = find_farthest(bundle, group);
     }
-    update_farthest(bundle);
+    join_upper(bundle.farthest);
 }
 
 /// Directions of sixteen rays in an object's space, by the operations of transform_vector.
@@ -148,6 +168,28 @@ HWY_INLINE void store_range(const Lanes16& x, const Lanes16& y, uint32_t group, 
     bundle.lower_y[group] = reduce_min(y), bundle.upper_y[group] = reduce_max(y);
 }
 
+/// The groups of rays that may be inside. find_ranges(bundle, bounds, get) gives where groups are at the
+/// depth of bounds, find_places where rays are; get(array) takes those that are meant out of an array.
+template <class Bundle> HWY_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const Bundle& bundle) {
+    const ProjectedLanes<16> of_all = spread<16>(bounds);
+    const auto get = [](const float* of_groups) { return Lanes16::load(of_groups); };
+    return find_ranges(bundle, of_all, get).overlap(of_all);
+}
+
+/// The parts that any ray of a group may meet; of all groups: kGroupCount.
+template <size_t W, class Bundle>
+HWY_INLINE LaneMask find_parts_of_group(const ProjectedLanes<W>& part, const Bundle& bundle, uint32_t group) {
+    const auto get = [&](const float* of_groups) { return Lanes<W>(of_groups[group]); };
+    return find_ranges(bundle, part, get).overlap(part);
+}
+
+/// The parts that one ray may meet.
+template <class Bundle>
+HWY_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const Bundle& bundle, uint32_t ray) {
+    const auto get = [&](const float* of_rays) { return Lanes8(of_rays[ray]); };
+    return find_places(bundle, part, get).overlap(part);
+}
+
 /// The greatest value of dot(p, n) over W boxes (lower x y z, upper x y z).
 template <size_t W> HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& n) {
     const float factor[3] = {n.x, n.y, n.z};
@@ -171,5 +213,3 @@ template <size_t W> struct RelativeBoxes {
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,10 +1,5 @@
 // Rays brought from memory into lanes.
-#if defined(RELIEF_RAY_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_RAY_LANES_INL_H
-#undef RELIEF_RAY_LANES_INL_H
-#else
-#define RELIEF_RAY_LANES_INL_H
-#endif
+#pragma once
 
 #include <cstddef>
 #include <cstring>
@@ -48,5 +43,3 @@ struct RayLanes {
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,11 +1,6 @@
 // Sixteen rays that go about the same way, in the space of one object: in lanes for boxes, and each by itself
 // for blocks of triangles.
-#if defined(RELIEF_RAY_PACKET_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_RAY_PACKET_INL_H
-#undef RELIEF_RAY_PACKET_INL_H
-#else
-#define RELIEF_RAY_PACKET_INL_H
-#endif
+#pragma once
 
 #include <bit>
 #include <cstddef>
@@ -160,5 +155,3 @@ HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const 
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

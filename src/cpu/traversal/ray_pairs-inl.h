@@ -1,12 +1,7 @@
 // Which rays of a bundle may meet which micro-quads of a block, or triangles of a polygon: pairs of the two,
 // sixteen of them tested at once. Where a micro-quad is about as large as a pixel, few rays see it, and where
 // a polygon is large, all do: a lane a triangle of one block would leave most lanes idle.
-#if defined(RELIEF_RAY_PAIRS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_RAY_PAIRS_INL_H
-#undef RELIEF_RAY_PAIRS_INL_H
-#else
-#define RELIEF_RAY_PAIRS_INL_H
-#endif
+#pragma once
 
 #include <cstring>
 
@@ -205,12 +200,8 @@ HWY_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&corn
     pick(0, x), pick(1, y), pick(2, z);
     test_edges(x, y, test);
     if (!(test.mask &= pairs.valid)) return false;
-    const Lanes16 sum = test.u + test.v + test.w;
-    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
-    return (test.mask &= not_equal(sum, Lanes16(0.0f))) != 0;
+    return find_places(z, test) != 0;
 }
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,11 +1,6 @@
 // One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest
 // first, for any-hit too: unordered, the cache of patch trees would thrash.
-#if defined(RELIEF_SCENE_TRAVERSAL_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_SCENE_TRAVERSAL_INL_H
-#undef RELIEF_SCENE_TRAVERSAL_INL_H
-#else
-#define RELIEF_SCENE_TRAVERSAL_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/patch_traversal-inl.h"
 #include "cpu/traversal/polygon_traversal-inl.h"
@@ -122,5 +117,3 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

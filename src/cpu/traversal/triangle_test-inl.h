@@ -4,12 +4,7 @@
 // ray space once each, and an edge function of a shared edge is the same two rounded products subtracted in
 // either order, so its sign is never wrong, only zero, and zero counts as inside. No fused operations here:
 // they would break that.
-#if defined(RELIEF_TRIANGLE_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_TRIANGLE_TEST_INL_H
-#undef RELIEF_TRIANGLE_TEST_INL_H
-#else
-#define RELIEF_TRIANGLE_TEST_INL_H
-#endif
+#pragma once
 
 #include "cpu/traversal/ray-inl.h"
 
@@ -30,17 +25,18 @@ HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], T
     return test.mask = same_side(test.u, test.v, test.w);
 }
 
-template <size_t W>
-HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const Lanes<W>& rcp_dz_dt, const Lanes<W>& t_min,
-                               const Lanes<W>& t_max, TriangleTest<W>& test) {
+/// Places along the major axis, of which triangles without area have none.
+template <size_t W> HWY_INLINE LaneMask find_places(const Lanes<W> (&z)[3], TriangleTest<W>& test) {
     const Lanes<W> sum = test.u + test.v + test.w;
-    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum * rcp_dz_dt;
-    test.mask &= not_equal(sum, Lanes<W>(0.0f)) & less(t_min, test.t) & less_equal(test.t, t_max);
+    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
+    return test.mask &= not_equal(sum, Lanes<W>(0.0f));
 }
 
 template <size_t W>
-HWY_INLINE void test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
-    test_distances(z, Lanes<W>(ray.shear[2]), Lanes<W>(ray.t_min), Lanes<W>(ray.t_max), test);
+HWY_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
+    find_places(z, test);
+    test.t = test.t * Lanes<W>(ray.shear[2]);
+    return test.mask &= less(Lanes<W>(ray.t_min), test.t) & less_equal(test.t, Lanes<W>(ray.t_max));
 }
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis. load(axis) gives coordinates.
@@ -62,51 +58,27 @@ HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
                                     : rank(a) < rank(b);
 }
 
-/// Takes over a hit if it is nearer, or as near and first in that order. `reach` becomes its distance.
-HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, const cpu::TraceHit& hit) {
-    if (hit.t == best.t ? !comes_before(hit, best) : !(hit.t < best.t)) return;
-    best = hit;
-    reach = hit.t;
+/// Takes over a hit if it is nearer, or as near and first in that order.
+HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
+    if (hit.t == ray.hit.t ? comes_before(hit, ray.hit) : hit.t < ray.hit.t) ray.hit = hit, ray.t_max = hit.t;
 }
 
-/// The numbers of a triangle test, lane by lane.
-template <size_t W> struct TriangleHits {
-    alignas(64) float u[W], v[W], w[W], t[W];
-
-    HWY_INLINE explicit TriangleHits(const TriangleTest<W>& test) {
-        test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
-    }
-};
-
-/// Offers the hit of one lane; locate(lane, weight_b, weight_c, hit) fills in cell, is_upper and, from the
-/// weights of the three corners, u and v.
-template <size_t W, class Locate>
-HWY_INLINE void offer_hit(cpu::TraceHit& best, float& reach, uint32_t instance, const TriangleHits<W>& hits,
-                          uint32_t lane, Locate locate) {
-    if (hits.t[lane] > reach) return;
-    const float sum = hits.u[lane] + hits.v[lane] + hits.w[lane];
-    cpu::TraceHit hit;
-    hit.t = hits.t[lane];
-    hit.instance = instance, hit.lod_bias = best.lod_bias;
-    locate(lane, hits.v[lane] / sum, hits.w[lane] / sum, hit);
-    offer_hit(best, reach, hit);
-}
-
-/// Offers every hit of a triangle test.
-template <size_t W, class Locate>
-HWY_INLINE void offer_hits(cpu::TraceHit& best, float& reach, uint32_t instance, const TriangleTest<W>& test,
-                           Locate locate) {
-    const TriangleHits<W> hits(test);
-    for (LaneMask mask = test.mask; mask; mask &= mask - 1)
-        offer_hit(best, reach, instance, hits, uint32_t(__builtin_ctz(mask)), locate);
-}
-
+/// Offers every hit of a triangle test; locate(lane, weight_b, weight_c, hit) fills in cell, is_upper and,
+/// from the weights of the three corners, u and v.
 template <size_t W, class Locate>
 HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
-    offer_hits(ray.hit, ray.t_max, ray.instance, test, locate);
+    alignas(64) float u[W], v[W], w[W], t[W];
+    test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
+    for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(mask));
+        if (t[lane] > ray.t_max) continue;
+        const float sum = u[lane] + v[lane] + w[lane];
+        cpu::TraceHit hit;
+        hit.t = t[lane], hit.instance = ray.instance, hit.lod_bias = ray.hit.lod_bias;
+        locate(lane, v[lane] / sum, w[lane] / sum, hit);
+        offer_hit(ray, hit);
+    }
 }
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif

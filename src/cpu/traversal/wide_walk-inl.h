@@ -1,10 +1,5 @@
 // The one walk through eight-wide trees, whatever goes through them: one ray, a packet or a bundle.
-#if defined(RELIEF_WIDE_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELIEF_WIDE_WALK_INL_H
-#undef RELIEF_WIDE_WALK_INL_H
-#else
-#define RELIEF_WIDE_WALK_INL_H
-#endif
+#pragma once
 
 #include <concepts>
 
@@ -30,11 +25,17 @@ concept TreeWalker = requires(Walker& walker, const Node& node, typename Walker:
     { walker.open(node, top, stack, size) } -> std::same_as<bool>;
 };
 
-/// Inserts into entries[0, count), which are in the order of comes_before and stay so.
-template <class Entry, class ComesBefore>
-HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& count, ComesBefore comes_before) {
+enum EntryOrder { kNearestFirst, kFarthestFirst };
+
+/// Inserts into entries[0, count), which are in order of their entry distances and stay so, behind equal
+/// ones.
+template <EntryOrder kOrder, class Entry>
+HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& count) {
+    const auto comes_before = [&](const Entry& other) {
+        return kOrder == kNearestFirst ? entry.entry < other.entry : entry.entry > other.entry;
+    };
     uint32_t slot = count++;
-    for (; slot > 0 && comes_before(entry, entries[slot - 1]); --slot) entries[slot] = entries[slot - 1];
+    for (; slot > 0 && comes_before(entries[slot - 1]); --slot) entries[slot] = entries[slot - 1];
     entries[slot] = entry;
 }
 
@@ -81,5 +82,3 @@ HWY_INLINE bool walk_primitives(const WideBvh& tree, cpu::TraceContext& context,
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif
