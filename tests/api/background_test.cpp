@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <exception>
 
 #include "relief/devices.h"
 #include "relief/render.h"

@@ -1,4 +1,5 @@
 // aim_scene, turn_camera and save_scene_copy: what is framed, lit and written again.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -16,7 +16,7 @@ DECLARED = {
     "array": "array",
     "atomic": "atomic memory_order_relaxed memory_order_seq_cst",
     "bit": "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero endian has_single_bit popcount",
-    "cctype": "isalnum isalpha isdigit isspace tolower",
+    "cctype": "isalnum isalpha isdigit isspace isxdigit tolower",
     "charconv": "from_chars from_chars_result to_chars",
     "chrono": "chrono",
     "concepts": "convertible_to same_as",
@@ -57,7 +57,7 @@ DECLARED = {
     "sstream": "istringstream ostringstream stringstream",
     "stdexcept": "invalid_argument out_of_range runtime_error",
     "streambuf": "streambuf",
-    "string": "getline stod stoi string to_string u8string wstring",
+    "string": "getline stod stoi stoul string to_string u8string wstring",
     "string_view": "string_view",
     "system_error": "errc error_code system_error",
     "thread": "jthread this_thread thread",
@@ -67,7 +67,7 @@ DECLARED = {
     "unordered_set": "unordered_set",
     "utility": "as_const declval exchange forward get in_place index_sequence make_index_sequence make_pair move pair swap",
     "variant": "get get_if holds_alternative monostate variant visit",
-    "vector": "vector",
+    "vector": "erase vector",
 }
 # Declared wherever there is a container, by the standard (range.access), or beside what they work on.
 ANYWHERE = {"begin", "data", "empty", "end", "erase_if", "rbegin", "rend", "size"}

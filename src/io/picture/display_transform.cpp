@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
