@@ -34,7 +34,7 @@ namespace {
 } // namespace
 
 Command add_bench(CLI::App& verb) {
-    verb.set_help_flag(); // relief-bench handles --help
+    verb.set_help_flag(), verb.set_help_all_flag(); // relief-bench handles both
     verb.prefix_command();
     return [&verb]() -> int { become_bench(verb.remaining()); };
 }

@@ -115,7 +115,7 @@ struct AllStructs {
 #define FIELDS_PATH_PUSH(s) \
     FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.sample_index) \
     FIELD(s.source_count) FIELD(s.emitter_count) FIELD(s.emitter_range_count) \
-    FIELD(s.has_environment) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
+    FIELD(s.has_environment) FIELD(s.has_background) FIELD3(s.background) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
     FIELD(s.environment.cos_turn) FIELD(s.environment.cells_x) FIELD(s.environment.cells_y) \
     FIELD(s.environment.texture_index)
 #define FIELDS_SORT_PUSH(s) \
