@@ -30,13 +30,14 @@ struct NormalChannel {
     bool is_clear = false;
 };
 
-NormalChannel find_normal_channel(const MapSurvey& survey) {
+NormalChannel find_normal_channel(const MapStatistics& statistics) {
     std::array<double, 3> strength{};
-    for (size_t c = 0; c < 3; ++c) strength[c] = std::fabs(survey.channels[c].mean - survey.midlevel[c]);
+    for (size_t c = 0; c < 3; ++c)
+        strength[c] = std::fabs(statistics.channels[c].mean - statistics.midlevel[c]);
     NormalChannel best;
     best.channel = size_t(std::max_element(strength.begin(), strength.end()) - strength.begin());
     const double next = std::max(strength[(best.channel + 1) % 3], strength[(best.channel + 2) % 3]);
-    const double one_sided = survey.channels[best.channel].one_sided;
+    const double one_sided = statistics.channels[best.channel].one_sided;
     best.sign = one_sided < 0 ? -1 : 1;
     best.ratio = next > 0 ? strength[best.channel] / next : 1e9;
     best.is_clear =
@@ -53,8 +54,8 @@ AxisMap make_axes(const NormalChannel& normal, int choice) {
     return axes;
 }
 
-Vec3f round_midlevel(const MapSurvey& survey) {
-    return {float(survey.midlevel[0]), float(survey.midlevel[1]), float(survey.midlevel[2])};
+Vec3f round_midlevel(const MapStatistics& statistics) {
+    return {float(statistics.midlevel[0]), float(statistics.midlevel[1]), float(statistics.midlevel[2])};
 }
 
 /// Along the plane a sculpt spreads where it rises: of the eight ways to lay two channels, the right one
@@ -81,8 +82,8 @@ void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, 
 /// The order that programs write for a channel along the normal.
 AxisMap make_usual_axes(const NormalChannel& normal) { return make_axes(normal, 0); }
 
-void guess_tangent_axes(const Displacement& map, const MapSurvey& survey, MapConvention& result) {
-    const NormalChannel normal = find_normal_channel(survey);
+void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics, MapConvention& result) {
+    const NormalChannel normal = find_normal_channel(statistics);
     result.axes.is_clear = normal.is_clear;
     if (!normal.is_clear) {
         result.axes.reason = "no channel has a mean far more one-sided than the others";
@@ -93,18 +94,20 @@ void guess_tangent_axes(const Displacement& map, const MapSurvey& survey, MapCon
         "{} is along the normal{}: its mean is {:.1f} x as far from the midlevel "
         "as that of the next channel",
         kChannelNames[normal.channel], normal.sign < 0 ? ", backwards" : "", std::min(normal.ratio, 99.0));
-    if (!map.is_udim && survey.bad_count == 0) guess_order_on_plane(map, normal, result);
+    if (!map.is_udim && statistics.bad_count == 0) guess_order_on_plane(map, normal, result);
 }
 
 /// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
 /// normal, not its sign: that is taken from a mean which is far to one side.
-void refine_by_seams(const std::vector<SeamSample>& seams, const MapSurvey& survey, MapConvention& result) {
+void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& statistics,
+                     MapConvention& result) {
     std::array<double, 3> gaps{1e9, 1e9, 1e9};
     std::array<AxisMap, 3> best;
     for (size_t channel = 0; channel < 3; ++channel)
         for (int choice = 0; choice < 8; ++choice) {
             NormalChannel normal;
-            normal.channel = channel, normal.sign = survey.channels[channel].one_sided < -kOneSided ? -1 : 1;
+            normal.channel = channel,
+            normal.sign = statistics.channels[channel].one_sided < -kOneSided ? -1 : 1;
             const AxisMap axes = make_axes(normal, choice);
             const double gap = measure_tangent_gap(seams, axes);
             // Turned by quarters, t and b close as well: the usual order stays unless another is clearly
@@ -156,12 +159,13 @@ double measure_best_tangent_gap(const std::vector<SeamSample>& seams) {
     return best;
 }
 
-void guess_space_by_normals(const MapSamples& samples, const MapSurvey& survey, MapConvention& result) {
+void guess_space_by_normals(const MapSamples& samples, const MapStatistics& statistics,
+                            MapConvention& result) {
     constexpr double kLeast = 0.3;
     double object = 0, tangent = 0;
     for (const AxisMap& axes : get_all_axis_maps())
         object = std::max(object, measure_object_rise(samples.places, axes));
-    for (const ChannelSurvey& channel : survey.channels)
+    for (const ChannelStatistics& channel : statistics.channels)
         tangent = std::max(tangent, std::fabs(channel.one_sided));
     if (object >= kLeast && object > kClearRatio * tangent)
         result.space = {
@@ -207,14 +211,16 @@ int find_tile_number(const Texture& texture) {
 /// body, as in object space. In tangent space the axes turn from island to island, and only the channel along
 /// the normal has a side.
 std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement& map,
-                                                             const MapSurvey& survey) {
+                                                             const MapStatistics& statistics) {
     constexpr double kAllOneSided = 0.9;
     if (!map.is_udim && find_tile_number(*map.tiles.front().texture) == 0) return std::nullopt;
     std::array<size_t, 3> order{0, 1, 2};
-    const auto measure = [&](size_t c) { return std::fabs(survey.channels[c].mean - survey.midlevel[c]); };
+    const auto measure = [&](size_t c) {
+        return std::fabs(statistics.channels[c].mean - statistics.midlevel[c]);
+    };
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return measure(a) > measure(b); });
     const auto is_one_sided = [&](size_t c) {
-        return std::fabs(survey.channels[c].one_sided) >= kAllOneSided;
+        return std::fabs(statistics.channels[c].one_sided) >= kAllOneSided;
     };
     if (!is_one_sided(order[0]) || !is_one_sided(order[1]) ||
         measure(order[0]) >= kClearRatio * measure(order[1]))
@@ -274,11 +280,11 @@ std::optional<Guess<DisplacementSpace>> guess_tile_by_seams(const std::set<int>&
     return best;
 }
 
-void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+void guess_on_mesh(const Displacement& map, const MapStatistics& statistics, const Mesh& mesh,
                    MapConvention& result) {
     Displacement raw = map;
     raw.type = DisplacementType::vector, raw.space = DisplacementSpace::tangent;
-    raw.axes = AxisMap{}, raw.midlevel = round_midlevel(survey), raw.scale = {1, 1, 1};
+    raw.axes = AxisMap{}, raw.midlevel = round_midlevel(statistics), raw.scale = {1, 1, 1};
     const std::set<int> tiles = list_possible_tiles(map, mesh);
     if (!tiles.empty()) {
         raw.is_udim = true, raw.tiles.clear();
@@ -286,7 +292,7 @@ void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh&
     }
     const std::optional<Surface> surface = try_surface(mesh, raw);
     if (!surface) {
-        guess_tangent_axes(map, survey, result);
+        guess_tangent_axes(map, statistics, result);
         return;
     }
     MapSamples samples = sample_map(*surface);
@@ -295,35 +301,36 @@ void guess_on_mesh(const Displacement& map, const MapSurvey& survey, const Mesh&
     result.is_space_by_seams = by_seams.has_value();
     if (by_seams)
         result.space = *by_seams;
-    else if (const auto by_tiles = guess_space_of_tiles(map, survey))
+    else if (const auto by_tiles = guess_space_of_tiles(map, statistics))
         result.space = *by_tiles;
     else
-        guess_space_by_normals(samples, survey, result);
+        guess_space_by_normals(samples, statistics, result);
     if (result.space.value == DisplacementSpace::object) {
         guess_object_axes(samples, result);
         return;
     }
-    guess_tangent_axes(map, survey, result);
-    if (by_seams) refine_by_seams(samples.seams, survey, result);
+    guess_tangent_axes(map, statistics, result);
+    if (by_seams) refine_by_seams(samples.seams, statistics, result);
 }
 
 } // namespace
 
-MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh) {
+MapConvention guess_convention(const Displacement& map, const MapStatistics& statistics, const Mesh* mesh) {
     MapConvention result;
     result.space.reason = "not to be seen without a mesh that has seams or bends: give the mesh as well";
-    if (survey.channel_count < 3 || survey.is_gray || survey.texel_count == survey.bad_count) return result;
-    if (mesh && survey.bad_count == 0) {
+    if (statistics.channel_count < 3 || statistics.is_gray || statistics.texel_count == statistics.bad_count)
+        return result;
+    if (mesh && statistics.bad_count == 0) {
         result.space.reason = "seams and normals of the mesh do not tell";
-        guess_on_mesh(map, survey, *mesh, result);
+        guess_on_mesh(map, statistics, *mesh, result);
         return result;
     }
-    if (const auto by_tiles = guess_space_of_tiles(map, survey)) {
+    if (const auto by_tiles = guess_space_of_tiles(map, statistics)) {
         result.space = *by_tiles;
         result.axes.reason = "the usual order; only a mesh could speak for another";
         return result;
     }
-    guess_tangent_axes(map, survey, result);
+    guess_tangent_axes(map, statistics, result);
     return result;
 }
 

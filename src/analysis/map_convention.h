@@ -5,7 +5,7 @@
 #include <string>
 
 #include "analysis/map_on_mesh.h"
-#include "analysis/map_survey.h"
+#include "analysis/map_statistics.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -25,7 +25,7 @@ struct MapConvention {
 };
 
 /// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.
-MapConvention guess_convention(const Displacement& map, const MapSurvey& survey, const Mesh* mesh);
+MapConvention guess_convention(const Displacement& map, const MapStatistics& statistics, const Mesh* mesh);
 
 /// Which space the uv seams speak for; nothing where they do not tell.
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams);

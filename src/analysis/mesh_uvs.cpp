@@ -1,4 +1,4 @@
-// survey_uvs: islands, mirrored ones, tiles, overlaps.
+// measure_uvs: islands, mirrored ones, tiles, overlaps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/mesh_points.h"
-#include "analysis/mesh_survey.h"
+#include "analysis/mesh_statistics.h"
 #include "math/vec.h"
 
 namespace relief {
@@ -187,7 +187,7 @@ FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
 
 } // namespace
 
-MeshUvs survey_uvs(const Mesh& mesh) {
+MeshUvs measure_uvs(const Mesh& mesh) {
     MeshUvs result;
     result.low = result.high = mesh.uvs[mesh.uv_indices.front()];
     std::vector<double> areas;

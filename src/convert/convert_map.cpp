@@ -187,7 +187,7 @@ Surface make_framed_surface(const Displacement& map, const Displacement& meant, 
     Displacement framed = map;
     framed.frame = meant.frame, framed.lengths = meant.lengths;
     framed.space = DisplacementSpace::tangent;
-    // Tangents are of no use to a height, and not every mesh can have those that are asked for.
+    // Tangents are of no use to a height, and not every mesh can have those that are requested.
     if (meant.type == DisplacementType::vector) framed.type = DisplacementType::vector;
     return make_surface(mesh, &framed, Affine{});
 }

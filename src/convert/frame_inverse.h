@@ -13,7 +13,7 @@ inline constexpr double kLeastStretch = 0.25;
 
 struct FrameCoordinates {
     Vec3f tbn;
-    float error = 0; ///< distance from what the frame makes of `tbn` to what was asked for
+    float error = 0; ///< distance from what the frame makes of `tbn` to what was requested
 };
 
 /// The (t, b, n) that the frame turns into `d`. Along directions that the frame shortens to less than

@@ -33,7 +33,7 @@ struct Tracer::Implementation {
     std::vector<PolygonTree> polygon_trees;
     std::unique_ptr<PatchTreeCache> cache;
     SceneView view;                         ///< but for the scene trees
-    std::unique_ptr<SceneTreeHolder> trees; ///< null: those of a walk asked for by name
+    std::unique_ptr<SceneTreeHolder> trees; ///< null: those of a walk requested by name
 
     void make_trees(const PreparedScene& scene) {
         if (walk) return;
@@ -113,7 +113,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     Implementation& self = *implementation_;
     self.kernels = find_kernels(settings.device.isa);
     if (!self.kernels)
-        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set asked for",
+        throw Error(ErrorKind::device_missing, {"this machine or build lacks the instruction set requested",
                                                 "", "available_isas() lists those that work"});
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);

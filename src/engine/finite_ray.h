@@ -1,4 +1,4 @@
-// Rays that are asked about from outside may be anything. One that is no ray hits nothing: walks count on
+// Rays of callers may be anything. An invalid one hits nothing: walks count on
 // numbers, and where all comparisons are false, an empty slot of a node is entered like any other.
 #pragma once
 

@@ -146,7 +146,7 @@ void write_means(const double* sums, size_t count, uint32_t n, Source source, fl
     for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
 }
 
-/// The system grants more than it has and ends the process later, so what a picture needs is asked
+/// The system grants more than it has and ends the process later, so what a picture needs is requested
 /// beforehand.
 void require_memory(double pixels, size_t bytes_per_pixel) {
     const double needed = pixels * double(bytes_per_pixel), available = double(available_memory_bytes());

@@ -73,12 +73,12 @@ class Film {
 
     void write_layer(size_t pixel, const Layer& layer, float* target) const;
 
-    std::vector<Layer> layers_; ///< asked for, in design order
+    std::vector<Layer> layers_; ///< requested, in design order
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
     std::vector<uint32_t> counts_;     ///< samples a pixel
-    std::vector<uint32_t> hit_counts_; ///< samples a pixel that hit; empty unless P or uv is asked for
-    std::vector<float> depths_;        ///< nearest first hit; empty unless depth or id is asked for
+    std::vector<uint32_t> hit_counts_; ///< samples a pixel that hit; empty unless P or uv is requested
+    std::vector<float> depths_;        ///< nearest first hit; empty unless depth or id is requested
     std::vector<uint32_t> ids_;
 };
 

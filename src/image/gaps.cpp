@@ -62,8 +62,8 @@ struct Cell {
 };
 
 /// Cells of a band of rows, side by side; neighbours that lack the same are one.
-std::vector<Cell> survey_band(const std::vector<Part>& parts, const Rectangle& band,
-                              const std::set<int>& columns, int end) {
+std::vector<Cell> measure_band(const std::vector<Part>& parts, const Rectangle& band,
+                               const std::set<int>& columns, int end) {
     std::vector<Part> touching;
     for (const Part& part : parts)
         if (part.window.y0 <= band.y0 && part.window.y1 >= band.y1) touching.push_back(part);
@@ -126,7 +126,7 @@ std::vector<PictureGap> find_gaps(std::span<const Image> images) {
     }
     std::vector<Cell> cells;
     for (auto bottom = std::next(rows.begin()); bottom != rows.end(); ++bottom)
-        add_band(survey_band(parts, {whole.x0, *std::prev(bottom), whole.x1, *bottom}, columns, end), cells);
+        add_band(measure_band(parts, {whole.x0, *std::prev(bottom), whole.x1, *bottom}, columns, end), cells);
     std::vector<PictureGap> gaps;
     for (const Cell& cell : cells)
         for (const auto& [first, last] : cell.missing)

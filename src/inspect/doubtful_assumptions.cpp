@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "analysis/map_convention.h"
-#include "analysis/map_survey.h"
-#include "analysis/mesh_survey.h"
+#include "analysis/map_statistics.h"
+#include "analysis/mesh_statistics.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
@@ -66,9 +66,9 @@ const char* find_setting(const std::string& code) {
 /// What the reader of files has warned of already.
 bool is_told(const std::string& code) { return code == "W-8BIT" || code == "W-INT16" || code == "W-1CH"; }
 
-void add_mistakes(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
+void add_mistakes(const Displacement& map, const MapStatistics& statistics, std::vector<Finding>& findings) {
     std::vector<Finding> found;
-    find_map_mistakes(map, MapMeaning::declared, survey, found);
+    find_map_mistakes(map, MapMeaning::declared, statistics, found);
     for (Finding& finding : found) {
         if (finding.severity == Severity::note || is_told(finding.code)) continue;
         if (const char* setting = find_setting(finding.code)) finding.text += fmt::format(": {}", setting);
@@ -127,12 +127,12 @@ std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     const Displacement thin = thin_out(map);
     std::optional<Vec3f> midlevel;
     if (knows_midlevel(map, MapMeaning::declared)) midlevel = map.midlevel;
-    const MapSurvey survey = survey_map(thin.tiles, midlevel);
-    if (assumed.midlevel) add_mistakes(thin, survey, findings);
+    const MapStatistics statistics = measure_map(thin.tiles, midlevel);
+    if (assumed.midlevel) add_mistakes(thin, statistics, findings);
     const bool is_vector = map.type == DisplacementType::vector;
     if (is_vector && (assumed.space || assumed.axes) && mesh.face_sizes.size() <= kMostFaces &&
         find_mesh_faults(mesh).is_sound())
-        add_convention(map, guess_convention(thin, survey, &mesh), findings);
+        add_convention(map, guess_convention(thin, statistics, &mesh), findings);
     return findings;
 }
 

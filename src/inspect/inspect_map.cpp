@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "analysis/map_convention.h"
-#include "analysis/map_survey.h"
-#include "analysis/mesh_survey.h"
+#include "analysis/map_statistics.h"
+#include "analysis/mesh_statistics.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
@@ -51,7 +51,7 @@ std::optional<Vec3f> get_known_midlevel(const Displacement& map, MapMeaning mean
     return std::nullopt;
 }
 
-void describe_files(const Displacement& map, const MapSurvey& survey, std::vector<Fact>& facts) {
+void describe_files(const Displacement& map, const MapStatistics& statistics, std::vector<Fact>& facts) {
     const Texture& first = *map.tiles.front().texture;
     size_t bytes = 0;
     bool is_one_size = true;
@@ -67,30 +67,30 @@ void describe_files(const Displacement& map, const MapSurvey& survey, std::vecto
             tiles += fmt::format("{}{}", tiles.empty() ? "" : " ", tile.udim);
         facts.push_back({"tiles", tiles});
     }
-    facts.push_back({"channels", fmt::format("{}", survey.channel_count)});
-    facts.push_back({"type", get_type_name(survey.type)});
+    facts.push_back({"channels", fmt::format("{}", statistics.channel_count)});
+    facts.push_back({"type", get_type_name(statistics.type)});
     facts.push_back({"memory", fmt::format("{} bytes", bytes)});
-    for (size_t c = 0; c < std::min<size_t>(3, survey.channel_count); ++c) {
-        const ChannelSurvey& channel = survey.channels[c];
+    for (size_t c = 0; c < std::min<size_t>(3, statistics.channel_count); ++c) {
+        const ChannelStatistics& channel = statistics.channels[c];
         facts.push_back({kChannelNames[c], fmt::format("{:.6g} to {:.6g}, mean {:.6g}", channel.low,
                                                        channel.high, channel.mean)});
     }
 }
 
-std::string describe_zero(const Displacement& map, MapMeaning meaning, const MapSurvey& survey) {
+std::string describe_zero(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics) {
     if (const auto known = get_known_midlevel(map, meaning))
         return known->x == known->y && known->y == known->z
                    ? fmt::format("{:g}, as was said", known->x)
                    : fmt::format("({:g}, {:g}, {:g}), as was said", known->x, known->y, known->z);
-    if (is_integer_type(survey.type)) return "0.5: integers hold no negative values";
-    if (survey.is_centred_at_half) return "0.5: no value is negative, and the means are near 0.5";
-    const bool has_negative = std::any_of(survey.channels.begin(), survey.channels.end(),
-                                          [](const ChannelSurvey& channel) { return channel.low < 0; });
+    if (is_integer_type(statistics.type)) return "0.5: integers hold no negative values";
+    if (statistics.is_centred_at_half) return "0.5: no value is negative, and the means are near 0.5";
+    const bool has_negative = std::any_of(statistics.channels.begin(), statistics.channels.end(),
+                                          [](const ChannelStatistics& channel) { return channel.low < 0; });
     return has_negative ? "0: floats with negative values" : "0: floats";
 }
 
 /// In one line, and as options that a render takes.
-std::string describe_looks(const MapSurvey& survey, const MapConvention& convention) {
+std::string describe_looks(const MapStatistics& statistics, const MapConvention& convention) {
     const DisplacementSpace space = convention.space.value;
     std::string text;
     if (!convention.axes.is_clear && space == DisplacementSpace::tangent) {
@@ -98,7 +98,7 @@ std::string describe_looks(const MapSurvey& survey, const MapConvention& convent
             convention.space.is_clear ? "tangent space, axes not clear" : "not clear from the values alone";
     } else {
         text = fmt::format("{} space, axes {}, midlevel {:g}", get_space_name(space),
-                           format_map_axes(convention.axes.value, space), survey.midlevel[0]);
+                           format_map_axes(convention.axes.value, space), statistics.midlevel[0]);
         if (space == DisplacementSpace::tangent) {
             const std::string presets = list_presets(convention.axes.value);
             if (!presets.empty()) text += " (presets " + presets + ")";
@@ -108,12 +108,13 @@ std::string describe_looks(const MapSurvey& survey, const MapConvention& convent
     return text;
 }
 
-void describe_convention(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void describe_convention(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                          const MapConvention& convention, std::vector<Fact>& facts) {
-    const bool is_vector = survey.channel_count >= 3 && !survey.is_gray;
-    facts.push_back({"midlevel", describe_zero(map, meaning, survey)});
-    facts.push_back({"largest", fmt::format("{:.6g} from the midlevel, times scale", survey.largest)});
-    if (survey.is_periodic) facts.push_back({"wrap", "opposite edges continue each other: probably repeat"});
+    const bool is_vector = statistics.channel_count >= 3 && !statistics.is_gray;
+    facts.push_back({"midlevel", describe_zero(map, meaning, statistics)});
+    facts.push_back({"largest", fmt::format("{:.6g} from the midlevel, times scale", statistics.largest)});
+    if (statistics.is_periodic)
+        facts.push_back({"wrap", "opposite edges continue each other: probably repeat"});
     if (!is_vector) {
         facts.push_back({"looks_like", "a height map"});
         return;
@@ -127,29 +128,30 @@ void describe_convention(const Displacement& map, MapMeaning meaning, const MapS
                                              ? format_map_axes(convention.axes.value, convention.space.value)
                                              : "not clear",
                                          convention.axes.reason)});
-    facts.push_back({"looks_like", describe_looks(survey, convention)});
+    facts.push_back({"looks_like", describe_looks(statistics, convention)});
 }
 
 /// What the texels say, and the mesh if it can be used.
 struct Reading {
-    MapSurvey survey;
+    MapStatistics statistics;
     const Mesh* mesh = nullptr;
     MapConvention convention;
 };
 
 Reading read_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh) {
     Reading reading;
-    reading.survey = survey_map(map.tiles, get_known_midlevel(map, meaning));
+    reading.statistics = measure_map(map.tiles, get_known_midlevel(map, meaning));
     if (mesh && !mesh->uv_indices.empty() && find_mesh_faults(*mesh).is_sound()) reading.mesh = mesh;
-    reading.convention = guess_convention(map, reading.survey, reading.mesh);
+    reading.convention = guess_convention(map, reading.statistics, reading.mesh);
     return reading;
 }
 
 Displacement apply_guess(const Displacement& map, const Reading& reading) {
     Displacement guess = map;
-    const MapSurvey& survey = reading.survey;
-    if (survey.channel_count < 3 || survey.is_gray) guess.type = DisplacementType::height;
-    guess.midlevel = {float(survey.midlevel[0]), float(survey.midlevel[1]), float(survey.midlevel[2])};
+    const MapStatistics& statistics = reading.statistics;
+    if (statistics.channel_count < 3 || statistics.is_gray) guess.type = DisplacementType::height;
+    guess.midlevel = {float(statistics.midlevel[0]), float(statistics.midlevel[1]),
+                      float(statistics.midlevel[2])};
     if (reading.convention.space.is_clear) guess.space = reading.convention.space.value;
     if (reading.convention.axes.is_clear) guess.axes = reading.convention.axes.value;
     return guess;
@@ -158,7 +160,7 @@ Displacement apply_guess(const Displacement& map, const Reading& reading) {
 /// Of a map whose axes are known or can be guessed.
 void note_folds(const Displacement& map, MapMeaning meaning, const Reading& reading,
                 std::vector<Finding>& findings) {
-    if (reading.survey.bad_count > 0) return;
+    if (reading.statistics.bad_count > 0) return;
     if (meaning == MapMeaning::unknown && !reading.convention.axes.is_clear && !reading.mesh) return;
     const Displacement meant = meaning == MapMeaning::declared ? map : apply_guess(map, reading);
     const std::optional<double> share = measure_fold_share(meant, reading.mesh);
@@ -174,10 +176,10 @@ void note_folds(const Displacement& map, MapMeaning meaning, const Reading& read
 Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh) {
     Inspection result;
     const Reading reading = read_map(map, meaning, mesh);
-    describe_files(map, reading.survey, result.facts);
-    describe_convention(map, meaning, reading.survey, reading.convention, result.facts);
-    find_map_mistakes(map, meaning, reading.survey, result.findings);
-    if (reading.mesh) find_misfits(map, reading.survey, *reading.mesh, result.findings);
+    describe_files(map, reading.statistics, result.facts);
+    describe_convention(map, meaning, reading.statistics, reading.convention, result.facts);
+    find_map_mistakes(map, meaning, reading.statistics, result.findings);
+    if (reading.mesh) find_misfits(map, reading.statistics, *reading.mesh, result.findings);
     note_convention(map, meaning, reading.convention, result.findings);
     note_folds(map, meaning, reading, result.findings);
     return result;

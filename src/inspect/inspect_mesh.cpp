@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/mesh_survey.h"
+#include "analysis/mesh_statistics.h"
 #include "math/box.h"
 #include "relief/inspect.h"
 
@@ -193,7 +193,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
                         {"faces", fmt::format("{}", mesh.face_sizes.size())}};
         return result;
     }
-    const MeshShape shape = survey_shape(mesh);
+    const MeshShape shape = measure_shape(mesh);
     describe_shape(mesh, shape, result);
     if (displacement) add_frame(mesh, *displacement, result);
     if (mesh.uv_indices.empty()) {
@@ -205,7 +205,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
             add(result.findings, Severity::warning, "W-NOUV",
                 "no uvs: the mesh cannot be displaced by a map; export it with uvs");
     } else {
-        const MeshUvs uvs = survey_uvs(mesh);
+        const MeshUvs uvs = measure_uvs(mesh);
         describe_uvs(uvs, displacement, result);
         find_uv_mistakes(uvs, displacement, result.findings);
     }

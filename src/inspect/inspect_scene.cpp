@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/mesh_survey.h"
+#include "analysis/mesh_statistics.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
 #include "base/timer.h"

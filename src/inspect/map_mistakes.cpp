@@ -23,35 +23,37 @@ bool is_height(const Displacement& map, MapMeaning meaning) {
     return meaning == MapMeaning::declared && map.type == DisplacementType::height;
 }
 
-void find_bad_texels(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
-    if (!survey.bad) return;
+void find_bad_texels(const Displacement& map, const MapStatistics& statistics,
+                     std::vector<Finding>& findings) {
+    if (!statistics.bad) return;
     findings.push_back(
         {Severity::error, "E-NAN",
          fmt::format("NaN or infinity in {} texel(s), the first at {}; paint over it or bake the "
                      "map again: a render refuses it",
-                     survey.bad_count, describe_place(*survey.bad, map))});
+                     statistics.bad_count, describe_place(*statistics.bad, map))});
 }
 
-double find_low(const MapSurvey& survey) {
-    double low = survey.channels[0].low;
-    for (size_t c = 1; c < survey.used_channels(); ++c) low = std::min(low, survey.channels[c].low);
+double find_low(const MapStatistics& statistics) {
+    double low = statistics.channels[0].low;
+    for (size_t c = 1; c < statistics.used_channels(); ++c) low = std::min(low, statistics.channels[c].low);
     return low;
 }
 
-double find_high(const MapSurvey& survey) {
-    double high = survey.channels[0].high;
-    for (size_t c = 1; c < survey.used_channels(); ++c) high = std::max(high, survey.channels[c].high);
+double find_high(const MapStatistics& statistics) {
+    double high = statistics.channels[0].high;
+    for (size_t c = 1; c < statistics.used_channels(); ++c)
+        high = std::max(high, statistics.channels[c].high);
     return high;
 }
 
 /// Whoever says that 0 is meant may know better than the values.
-void find_unsigned(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void find_unsigned(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                    std::vector<Finding>& findings) {
     const bool is_known = knows_midlevel(map, meaning);
-    if (!survey.is_centred_at_half || is_height(map, meaning) || (is_known && map.midlevel != Vec3f{}))
+    if (!statistics.is_centred_at_half || is_height(map, meaning) || (is_known && map.midlevel != Vec3f{}))
         return;
-    const std::string means = fmt::format("({:.3f}, {:.3f}, {:.3f})", survey.channels[0].mean,
-                                          survey.channels[1].mean, survey.channels[2].mean);
+    const std::string means = fmt::format("({:.3f}, {:.3f}, {:.3f})", statistics.channels[0].mean,
+                                          statistics.channels[1].mean, statistics.channels[2].mean);
     if (is_known)
         findings.push_back(
             {Severity::note, "I-NONEG",
@@ -69,90 +71,91 @@ void find_unsigned(const Displacement& map, MapMeaning meaning, const MapSurvey&
                  means)});
 }
 
-void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                         std::vector<Finding>& findings) {
-    if (survey.type == SampleType::uint8)
+    if (statistics.type == SampleType::uint8)
         findings.push_back(
             {Severity::warning, "W-8BIT",
              fmt::format("8-bit map: one step is {:.3g} scene units at scale {:g}, which shows as "
                          "stairs; export 16 or 32 bit float EXR",
                          get_largest_scale(map) / 255, get_largest_scale(map))});
-    const bool is_wide = survey.type == SampleType::uint16 || survey.type == SampleType::uint32;
+    const bool is_wide = statistics.type == SampleType::uint16 || statistics.type == SampleType::uint32;
     if (is_wide && !knows_midlevel(map, meaning))
         findings.push_back(
             {Severity::warning, "W-INT16",
              fmt::format("integer map without a midlevel, which cannot hold negative values: 0.5 "
                          "is assumed, values are in [{:.4g}, {:.4g}]; say midlevel and scale, or "
                          "export float",
-                         find_low(survey), find_high(survey))});
-    find_unsigned(map, meaning, survey, findings);
-    if (!survey.colour_tag.empty())
+                         find_low(statistics), find_high(statistics))});
+    find_unsigned(map, meaning, statistics, findings);
+    if (!statistics.colour_tag.empty())
         findings.push_back({Severity::warning, "W-SRGB",
                             fmt::format("the file calls its values colours ({}); they are read raw, but the "
                                         "program that wrote it may have converted them: export as data "
                                         "(Non-Color, Raw, linear)",
-                                        survey.colour_tag)});
+                                        statistics.colour_tag)});
 }
 
-void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                            std::vector<Finding>& findings) {
     constexpr double kNormalShare = 0.9;
-    const auto is_flat = [](const ChannelSurvey& channel) { return channel.low == channel.high; };
-    const auto* first = survey.channels.data();
-    if (survey.bad_count == 0 && std::all_of(first, first + survey.used_channels(), is_flat)) {
+    const auto is_flat = [](const ChannelStatistics& channel) { return channel.low == channel.high; };
+    const auto* first = statistics.channels.data();
+    if (statistics.bad_count == 0 && std::all_of(first, first + statistics.used_channels(), is_flat)) {
         findings.push_back(
             {Severity::warning, "W-EMPTY",
              fmt::format(
                  "every texel holds the same value ({:g} in R): the map has no detail; bake or export "
                  "it again",
-                 survey.channels[0].mean)});
+                 statistics.channels[0].mean)});
         return;
     }
     if (is_height(map, meaning)) return;
-    if (survey.channel_count < 3)
-        findings.push_back(
-            {Severity::warning, "W-1CH",
-             fmt::format("{} channel(s): a height map, not vectors; use type height", survey.channel_count)});
-    else if (survey.is_gray && survey.bad_count < survey.texel_count)
+    if (statistics.channel_count < 3)
+        findings.push_back({Severity::warning, "W-1CH",
+                            fmt::format("{} channel(s): a height map, not vectors; use type height",
+                                        statistics.channel_count)});
+    else if (statistics.is_gray && statistics.bad_count < statistics.texel_count)
         findings.push_back(
             {Severity::warning, "W-GRAY",
              "R = G = B everywhere: a height map saved as colours, not vectors; use type height "
              "(as vectors it would move along (1, 1, 1))"});
-    else if (survey.normal_share > kNormalShare && survey.channels[2].mean > 0.5)
+    else if (statistics.normal_share > kNormalShare && statistics.channels[2].mean > 0.5)
         findings.push_back(
             {Severity::warning, "W-NORMALMAP",
              "unit vectors with B up: a normal map, not displacement; bake vector displacement"});
 }
 
-void find_outlier(const Displacement& map, const MapSurvey& survey, std::vector<Finding>& findings) {
+void find_outlier(const Displacement& map, const MapStatistics& statistics, std::vector<Finding>& findings) {
     constexpr double kFarOut = 4;
-    if (!(survey.usual_largest > 0) || survey.largest <= kFarOut * survey.usual_largest) return;
+    if (!(statistics.usual_largest > 0) || statistics.largest <= kFarOut * statistics.usual_largest) return;
     findings.push_back(
         {Severity::warning, "W-OUTLIER",
          fmt::format("the texel at {} is {:.3g} long, {:.1f} x as long as all but a few others: "
                      "probably a fault of the baker; paint over it",
-                     describe_place(survey.largest_place, map), survey.largest,
-                     survey.largest / survey.usual_largest)});
+                     describe_place(statistics.largest_place, map), statistics.largest,
+                     statistics.largest / statistics.usual_largest)});
 }
 
-void find_background(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void find_background(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                      std::vector<Finding>& findings) {
     constexpr double kTolerance = 0.01;
-    if (!survey.has_background || survey.channel_count < 3 || survey.is_gray || is_height(map, meaning))
+    if (!statistics.has_background || statistics.channel_count < 3 || statistics.is_gray ||
+        is_height(map, meaning))
         return;
-    if (survey.is_centred_at_half && knows_midlevel(map, meaning) && map.midlevel == Vec3f{})
+    if (statistics.is_centred_at_half && knows_midlevel(map, meaning) && map.midlevel == Vec3f{})
         return; // find_unsigned tells of that offset
-    const double step = survey.type == SampleType::uint8    ? 1.0 / 255
-                        : survey.type == SampleType::uint16 ? 1.0 / 65535
-                                                            : 0;
+    const double step = statistics.type == SampleType::uint8    ? 1.0 / 255
+                        : statistics.type == SampleType::uint16 ? 1.0 / 65535
+                                                                : 0;
     double offset = 0;
     std::array<double, 3> offsets{};
     for (size_t c = 0; c < 3; ++c) {
-        offsets[c] = survey.background[c] - survey.midlevel[c];
+        offsets[c] = statistics.background[c] - statistics.midlevel[c];
         offset = std::max(offset, std::fabs(offsets[c]));
     }
     // A map that is nothing but its background has no other length to be compared with.
-    if (offset <= std::max(kTolerance * survey.largest, step)) return;
+    if (offset <= std::max(kTolerance * statistics.largest, step)) return;
     const auto most = std::max_element(offsets.begin(), offsets.end(),
                                        [](double a, double b) { return std::fabs(a) < std::fabs(b); });
     findings.push_back(
@@ -160,8 +163,8 @@ void find_background(const Displacement& map, MapMeaning meaning, const MapSurve
          fmt::format(
              "constant offset: the edges of the map hold ({:.4g}, {:.4g}, {:.4g}) in place of {:g}, most "
              "in {}; say this as midlevel, or clear the background in the sculpting tool",
-             survey.background[0], survey.background[1], survey.background[2], survey.midlevel[0],
-             kChannelNames[size_t(most - offsets.begin())])});
+             statistics.background[0], statistics.background[1], statistics.background[2],
+             statistics.midlevel[0], kChannelNames[size_t(most - offsets.begin())])});
 }
 
 /// Median number of texels that a face has, of the first tile's size; 0 without uvs.
@@ -200,22 +203,22 @@ std::string describe_place(const TexelPlace& place, const Displacement& map) {
                        map.is_udim ? fmt::format(", tile {}", place.udim) : std::string());
 }
 
-void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                        std::vector<Finding>& findings) {
-    find_bad_texels(map, survey, findings);
-    find_type_mistakes(map, meaning, survey, findings);
-    find_channel_mistakes(map, meaning, survey, findings);
-    find_outlier(map, survey, findings);
-    find_background(map, meaning, survey, findings);
+    find_bad_texels(map, statistics, findings);
+    find_type_mistakes(map, meaning, statistics, findings);
+    find_channel_mistakes(map, meaning, statistics, findings);
+    find_outlier(map, statistics, findings);
+    find_background(map, meaning, statistics, findings);
 }
 
-void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+void find_misfits(const Displacement& map, const MapStatistics& statistics, const Mesh& mesh,
                   std::vector<Finding>& findings) {
     constexpr double kTooLong = 2, kTooShort = 1e-5, kFinestSide = 1 << kMaxLevel;
     Box box;
     for (const Vec3f& position : mesh.positions) box.extend(position);
     const double diagonal = mesh.positions.empty() ? 0 : double(length(box.extent()));
-    const double longest = survey.largest * get_largest_scale(map);
+    const double longest = statistics.largest * get_largest_scale(map);
     const bool is_relative = map.lengths == FrameLengths::relative && map.type == DisplacementType::vector &&
                              map.space == DisplacementSpace::tangent;
     if (!is_relative && diagonal > 0 && longest > 0 &&

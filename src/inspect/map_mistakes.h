@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/map_convention.h"
-#include "analysis/map_survey.h"
+#include "analysis/map_statistics.h"
 #include "relief/inspect.h"
 
 namespace relief {
@@ -17,12 +17,12 @@ std::string describe_place(const TexelPlace& place, const Displacement& map);
 bool knows_midlevel(const Displacement& map, MapMeaning meaning);
 
 /// What the texels alone show. With MapMeaning::declared midlevel, scale and type of `map` are taken at their
-/// word; otherwise the midlevel of the survey counts.
-void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSurvey& survey,
+/// word; otherwise the midlevel of the statistics counts.
+void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                        std::vector<Finding>& findings);
 
 /// What a map and its mesh show together: length against size, density of texels.
-void find_misfits(const Displacement& map, const MapSurvey& survey, const Mesh& mesh,
+void find_misfits(const Displacement& map, const MapStatistics& statistics, const Mesh& mesh,
                   std::vector<Finding>& findings);
 
 /// Where what was declared is not what the values look like.

@@ -11,7 +11,7 @@
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_paths.h"
 #include "vulkan/layout/device_rays.h"
-#include "vulkan/work_sums.h"
+#include "vulkan/work_statistics.h"
 
 namespace relief::vulkan {
 

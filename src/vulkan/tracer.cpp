@@ -222,7 +222,7 @@ void Tracer::Implementation::trace_waves() {
             if (!kernels.bottom_build[bin] && counters.build_count[bin] > 0)
                 throw Error(
                     ErrorKind::failed,
-                    {"trees of a level were asked for that the scene has not", "",
+                    {"trees of a level were requested that the scene has not", "",
                      "use experiment.bottom = fused, or device.engine = cpu, and tell the developers"});
         cache.end_wave(counters);
         pairs_done += counters.pairs_done, jobs_done += counters.jobs_done;

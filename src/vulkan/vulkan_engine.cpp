@@ -13,7 +13,7 @@
 #include "relief/error.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/ray_batch.h"
-#include "vulkan/station.h"
+#include "vulkan/sized_tracer.h"
 
 namespace relief {
 
@@ -44,7 +44,7 @@ class VulkanEngine final : public Engine {
 
   private:
     std::unique_ptr<Tracer> make_tracer(uint32_t rays, uint32_t share) const;
-    Station<RayBatch>& batches() const;
+    SizedTracer<RayBatch>& batches() const;
     uint64_t count_rays() const;
     void require_drawable(const Window& window) const;
     bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
@@ -53,9 +53,9 @@ class VulkanEngine final : public Engine {
     RenderSettings settings_;
     std::unique_ptr<Device> device_;
     DeviceScene device_scene_;
-    Station<PathTracer> paths_;
+    SizedTracer<PathTracer> paths_;
     mutable std::mutex mutex_;
-    mutable Station<RayBatch> batches_;
+    mutable SizedTracer<RayBatch> batches_;
     Progress progress_;
     uint64_t done_ = 0; ///< pixel samples
     Timer timer_;
@@ -136,7 +136,7 @@ uint64_t VulkanEngine::count_rays() const {
     return work.camera_rays + work.shadow_rays + work.bounce_rays;
 }
 
-Station<RayBatch>& VulkanEngine::batches() const {
+SizedTracer<RayBatch>& VulkanEngine::batches() const {
     if (!batches_)
         batches_ = {{kRaysOfABatch, kLeastPaths},
                     [this](uint32_t rays) { return make_tracer(rays, 1); },

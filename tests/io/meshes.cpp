@@ -130,7 +130,7 @@ TEST_F(MeshFiles, a_scene_file_chooses_the_uv_set) {
     EXPECT_HAS(message_of([&] { parse("1"); }), "meshes.p.file: ");
     EXPECT_HAS(message_of([&] { parse("1"); }), "plane.obj: has no uv set 1");
     EXPECT_HAS(message_of([&] { parse("-1"); }), "meshes.p.uv_set: must be in [0, 255], not -1");
-    EXPECT_HAS(message_of([&] { parse("\"a\""); }), "meshes.p.uv_set: must be a whole number");
+    EXPECT_HAS(message_of([&] { parse("\"a\""); }), "meshes.p.uv_set: must be an integer");
 }
 
 TEST_F(MeshFiles, a_saved_scene_keeps_creases) {

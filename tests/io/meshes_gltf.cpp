@@ -216,7 +216,7 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/accessors/0/componentType", 5124), "5124");
     EXPECT_HAS(set("/accessors/0/type", "VEC4"), "is of type VEC4, not VEC3");
     EXPECT_HAS(set("/accessors/0/sparse", Json::object()), "accessors[0]: is sparse (export it without");
-    EXPECT_HAS(set("/accessors/1/componentType", 5122), "indices must be unsigned whole numbers");
+    EXPECT_HAS(set("/accessors/1/componentType", 5122), "indices must be unsigned integers");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 8), "bufferViews[0].byteStride");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 20), "goes to byte 72");
     EXPECT_HAS(set("/bufferViews/1/byteLength", 1e9), "bufferViews[1]: goes to byte");

@@ -4,7 +4,7 @@
 #include <map>
 #include <random>
 
-#include "surface/mesh/isolate.h"
+#include "surface/mesh/irregular_points.h"
 #include "surface/patch/patch_samples.h"
 #include "surface/smooth_shapes.h"
 

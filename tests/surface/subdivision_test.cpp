@@ -9,7 +9,7 @@
 
 #include "math/box.h"
 #include "surface/limit_reference.h"
-#include "surface/mesh/isolate.h"
+#include "surface/mesh/irregular_points.h"
 #include "surface/mesh/limit_patches.h"
 #include "surface/mesh/subdivide.h"
 #include "surface/patch/bicubic.h"
@@ -60,7 +60,7 @@ struct Subdivided {
     }
     static RefinedMesh make_refined(SubdivisionMesh& source) {
         RefinedMesh refined = source.refine();
-        isolate_irregular_points(refined, kIsolationDepth);
+        cut_at_irregular_points(refined, kIsolationDepth);
         return refined;
     }
 

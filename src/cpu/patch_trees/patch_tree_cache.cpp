@@ -204,7 +204,7 @@ void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
 }
 
 void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
-    // A little more than asked for, so that the next builds find room without a search; and no endless
+    // A little more than requested, so that the next builds find room without a search; and no endless
     // search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
     const size_t step_count = std::min(2 * slot_count_, kLongestSearch);

@@ -49,7 +49,7 @@ template <class T> T load(const char* bytes) {
     return value;
 }
 
-/// The whole number, or its part of the greatest one (glTF 2.0 specification, 3.6.2.2).
+/// The integer, or its part of the greatest one (glTF 2.0 specification, 3.6.2.2).
 template <class T> float load_scaled(const char* bytes, bool is_normalized) {
     const float value = float(load<T>(bytes));
     return is_normalized ? std::max(value / float(std::numeric_limits<T>::max()), -1.0f) : value;
@@ -238,7 +238,7 @@ std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
             result.push_back(load<uint32_t>(at));
             break;
         default:
-            accessor_index.fail("indices must be unsigned whole numbers", kDamagedHint);
+            accessor_index.fail("indices must be unsigned integers", kDamagedHint);
         }
     }
     return result;

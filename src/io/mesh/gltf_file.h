@@ -19,7 +19,7 @@ using ReadBeside = std::function<std::string(const std::string& path)>;
 /// numbers say.
 class GltfFile {
   public:
-    /// `bytes` and `name`, which is for messages, must outlive it. Buffers are read when they are asked for.
+    /// `bytes` and `name`, which is for messages, must outlive it. Buffers are read when they are requested.
     GltfFile(std::string_view bytes, const std::string& name, ReadBeside read_beside);
     GltfFile(const GltfFile&) = delete;
     GltfFile& operator=(const GltfFile&) = delete;
@@ -31,7 +31,7 @@ class GltfFile {
     static const JsonNode& resolve(const JsonNode& index, const std::vector<JsonNode>& list,
                                    const char* what);
 
-    /// Values of an accessor, `width` a vertex, whole numbers scaled to [0, 1] or [-1, 1] where it says so.
+    /// Values of an accessor, `width` a vertex, integers scaled to [0, 1] or [-1, 1] where it says so.
     /// They live as long as the file: many parts may share them.
     std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);

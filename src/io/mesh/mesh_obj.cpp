@@ -216,7 +216,7 @@ class ObjReader {
         }
         return {counts[0], counts[1]};
     }
-    /// "t NAME WHOLE/REAL/TEXTS", then that many whole numbers, real numbers and texts.
+    /// "t NAME WHOLE/REAL/TEXTS", then that many integers, real numbers and texts.
     void read_tag() {
         const std::string_view kind = text_.next_word();
         const size_t ends = kind == "crease" ? 2 : kind == "corner" ? 1 : 0;

@@ -195,9 +195,9 @@ float JsonNode::as_float(double low, double high) const {
 }
 
 int64_t JsonNode::as_integer(int64_t low, int64_t high) const {
-    if (!value_->is_number()) fail_type("a whole number");
+    if (!value_->is_number()) fail_type("an integer");
     const double number = value_->get<double>();
-    if (number != std::floor(number)) fail(fmt::format("must be a whole number, not {}", number));
+    if (number != std::floor(number)) fail(fmt::format("must be an integer, not {}", number));
     if (!(number >= double(low) && number <= double(high)))
         fail(fmt::format("must be in [{}, {}], not {}", low, high, number));
     return int64_t(number);

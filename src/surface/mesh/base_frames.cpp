@@ -79,7 +79,7 @@ std::vector<Vec3d> make_point_normals(const SmoothBase& base, SummedNormals summ
     return normals;
 }
 
-/// What is asked of a displacement on a mesh.
+/// What a displacement requires of a mesh.
 struct FrameNeeds {
     bool is_smooth, has_file_normals, has_file_tangents, is_mikk;
     SummedNormals summed;

@@ -7,7 +7,7 @@
 
 #include "base/machine.h"
 #include "relief/error.h"
-#include "surface/mesh/isolate.h"
+#include "surface/mesh/irregular_points.h"
 #include "surface/mesh/limit_patches.h"
 #include "surface/mesh/subdivision_mesh.h"
 
@@ -139,7 +139,7 @@ SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, B
     check_size(mesh, polygons.where);
     RefinedMesh refined = mesh.refine();
     if (kind == BasePatches::bicubic && subdivision.scheme == SubdivisionScheme::catmark)
-        isolate_irregular_points(refined, kIsolationDepth);
+        cut_at_irregular_points(refined, kIsolationDepth);
     SmoothBase base;
     base.polygons = make_quads(refined, polygons);
     if (subdivision.scheme == SubdivisionScheme::bilinear) {

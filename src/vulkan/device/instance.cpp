@@ -41,7 +41,7 @@ void require_validation_layer(const vk::raii::Context& context) {
     for (const vk::LayerProperties& layer : context.enumerateInstanceLayerProperties())
         if (std::string_view(kValidationLayer) == layer.layerName.data()) return;
     throw Error(ErrorKind::device_missing,
-                {fmt::format("validation was asked for, but the layer {} is not installed", kValidationLayer),
+                {fmt::format("validation was requested, but the layer {} is not installed", kValidationLayer),
                  "Vulkan", "install vulkan-validationlayers"});
 }
 

@@ -50,7 +50,7 @@ std::string describe_frame(const Displacement& map, const Mesh* mesh);
 MeshFaults find_mesh_faults(const Mesh& mesh);
 
 /// Both for meshes without faults only; the second with uvs.
-MeshShape survey_shape(const Mesh& mesh);
-MeshUvs survey_uvs(const Mesh& mesh);
+MeshShape measure_shape(const Mesh& mesh);
+MeshUvs measure_uvs(const Mesh& mesh);
 
 } // namespace relief

@@ -7,7 +7,7 @@
 
 #include "relief/error.h"
 #include "vulkan/tracer.h"
-#include "vulkan/work_sums.h"
+#include "vulkan/work_statistics.h"
 
 namespace relief::vulkan {
 
@@ -17,14 +17,14 @@ struct RayPlaces {
 };
 
 /// A tracer and the worker that feeds it. Not thread safe.
-template <class Worker> class Station {
+template <class Worker> class SizedTracer {
   public:
     using MakeTracer = std::function<std::unique_ptr<Tracer>(uint32_t rays)>;
     using MakeWorker = std::function<std::unique_ptr<Worker>(Tracer&)>;
 
-    Station() = default;
+    SizedTracer() = default;
     /// Halves the capacity until tracer and worker fit. Throws Error{out_of_memory} if the minimum does not.
-    Station(RayPlaces places, MakeTracer make_tracer, MakeWorker make_worker)
+    SizedTracer(RayPlaces places, MakeTracer make_tracer, MakeWorker make_worker)
         : least_(places.least), make_tracer_(std::move(make_tracer)), make_worker_(std::move(make_worker)) {
         make(places.wished);
     }

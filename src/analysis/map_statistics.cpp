@@ -1,4 +1,4 @@
-#include "analysis/map_survey.h"
+#include "analysis/map_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,38 +31,38 @@ template <class Visit> void visit_texels(const std::vector<MapTile>& tiles, cons
                 visit(TexelPlace{tile.udim, x, y}, read_texel(*tile.texture, x, y));
 }
 
-void survey_values(const std::vector<MapTile>& tiles, MapSurvey& survey) {
-    for (size_t c = 0; c < survey.used_channels(); ++c)
-        survey.channels[c].low = std::numeric_limits<double>::infinity(),
-        survey.channels[c].high = -survey.channels[c].low;
+void measure_values(const std::vector<MapTile>& tiles, MapStatistics& statistics) {
+    for (size_t c = 0; c < statistics.used_channels(); ++c)
+        statistics.channels[c].low = std::numeric_limits<double>::infinity(),
+        statistics.channels[c].high = -statistics.channels[c].low;
     uint64_t normal_count = 0;
     visit_texels(tiles, [&](const TexelPlace& place, const Texel& texel) {
-        ++survey.texel_count;
+        ++statistics.texel_count;
         if (!is_finite_texel(texel)) {
-            if (survey.bad_count++ == 0) survey.bad = place;
+            if (statistics.bad_count++ == 0) statistics.bad = place;
             return;
         }
-        for (size_t c = 0; c < survey.used_channels(); ++c) {
-            ChannelSurvey& channel = survey.channels[c];
+        for (size_t c = 0; c < statistics.used_channels(); ++c) {
+            ChannelStatistics& channel = statistics.channels[c];
             channel.low = std::min(channel.low, double(texel[c]));
             channel.high = std::max(channel.high, double(texel[c]));
             channel.mean += texel[c];
         }
-        survey.is_gray &= texel[0] == texel[1] && texel[1] == texel[2];
+        statistics.is_gray &= texel[0] == texel[1] && texel[1] == texel[2];
         normal_count += is_unit_normal(texel);
     });
-    const double good = double(survey.texel_count - survey.bad_count);
+    const double good = double(statistics.texel_count - statistics.bad_count);
     if (good == 0) {
-        survey.channels = {};
+        statistics.channels = {};
         return;
     }
-    for (ChannelSurvey& channel : survey.channels) channel.mean /= good;
-    survey.normal_share = double(normal_count) / good;
+    for (ChannelStatistics& channel : statistics.channels) channel.mean /= good;
+    statistics.normal_share = double(normal_count) / good;
 }
 
-bool lies_around_half(const MapSurvey& survey) {
-    const auto end = survey.channels.begin() + ptrdiff_t(survey.used_channels());
-    return std::all_of(survey.channels.begin(), end, [](const ChannelSurvey& channel) {
+bool lies_around_half(const MapStatistics& statistics) {
+    const auto end = statistics.channels.begin() + ptrdiff_t(statistics.used_channels());
+    return std::all_of(statistics.channels.begin(), end, [](const ChannelStatistics& channel) {
         return channel.low >= 0 && channel.high <= 1.05 && channel.mean > 0.35 && channel.mean < 0.65;
     });
 }
@@ -74,11 +74,12 @@ template <class Visit> void visit_edges(const Texture& texture, const Visit& vis
     for (uint32_t y = 0; y <= bottom; ++y) visit(0u, y), visit(right, y);
 }
 
-void survey_background(const std::vector<MapTile>& tiles, MapSurvey& survey) {
+void measure_background(const std::vector<MapTile>& tiles, MapStatistics& statistics) {
     constexpr double kTolerance = 0.01, kShare = 0.95;
     const Texel corner = read_texel(*tiles.front().texture, 0, 0);
     double range = 0;
-    for (const ChannelSurvey& channel : survey.channels) range = std::max(range, channel.high - channel.low);
+    for (const ChannelStatistics& channel : statistics.channels)
+        range = std::max(range, channel.high - channel.low);
     uint64_t alike = 0, all = 0;
     for (const MapTile& tile : tiles)
         visit_edges(*tile.texture, [&](uint32_t x, uint32_t y) {
@@ -88,36 +89,36 @@ void survey_background(const std::vector<MapTile>& tiles, MapSurvey& survey) {
                      std::fabs(double(texel[1]) - corner[1]) <= kTolerance * range &&
                      std::fabs(double(texel[2]) - corner[2]) <= kTolerance * range;
         });
-    survey.background = {corner[0], corner[1], corner[2]};
-    survey.has_background = is_finite_texel(corner) && double(alike) >= kShare * double(all);
+    statistics.background = {corner[0], corner[1], corner[2]};
+    statistics.has_background = is_finite_texel(corner) && double(alike) >= kShare * double(all);
 }
 
 /// Lengths from the midlevel: the largest, and the largest but for one texel in 10000, four at least.
-void survey_lengths(const std::vector<MapTile>& tiles, MapSurvey& survey) {
+void measure_lengths(const std::vector<MapTile>& tiles, MapStatistics& statistics) {
     std::vector<float> lengths;
-    lengths.reserve(survey.texel_count);
+    lengths.reserve(statistics.texel_count);
     std::array<double, 3> distance{};
     visit_texels(tiles, [&](const TexelPlace& place, const Texel& texel) {
         if (!is_finite_texel(texel)) return;
         double squared = 0;
-        for (size_t c = 0; c < survey.used_channels(); ++c) {
-            const double offset = double(texel[c]) - survey.midlevel[c];
+        for (size_t c = 0; c < statistics.used_channels(); ++c) {
+            const double offset = double(texel[c]) - statistics.midlevel[c];
             squared += offset * offset;
             distance[c] += std::fabs(offset);
         }
         const double length = std::sqrt(squared);
-        if (length > survey.largest) survey.largest = length, survey.largest_place = place;
+        if (length > statistics.largest) statistics.largest = length, statistics.largest_place = place;
         lengths.push_back(float(length));
     });
     if (lengths.empty()) return;
     for (size_t c = 0; c < 3; ++c) {
-        ChannelSurvey& channel = survey.channels[c];
-        const double offset = (channel.mean - survey.midlevel[c]) * double(lengths.size());
+        ChannelStatistics& channel = statistics.channels[c];
+        const double offset = (channel.mean - statistics.midlevel[c]) * double(lengths.size());
         channel.one_sided = distance[c] > 0 ? offset / distance[c] : 0;
     }
     const size_t skipped = std::min(lengths.size() - 1, std::max<size_t>(4, lengths.size() / 10000));
     std::nth_element(lengths.begin(), lengths.begin() + ptrdiff_t(skipped), lengths.end(), std::greater<>());
-    survey.usual_largest = lengths[skipped];
+    statistics.usual_largest = lengths[skipped];
 }
 
 double compute_distance(const Texel& a, const Texel& b) {
@@ -168,27 +169,27 @@ bool is_integer_type(SampleType type) {
     return type == SampleType::uint8 || type == SampleType::uint16 || type == SampleType::uint32;
 }
 
-MapSurvey survey_map(const std::vector<MapTile>& tiles, const std::optional<Vec3f>& midlevel) {
-    MapSurvey survey;
-    survey.type = tiles.front().texture->source_type;
-    survey.channel_count = tiles.front().texture->channel_count;
+MapStatistics measure_map(const std::vector<MapTile>& tiles, const std::optional<Vec3f>& midlevel) {
+    MapStatistics statistics;
+    statistics.type = tiles.front().texture->source_type;
+    statistics.channel_count = tiles.front().texture->channel_count;
     for (const MapTile& tile : tiles) {
-        survey.type = pick_coarser(survey.type, tile.texture->source_type);
-        survey.channel_count = std::min(survey.channel_count, tile.texture->channel_count);
-        if (survey.colour_tag.empty()) survey.colour_tag = tile.texture->colour_tag;
+        statistics.type = pick_coarser(statistics.type, tile.texture->source_type);
+        statistics.channel_count = std::min(statistics.channel_count, tile.texture->channel_count);
+        if (statistics.colour_tag.empty()) statistics.colour_tag = tile.texture->colour_tag;
     }
-    survey_values(tiles, survey);
-    survey.is_centred_at_half =
-        survey.bad_count < survey.texel_count && !is_integer_type(survey.type) && lies_around_half(survey);
+    measure_values(tiles, statistics);
+    statistics.is_centred_at_half = statistics.bad_count < statistics.texel_count &&
+                                    !is_integer_type(statistics.type) && lies_around_half(statistics);
     if (midlevel)
-        survey.midlevel = {midlevel->x, midlevel->y, midlevel->z};
-    else if (is_integer_type(survey.type) || survey.is_centred_at_half)
-        survey.midlevel = {0.5, 0.5, 0.5};
-    survey_background(tiles, survey);
-    survey_lengths(tiles, survey);
-    survey.is_periodic = tiles.size() == 1 && !survey.has_background && !survey.is_gray &&
-                         continues_across_edges(*tiles.front().texture);
-    return survey;
+        statistics.midlevel = {midlevel->x, midlevel->y, midlevel->z};
+    else if (is_integer_type(statistics.type) || statistics.is_centred_at_half)
+        statistics.midlevel = {0.5, 0.5, 0.5};
+    measure_background(tiles, statistics);
+    measure_lengths(tiles, statistics);
+    statistics.is_periodic = tiles.size() == 1 && !statistics.has_background && !statistics.is_gray &&
+                             continues_across_edges(*tiles.front().texture);
+    return statistics;
 }
 
 } // namespace relief

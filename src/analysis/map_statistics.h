@@ -17,16 +17,16 @@ struct TexelPlace {
     uint32_t x = 0, y = 0;
 };
 
-struct ChannelSurvey {
+struct ChannelStatistics {
     double low = 0, high = 0, mean = 0;
     double one_sided = 0; ///< mean offset over mean distance from the midlevel, in [-1, 1]
 };
 
-struct MapSurvey {
+struct MapStatistics {
     SampleType type = SampleType::float32; ///< the coarsest of the tiles
     uint32_t channel_count = 0;            ///< the least of the tiles
     uint64_t texel_count = 0;
-    std::array<ChannelSurvey, 3> channels;
+    std::array<ChannelStatistics, 3> channels;
     std::array<double, 3> midlevel{};   ///< what probably means no displacement
     bool is_centred_at_half = false;    ///< floats, none negative, around 0.5
     bool is_gray = true;                ///< R = G = B in every texel
@@ -47,6 +47,6 @@ bool is_integer_type(SampleType type);
 
 /// One pass over the texels and one over their lengths. `midlevel`: what means no displacement; none:
 /// guessed.
-MapSurvey survey_map(const std::vector<MapTile>& tiles, const std::optional<Vec3f>& midlevel);
+MapStatistics measure_map(const std::vector<MapTile>& tiles, const std::optional<Vec3f>& midlevel);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-#include "vulkan/work_sums.h"
+#include "vulkan/work_statistics.h"
 
 #include <algorithm>
 #include <tuple>

@@ -16,6 +16,6 @@ inline constexpr int kIsolationDepth = 3;
 /// where the crease goes on straight the patches are exact; where it ends, turns or meets another, they are
 /// cut towards that point as well. Where such quads come too close to each other anywhere on the mesh, as
 /// below level 2, all of those at creases stay whole.
-void isolate_irregular_points(RefinedMesh& refined, int depth);
+void cut_at_irregular_points(RefinedMesh& refined, int depth);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-#include "analysis/mesh_survey.h"
+#include "analysis/mesh_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,7 +129,7 @@ MeshFaults find_mesh_faults(const Mesh& mesh) {
     return faults;
 }
 
-MeshShape survey_shape(const Mesh& mesh) {
+MeshShape measure_shape(const Mesh& mesh) {
     MeshShape shape;
     for (const uint32_t size : mesh.face_sizes) {
         if (size == 3)

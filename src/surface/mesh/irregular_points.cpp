@@ -1,4 +1,4 @@
-#include "surface/mesh/isolate.h"
+#include "surface/mesh/irregular_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -228,7 +228,7 @@ RefinedMesh carry_out(const Plan& plan, const RefinedMesh& mesh) {
 
 } // namespace
 
-void isolate_irregular_points(RefinedMesh& refined, int depth) {
+void cut_at_irregular_points(RefinedMesh& refined, int depth) {
     Plan with_creases(refined, depth, true);
     if (with_creases.strip_depth() > 0 && with_creases.make()) {
         RefinedMesh cut = carry_out(with_creases, refined);
