@@ -157,7 +157,7 @@ class CpuEngine final : public Engine {
         return done == settings_.image.spp;
     }
 
-    /// Whether all tiles have these samples, which they may have although the end was requested meanwhile.
+    /// Whether all tiles have these samples, which they may have although the render was cancelled meanwhile.
     bool render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
         std::mutex mutex;
         size_t done = 0;

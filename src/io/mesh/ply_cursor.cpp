@@ -54,7 +54,7 @@ double PlyCursor::read_word() {
     if (begin == end) fail("the file ends early");
     const auto [stop, code] = std::from_chars(begin, end, value);
     if (code != std::errc() || (stop != end && !is_space(*stop)))
-        fail("there is no number where one must be, or one out of range");
+        fail("a number is missing, malformed or out of range");
     at_ += size_t(stop - begin);
     return value;
 }
