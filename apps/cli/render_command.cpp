@@ -127,6 +127,8 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
 /// The pictures of a turntable, one after the other.
 int render_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
                  Waiting waiting) {
+    const std::vector<std::string> files = list_files(scene);
+    for (int k = 0; k < options.aim.turntable; ++k) keep_files(files, name_turn(options.output, k));
     int exit_code = kExitDone;
     for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
         Scene turned = scene;

@@ -56,6 +56,20 @@ TEST_F(AimOptionsTest, a_turntable_writes_numbered_pictures_that_differ) {
     EXPECT_FALSE(exists("turn.exr"));
 }
 
+TEST_F(AimOptionsTest, no_picture_of_a_turntable_and_no_ground_replaces_what_is_read) {
+    std::filesystem::copy(folder_ / "bump.exr", folder_ / "turn.0002.exr");
+    const std::string before = read("turn.0002.exr");
+    const CommandResult turn = run({"render", "plane.obj", "--vdm", "turn.0002.exr", "--size", "8x8", "--spp",
+                                    "1", "--turntable", "2", "-o", "turn.exr"});
+    EXPECT_EQ(turn.exit_code, 2) << turn.errors;
+    EXPECT_EQ(read("turn.0002.exr"), before);
+    std::filesystem::copy(folder_ / "plane.obj", folder_ / "s_ground.obj");
+    const CommandResult ground = run({"render", "s_ground.obj", "--size", "8x8", "--spp", "1", "--ground",
+                                      "--save-scene", "s.json", "-o", "g.png"});
+    EXPECT_EQ(ground.exit_code, 2) << ground.errors;
+    EXPECT_EQ(read("s_ground.obj"), read("plane.obj"));
+}
+
 TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
     const Image colour = render("colour.png", {"--background", "#ff0080"});
     EXPECT_EQ(colour.at(0, 0, 0), 1);

@@ -100,6 +100,12 @@ void add_ground(const Scene& scene, const fs::path& file, Json& root) {
     if (!mesh.source.empty()) return;
     const Material& material = scene.materials[object.material];
     const fs::path mesh_file = file.stem().string() + "_" + mesh.name + ".obj";
+    std::error_code ignored;
+    for (const Mesh& other : scene.meshes)
+        if (fs::equivalent(other.source, file.parent_path() / mesh_file, ignored))
+            throw Error(ErrorKind::usage,
+                        {"a file that is read would be written over",
+                         (file.parent_path() / mesh_file).string(), "give the scene another name"});
     write_text_file(file.parent_path() / mesh_file, format_obj(mesh));
     root["materials"][material.name] = {{"base_color", to_json(material.base_color)},
                                         {"roughness", to_json(material.roughness)}};
