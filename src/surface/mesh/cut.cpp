@@ -33,10 +33,6 @@ std::vector<Vec2<double>> project_face(const Polygons& polygons, uint32_t face) 
     return result;
 }
 
-double compute_turn(const Vec2<double>& a, const Vec2<double>& b, const Vec2<double>& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 bool is_convex(const std::vector<Vec2<double>>& polygon) {
     const size_t size = polygon.size();
     for (size_t k = 0; k < size; ++k)

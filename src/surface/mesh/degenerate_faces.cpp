@@ -26,11 +26,17 @@ struct EdgePoint {
 
 using Edge = std::pair<uint32_t, uint32_t>;
 
-std::vector<Vec3f> get_corners(const Polygons& polygons, uint32_t face) {
+/// The faces that have no area, 1 each.
+std::vector<uint8_t> mark_degenerate(const Polygons& polygons) {
+    std::vector<uint8_t> marks(polygons.face_count());
     std::vector<Vec3f> corners;
-    for (uint32_t k = polygons.starts[face]; k < polygons.starts[face + 1]; ++k)
-        corners.push_back(polygons.positions[polygons.points[k]]);
-    return corners;
+    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+        corners.clear();
+        for (uint32_t k = polygons.starts[face]; k < polygons.starts[face + 1]; ++k)
+            corners.push_back(polygons.positions[polygons.points[k]]);
+        marks[face] = has_area(corners) ? 0 : 1;
+    }
+    return marks;
 }
 
 /// First point at the same position, so that faces that share an edge have the same numbers for it.
@@ -121,18 +127,14 @@ void add_corner(const Polygons& from, uint32_t corner, uint32_t next, const Edge
 
 bool has_area(std::span<const Vec3f> corners) {
     if (corners.size() < 3) return false;
-    const auto offset = [&](size_t k) {
-        const Vec3f &p = corners[k % corners.size()], &origin = corners[0];
-        return Vec3<double>{double(p.x) - origin.x, double(p.y) - origin.y, double(p.z) - origin.z};
-    };
-    Vec3<double> sum{};
     double longest = 0;
     for (size_t k = 0; k < corners.size(); ++k) {
-        const Vec3<double> edge = offset(k + 1) - offset(k);
+        const Vec3f &a = corners[k], &b = corners[(k + 1) % corners.size()];
+        const Vec3<double> edge{double(b.x) - a.x, double(b.y) - a.y, double(b.z) - a.z};
         longest = std::max(longest, dot(edge, edge));
-        if (k > 0 && k + 1 < corners.size()) sum += cross(offset(k), offset(k + 1));
     }
-    return std::sqrt(dot(sum, sum)) > kSmallestAreaRatio * longest;
+    const Vec3<double> normal = compute_newell_normal(corners);
+    return std::sqrt(dot(normal, normal)) > kSmallestAreaRatio * longest;
 }
 
 DegenerateFaces find_degenerate_faces(const Mesh& mesh) {
@@ -153,9 +155,7 @@ DegenerateFaces find_degenerate_faces(const Mesh& mesh) {
 }
 
 void drop_degenerate_faces(Polygons& polygons) {
-    std::vector<uint8_t> is_dropped(polygons.face_count());
-    for (uint32_t face = 0; face < polygons.face_count(); ++face)
-        is_dropped[face] = has_area(get_corners(polygons, face)) ? 0 : 1;
+    const std::vector<uint8_t> is_dropped = mark_degenerate(polygons);
     const auto first = std::find(is_dropped.begin(), is_dropped.end(), 1);
     if (first == is_dropped.end()) return;
     if (std::find(is_dropped.begin(), is_dropped.end(), 0) == is_dropped.end())

@@ -12,10 +12,6 @@ namespace {
 
 using Point = Vec2<double>;
 
-double compute_turn(const Point& a, const Point& b, const Point& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 /// Reflex corners by cells of a grid, about one corner a cell.
 class ReflexGrid {
   public:

@@ -11,6 +11,11 @@
 
 namespace relief {
 
+/// Twice the area of the triangle a b c, positive where it is counter-clockwise.
+inline double compute_turn(const Vec2<double>& a, const Vec2<double>& b, const Vec2<double>& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
 struct PolygonCut {
     std::vector<std::array<uint32_t, 3>> triangles; ///< corners of the polygon
     size_t work = 0;                                ///< corners and cells looked at

@@ -133,18 +133,27 @@ std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
     return result;
 }
 
-} // namespace
-
-Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
-    const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
-    const Vec3f& origin = polygons.positions[polygons.points[start]];
+template <class Corner> Vec3<double> sum_newell(uint32_t size, const Corner& corner) {
+    const Vec3f origin = corner(0);
     const auto offset = [&](uint32_t k) {
-        const Vec3f& p = polygons.positions[polygons.points[start + k]];
+        const Vec3f p = corner(k);
         return Vec3<double>{double(p.x) - origin.x, double(p.y) - origin.y, double(p.z) - origin.z};
     };
     Vec3<double> sum{};
     for (uint32_t k = 1; k + 1 < size; ++k) sum += cross(offset(k), offset(k + 1));
     return sum;
+}
+
+} // namespace
+
+Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
+    const uint32_t start = polygons.starts[face];
+    return sum_newell(polygons.face_size(face),
+                      [&](uint32_t k) { return polygons.positions[polygons.points[start + k]]; });
+}
+
+Vec3<double> compute_newell_normal(std::span<const Vec3f> corners) {
+    return sum_newell(uint32_t(corners.size()), [&](uint32_t k) { return corners[k]; });
 }
 
 Polygons make_polygons(const Mesh& mesh, Welding welding) {

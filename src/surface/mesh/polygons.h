@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,9 @@ Polygons refine_to_quads(const Polygons& polygons);
 /// Newell normal.
 Polygons cut_to_triangles(const Polygons& polygons);
 
-/// Twice the area vector of the face by Newell's method, in double precision.
+/// Twice the area vector of the face by Newell's method, in double precision; of a face, or of corners in
+/// space.
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face);
+Vec3<double> compute_newell_normal(std::span<const Vec3f> corners);
 
 } // namespace relief
