@@ -35,34 +35,53 @@ Vec3f turn_into_sky(const Vec3f& d, float degrees) {
     return {d.x * c - d.z * s, d.y, d.x * s + d.z * c};
 }
 
-/// Radiance of white diffuse surfaces of these normals under a sky that is not turned.
-std::vector<double> measure_received(const Texture& sky, std::span<const Vec3f> normals) {
-    std::vector<double> received(normals.size());
+/// Light from one cell of a sky.
+struct SkyCell {
+    Vec3f direction;
+    double light = 0; ///< luminance times solid angle, as a part of the sphere
+};
+
+/// The sky in cells, each with all the light of its texels, so that the time does not grow with every normal
+/// that is tried on a large picture.
+std::vector<SkyCell> reduce_sky(const Texture& sky) {
+    const uint32_t columns = std::min(std::max(sky.width, 128u), 256u);
+    const uint32_t rows = std::min(std::max(sky.height, 64u), 128u);
+    std::vector<SkyCell> cells(size_t(columns) * rows);
+    for (uint32_t k = 0; k < cells.size(); ++k)
+        cells[k].direction = scalar::latlong_to_direction(
+            Vec2f{(float(k % columns) + 0.5f) / float(columns), (float(k / columns) + 0.5f) / float(rows)});
+    // Texels into cells; a small picture gives each of its cells the texel that it lies in.
+    const uint32_t width = std::max(sky.width, columns), height = std::max(sky.height, rows);
     double weights = 0;
-    const uint32_t columns = std::max(sky.width, 128u), rows = std::max(sky.height, 64u);
-    for (uint32_t row = 0; row < rows; ++row) {
-        const float v = (float(row) + 0.5f) / float(rows);
-        const uint32_t y = uint32_t(uint64_t(row) * sky.height / rows);
-        const double weight = std::sin(std::numbers::pi * double(v));
-        weights += weight * columns;
-        for (uint32_t column = 0; column < columns; ++column) {
-            const uint32_t x = uint32_t(uint64_t(column) * sky.width / columns);
-            const Vec3f radiance{get_texel(sky, x, y, 0), get_texel(sky, x, y, 1), get_texel(sky, x, y, 2)};
-            const double light = weight * double(scalar::luminance(radiance));
-            const Vec3f direction =
-                scalar::latlong_to_direction(Vec2f{(float(column) + 0.5f) / float(columns), v});
-            for (size_t k = 0; k < normals.size(); ++k)
-                received[k] += light * double(std::max(0.0f, dot(direction, normals[k])));
+    for (uint32_t y = 0; y < height; ++y) {
+        const double weight = std::sin(std::numbers::pi * (double(y) + 0.5) / height);
+        weights += weight * width;
+        for (uint32_t x = 0; x < width; ++x) {
+            const uint32_t u = uint32_t(uint64_t(x) * sky.width / width);
+            const uint32_t v = uint32_t(uint64_t(y) * sky.height / height);
+            const Vec3f radiance{get_texel(sky, u, v, 0), get_texel(sky, u, v, 1), get_texel(sky, u, v, 2)};
+            const size_t cell = size_t(uint64_t(y) * rows / height) * columns + uint64_t(x) * columns / width;
+            cells[cell].light += weight * double(scalar::luminance(radiance));
         }
     }
-    // The mean of max(0, cos) over the sphere is 1/4.
-    for (double& r : received) r *= 4 / weights;
+    for (SkyCell& cell : cells) cell.light /= weights;
+    return cells;
+}
+
+/// Radiance of white diffuse surfaces of these normals under a sky that is not turned.
+std::vector<double> measure_received(std::span<const SkyCell> sky, std::span<const Vec3f> normals) {
+    std::vector<double> received(normals.size());
+    for (const SkyCell& cell : sky)
+        for (size_t k = 0; k < normals.size(); ++k)
+            received[k] += cell.light * double(std::max(0.0f, dot(cell.direction, normals[k])));
+    for (double& r : received) r *= 4; // the mean of max(0, cos) over the sphere is 1/4
     return received;
 }
 
 } // namespace
 
-SkyPlacement place_sky(const Texture& sky, const Vec3f& view) {
+SkyPlacement place_sky(const Texture& texture, const Vec3f& view) {
+    const std::vector<SkyCell> sky = reduce_sky(texture);
     constexpr float kStep = 15; // degrees
     const Vec3f side = cross(view, Vec3f{0, 1, 0});
     const Vec3f left = length(side) > 1e-3f ? normalize(side) : Vec3f{-1, 0, 0};

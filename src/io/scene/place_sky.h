@@ -10,9 +10,9 @@ struct SkyPlacement {
     float strength = 1;
 };
 
-/// Turns `sky` so that a surface that faces the camera from its left and above receives the most light of all
-/// turns, and scales it so that the brightest white diffuse surface that the camera can see has radiance 1.
-/// `view` points from the object to the camera, a unit vector. Strength 1 for a black picture.
-SkyPlacement place_sky(const Texture& sky, const Vec3f& view);
+/// Turns the sky so that a surface that faces the camera from its left and above receives the most light of
+/// all turns, and scales it so that the brightest white diffuse surface that the camera can see has
+/// radiance 1. `view` points from the object to the camera, a unit vector. Strength 1 for a black picture.
+SkyPlacement place_sky(const Texture& texture, const Vec3f& view);
 
 } // namespace relief
