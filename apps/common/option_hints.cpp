@@ -88,17 +88,14 @@ constexpr Synonym kSynonyms[] = {
     {"texture", "--vdm", "--vdm MAP"},
     {"heightmap", "--vdm", "--vdm MAP --type height"},
     {"height-map", "--vdm", "--vdm MAP --type height"},
-    {"height", "--vdm", "--vdm MAP --type height"},
     {"hdri", "--env", "--env MAP"},
     {"hdr", "--env", "--env MAP"},
     {"environment", "--env", "--env MAP"},
     {"envmap", "--env", "--env MAP"},
     {"env-map", "--env", "--env MAP"},
-    {"background", "--env", "--env MAP"},
     {"sky", "--env", "--env MAP"},
     {"ibl", "--env", "--env MAP"},
     {"world", "--env", "--env MAP"},
-    {"light", "--env", "--env MAP"},
     {"scale", "--vdm-scale", "--vdm-scale F", Shape::number, "--vdm-scale {}"},
     {"displacement-scale", "--vdm-scale", "--vdm-scale F", Shape::number, "--vdm-scale {}"},
     {"strength", "--vdm-scale", "--vdm-scale F", Shape::number, "--vdm-scale {}"},
@@ -166,10 +163,6 @@ struct Note {
 };
 
 constexpr Note kNotes[] = {
-    {"camera", "--spp", "the camera stands in the scene file, under 'camera'"},
-    {"cam", "--spp", "the camera stands in the scene file, under 'camera'"},
-    {"look-at", "--spp", "the camera stands in the scene file, under 'camera'"},
-    {"fov", "--spp", "the camera stands in the scene file, under 'camera'"},
     {"material", "--spp", "materials stand in the scene file, under 'materials'"},
 };
 
