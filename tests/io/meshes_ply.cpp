@@ -149,7 +149,8 @@ TEST_F(PlyFiles, damaged_values_name_their_place) {
     EXPECT_HAS(complain(make_ascii(kVertexLines + std::string("element face 1\nproperty int a\n"), kSquare)),
                "no list 'vertex_indices'");
     EXPECT_HAS(complain(make_ascii(header, "0 0 0\n1 0 0\n1 1\n")), "vertex 2: the file ends early");
-    EXPECT_HAS(complain(make_ascii(header, "0 0 0\n1 zero 0\n")), "line 12, vertex 1: there is no number");
+    EXPECT_HAS(complain(make_ascii(header, "0 0 0\n1 zero 0\n")),
+               "line 12, vertex 1: a number is missing, malformed");
     EXPECT_HAS(complain(make_ascii(header, "0 0 0\n1e999 0 0\n")), "out of range");
     EXPECT_HAS(complain(make_ascii(header, std::string(kSquare) + "4 0 1 2 4\n")),
                "line 15, face 0: vertex index 4 is out of range: there are 4");
