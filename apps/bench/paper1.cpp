@@ -215,7 +215,7 @@ class Paper1 {
                                {"height", s.image.height},
                                {"level", format_level(s.surface.level)},
                                {"spp", 1},
-                               {"bottom_cache_bytes", s.surface.cache_bytes},
+                               {"bottom_cache_bytes", s.surface.cache_bytes.value_or(kDefaultCacheBytes)},
                                {"bounces_of_figure1_10", options_.bounces},
                                {"runs", options_.runs},
                                {"warm_up_runs", 1},

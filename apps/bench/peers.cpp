@@ -52,6 +52,7 @@ class Peers {
         settings_.device.threads =
             options.threads > 0 ? options.threads : int(std::max(1u, std::thread::hardware_concurrency()));
         settings_.image.spp = 1;
+        settings_.surface.cache_bytes = kDefaultCacheBytes; // memory is compared: no growth
     }
 
     Value run() {
@@ -92,7 +93,7 @@ class Peers {
                      {"warm_up_runs", 1},
                      {"threads", settings_.device.threads},
                      {"levels", levels},
-                     {"bottom_cache_bytes", settings_.surface.cache_bytes},
+                     {"bottom_cache_bytes", *settings_.surface.cache_bytes},
                      {"tessellated_limit_bytes", options_.tessellated_limit_bytes},
                      {"scenes", options_.scenes}}},
                    {"embree_version", embree_version()},

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,7 +61,7 @@ void write_statistics(const std::filesystem::path& file, const RenderResult& res
     write_text_file(file, write_json(describe_statistics(result, settings), 2));
 }
 
-void print_warnings(const std::vector<std::string>& warnings, bool is_mesh) {
+void print_warnings(std::span<const std::string> warnings, bool is_mesh) {
     for (const std::string& warning : warnings)
         fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
 }
@@ -88,8 +89,10 @@ struct Waiting {
     double start, load_s;
 };
 
+/// `told`: warnings printed before the render.
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
-                   const std::filesystem::path& output, const Waiting& waiting, RenderResult& result) {
+                   const std::filesystem::path& output, const Waiting& waiting, RenderResult& result,
+                   size_t told) {
     Statistics& statistics = result.statistics;
     if (result.whole_samples == 0) {
         fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
@@ -103,6 +106,9 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
+    if (!options.is_quiet)
+        print_warnings(std::span(statistics.warnings).subspan(std::min(told, statistics.warnings.size())),
+                       true);
     if (options.is_verbose) print_summary(result, settings);
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // the sender of edits waits for it
@@ -121,7 +127,7 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
         result = render(std::move(scene), settings, &watcher);
         if (watcher.is_refused()) return kExitWarnings;
     }
-    return finish_picture(options, settings, output, waiting, result);
+    return finish_picture(options, settings, output, waiting, result, told);
 }
 
 /// The pictures of a turntable, one after the other.
@@ -194,7 +200,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
             result = session.render(&watcher);
             if (watcher.is_refused()) return kExitWarnings;
         }
-        return finish_picture(options, settings, output, waiting, result);
+        return finish_picture(options, settings, output, waiting, result, told);
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet

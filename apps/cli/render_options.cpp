@@ -152,7 +152,9 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
                 words[k] = {traversal_name(TraversalKind(k)), TraversalKind(k)};
             o.settings.experiment.traversal = parse_word("--traversal", text, words);
         });
-    add(verb, "--bottom-cache", "MB", "cap of the cache of patch trees; 0: off; default 176",
+    add(verb, "--bottom-cache", "MB",
+        "cap of the cache of patch trees; 0: off; default: 176, and more while memory is available and "
+        "needed",
         [&o](const std::string& text) {
             o.settings.surface.cache_bytes =
                 size_t(parse_integer("--bottom-cache", text, 0, kMaxCacheMegabytes)) << 20;

@@ -71,7 +71,10 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
     root["casts"] = make_casts(s);
     root["pairs"] = {{"emitted", s.pairs_emitted}, {"with_hit", s.pairs_with_hit}};
     root["visits"] = {{"upper_nodes", s.upper_nodes}, {"patch_nodes", s.patch_nodes}, {"blocks", s.blocks}};
-    root["bottom"] = {{"built", s.bottom_built}, {"reused", s.bottom_reused}, {"levels", s.bottom_levels}};
+    root["bottom"] = {{"built", s.bottom_built},
+                      {"reused", s.bottom_reused},
+                      {"rebuilt", s.bottom_rebuilt},
+                      {"levels", s.bottom_levels}};
     root["memory_bytes"] = make_memory(s);
     root["warnings"] = s.warnings;
     return root;

@@ -37,11 +37,15 @@ struct Window {
 /// Representation and resolution of displaced surfaces.
 struct SurfaceSettings {
     SurfaceMode mode = SurfaceMode::direct;
+inline constexpr size_t kDefaultCacheBytes = size_t(176) << 20;
+
     int level = kAutoLevel; ///< kAutoLevel, or fixed: 2^level cells per patch side, [0, kMaxLevel]
     float pixel_error = 1;  ///< automatic levels: target cell size, pixels, (0, 1e6]
     LodRule lod = LodRule::field;
     LeafKind leaf = LeafKind::exact;
-    size_t cache_bytes = size_t(176) << 20; ///< limit of the patch tree cache; 0 disables it
+    /// Limit of the patch tree cache; 0 disables it. Not given: kDefaultCacheBytes, and on the CPU engine up
+    /// to half of the memory that is available, while trees have to be built again for want of room.
+    std::optional<size_t> cache_bytes;
 };
 
 /// Engine, device and threads.
@@ -113,6 +117,7 @@ struct Statistics {
     uint64_t geometry_bytes = 0, structures_bytes = 0, displacement_bytes = 0, bottom_cache_bytes = 0;
     uint64_t ray_buffers_bytes = 0, peak_resident_bytes = 0;
     std::vector<CastStatistics> casts; ///< by depth, camera and bounce rays before shadow rays
+    uint64_t bottom_rebuilt = 0; ///< of bottom_built, those that the CPU engine's cache had no room to keep
     std::vector<std::string> warnings;
 };
 

@@ -9,6 +9,9 @@
 
 namespace relief {
 
+/// Of the time of all stages, lost to trees that are built again: a warning above it.
+constexpr double kLeastLoss = 0.25;
+
 void count_scene(const PreparedScene& scene, Statistics& statistics) {
     statistics.meshes = scene.mesh_count;
     statistics.instances = scene.instances.size();
@@ -34,6 +37,27 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
     }
 }
 
+namespace {
+
+/// Trees that are built again and again are time lost.
+void add_cache_warning(Statistics& statistics) {
+    const double stages = statistics.top_traversal_s + statistics.sort_s + statistics.bottom_build_s +
+                          statistics.bottom_traversal_s + statistics.shade_s + statistics.film_s;
+    const double lost =
+        statistics.bottom_built == 0
+            ? 0
+            : statistics.bottom_build_s * double(statistics.bottom_rebuilt) / double(statistics.bottom_built);
+    if (lost <= kLeastLoss * stages) return;
+    statistics.warnings.push_back(fmt::format(
+        "{:.0f} per cent of the time went into building {} patch trees again: their cache of {} MiB is too "
+        "small for this picture; surface.cache_bytes sets it, and without it the cache grows into memory "
+        "that "
+        "is available",
+        100 * lost / stages, statistics.bottom_rebuilt, statistics.bottom_cache_bytes >> 20));
+}
+
+} // namespace
+
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
                         Statistics& statistics) {
     engine.add_statistics(statistics);
@@ -41,6 +65,7 @@ void collect_statistics(const Engine& engine, const Film& film, const PreparedSc
     statistics.first_image_s += statistics.prepare_s;
     statistics.ray_buffers_bytes += film.byte_count();
     statistics.warnings = scene.warnings;
+    add_cache_warning(statistics);
     count_scene(scene, statistics);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -25,6 +26,14 @@ namespace {
 constexpr uint64_t kTimedBatchInterval = 32;
 
 } // namespace
+/// With fewer rays, or less room for trees, the order of rays is not worth its time.
+constexpr size_t kLeastOrdered = 4096, kLeastOrderedRoom = size_t(4) << 20;
+
+CacheLimits make_limits(const SurfaceSettings& settings) {
+    if (settings.cache_bytes) return {*settings.cache_bytes, *settings.cache_bytes};
+    return {kDefaultCacheBytes, std::numeric_limits<size_t>::max()};
+}
+
 
 struct Tracer::Implementation {
     const Kernels* kernels = nullptr;
@@ -118,7 +127,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);
-    self.cache = std::make_unique<PatchTreeCache>(settings.surface.cache_bytes, self.kernels->build_tree);
+    self.cache = std::make_unique<PatchTreeCache>(make_limits(settings.surface), self.kernels->build_tree);
     const float pixel =
         float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view.instances = scene_->instances.data();
@@ -171,6 +180,7 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
     if (self.is_hidden(mask)) {
         std::fill(hits.begin(), hits.end(), TraceHit{});
         return;
+    self.find_most_tree_bytes();
     }
     Batch batch(self, 2 * size_t(depth), rays.size(), mask);
     if (self.trees)
@@ -187,6 +197,34 @@ void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2
     const Implementation& self = *implementation_;
     if (self.trees) {
         Batch batch(self, 0, positions.size());
+    trace_closest(batch, rays, hits);
+}
+
+bool Tracer::may_order(size_t count) const {
+    const Implementation& self = *implementation_;
+    return count >= kLeastOrdered && self.trees && self.view.lod == LodRule::field &&
+           self.most_tree_bytes > self.cache->cap_byte_count();
+}
+
+bool Tracer::ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, uint32_t mask) const {
+    const Implementation& self = *implementation_;
+    if (!may_order(rays.size()) || self.is_hidden(mask)) return false;
+    const size_t room = self.cache->find_room();
+    if (room < kLeastOrderedRoom || self.most_tree_bytes <= room) return false;
+    const RunCast run = [&](size_t count, const auto& work) {
+        Batch batch(self, 0, count, mask);
+        work(batch.view, batch.context);
+    };
+    return trace_ordered(*self.kernels, self.view, run, rays, hits, room);
+}
+
+void Tracer::continued_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {
+    Batch batch(*implementation_, 2 * size_t(depth), 0);
+    trace_closest(batch, rays, hits);
+}
+
+void Tracer::trace_closest(Batch& batch, std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
+    const Implementation& self = *implementation_;
         self.kernels->camera_hits(batch.view, batch.context, {camera, positions.data(), positions.size()},
                                   rays.empty() ? nullptr : rays.data(), hits.data());
         return;
@@ -256,6 +294,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
 }
 
 size_t Tracer::count_plain_bytes() const {
+    statistics.bottom_rebuilt += counters.rebuilt;
     size_t bytes = 0;
     for (const PolygonTree& tree : implementation_->polygon_trees) bytes += tree.byte_count();
     for (const Surface& surface : scene_->surfaces)

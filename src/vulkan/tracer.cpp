@@ -53,7 +53,7 @@ struct Tracer::Implementation {
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
-          cache(d, settings.surface.cache_bytes, c.pool_restart_units),
+          cache(d, settings.surface.cache_bytes.value_or(kDefaultCacheBytes), c.pool_restart_units),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
           kernels(d, ds, settings, c, ds.stack_size() + directories.stack_size()) {

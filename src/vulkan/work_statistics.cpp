@@ -31,5 +31,6 @@ void add_work(Statistics& sum, const Statistics& work) {
         sum.bottom_levels[level] += work.bottom_levels[level];
     for (const CastStatistics& cast : work.casts) add_cast(sum.casts, cast);
 }
+    sum.bottom_rebuilt += work.bottom_rebuilt;
 
 } // namespace relief::vulkan

@@ -5,7 +5,10 @@
 #include <random>
 #include <thread>
 
+#include "cpu/patch_trees/patch_tree_cache.h"
 #include "cpu/tracer.h"
+#include "cpu/traversal/kernels.h"
+#include "formulas/levels.h"
 #include "support/bodies.h"
 
 namespace relief {
@@ -83,6 +86,44 @@ TEST_P(PatchTreeCache, gives_the_same_hits_to_many_threads_that_evict_each_other
     EXPECT_GT(statistics.bottom_reused, 0u);
     // 54 patches of 4 tiles at the full level, and fewer at each bias: more were built than there are.
     EXPECT_GT(statistics.bottom_built, 54u * (4 + 4));
+}
+
+/// Asks for the trees of `count` tiles in turn, a few rounds, of a cache within the limits.
+cpu::TraceCounters visit_tiles(cpu::CacheLimits limits, uint32_t count, int rounds, size_t* peak = nullptr) {
+    RenderSettings settings;
+    const auto prepared = prepare_torus(settings);
+    cpu::PatchTreeCache cache(limits, cpu::find_kernels(Isa::best)->build_tree);
+    for (int round = 0; round < rounds; ++round)
+        for (uint32_t k = 0; k < count; ++k) {
+            cpu::TraceContext& context = cache.acquire();
+            const cpu::TreeKey key{0, k / 4, k % 4, scalar::pack_uniform_level(7)};
+            cache.find_or_build_tree(context, prepared->surfaces[0], key);
+            cache.release(context);
+        }
+    if (peak) *peak = cache.peak_byte_count();
+    return cache.sum_counters();
+}
+
+constexpr size_t kTreeBytes = cpu::PatchTree::size_bytes(cpu::kTileLevel);
+
+TEST(PatchTreeCacheLimits, a_cache_grows_until_no_tree_is_built_again) {
+    const cpu::TraceCounters fixed = visit_tiles({10 * kTreeBytes, 10 * kTreeBytes}, 40, 20);
+    EXPECT_EQ(fixed.built, 800u); // the clock hand meets in turn what is asked for in turn
+    EXPECT_GT(fixed.rebuilt, 700u);
+
+    size_t peak = 0;
+    const cpu::TraceCounters grown = visit_tiles({10 * kTreeBytes, 1000 * kTreeBytes}, 40, 20, &peak);
+    EXPECT_LT(grown.built, 200u);
+    EXPECT_LE(peak, 81 * kTreeBytes);
+    EXPECT_EQ(grown.built, 40 + grown.rebuilt);
+}
+
+TEST(PatchTreeCacheLimits, new_trees_alone_do_not_make_a_cache_grow) {
+    size_t peak = 0;
+    const cpu::TraceCounters once = visit_tiles({10 * kTreeBytes, 1000 * kTreeBytes}, 200, 1, &peak);
+    EXPECT_EQ(once.built, 200u);
+    EXPECT_EQ(once.rebuilt, 0u);
+    EXPECT_LE(peak, 10 * kTreeBytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(Caps, PatchTreeCache,

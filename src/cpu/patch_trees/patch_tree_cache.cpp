@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/machine.h"
 #include "base/timer.h"
 
 namespace relief::cpu {
@@ -16,6 +17,7 @@ namespace {
 constexpr size_t kProbeCount = 8;       ///< slots looked at for one key
 constexpr size_t kMeanTreeBytes = 4096; ///< decides the size of the table
 constexpr size_t kLongestSearch = 8192; ///< slots that one eviction looks at
+constexpr size_t kTableGrowth = 4;      ///< for how many times the first cap there are slots
 
 uint64_t hash_key(const TreeKey& key) {
     // Two rounds of the finalizer of Steele, Lea and Flood 2014 (SplitMix64).
@@ -39,7 +41,7 @@ void TraceContext::AlignedFree::operator()(void* memory) const { std::free(memor
 
 void TraceCounters::add(const TraceCounters& other) {
     pairs_emitted += other.pairs_emitted, pairs_with_hit += other.pairs_with_hit;
-    built += other.built, reused += other.reused;
+    built += other.built, reused += other.reused, rebuilt += other.rebuilt;
     upper_nodes += other.upper_nodes, patch_nodes += other.patch_nodes, blocks += other.blocks;
     for (int level = 0; level <= kMaxLevel; ++level) built_at_level[level] += other.built_at_level[level];
     bottom_build_s += other.bottom_build_s, sampled_bottom_s += other.sampled_bottom_s;
@@ -51,12 +53,16 @@ void CastCounters::add(const CastCounters& other) {
     sampled_trace_s += other.sampled_trace_s, sampled_bottom_s += other.sampled_bottom_s;
 }
 
-PatchTreeCache::PatchTreeCache(size_t cap_bytes, BuildTreeFunction build_tree)
-    : cap_bytes_(cap_bytes), build_tree_(build_tree) {
-    if (cap_bytes == 0) return;
-    slot_count_ = std::bit_ceil(std::clamp<size_t>(cap_bytes / kMeanTreeBytes, 64, size_t(1) << 20));
-    slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
-    cap_bytes_ -= std::min(cap_bytes_, table_bytes());
+PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree) : build_tree_(build_tree) {
+    if (limits.cap_bytes > 0) {
+        // Fixed from here on; a cache that has to grow holds trees larger than the mean.
+        const size_t expected_bytes = std::min(limits.most_bytes, kTableGrowth * limits.cap_bytes);
+        const size_t count = std::max(limits.cap_bytes, expected_bytes) / kMeanTreeBytes;
+        slot_count_ = std::bit_ceil(std::clamp<size_t>(count, 64, size_t(1) << 20));
+        slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
+    }
+    const auto without_table = [&](size_t bytes) { return bytes - std::min(bytes, table_bytes()); };
+    cap_bytes_ = without_table(limits.cap_bytes), most_bytes_ = without_table(limits.most_bytes);
 }
 
 PatchTreeCache::~PatchTreeCache() {
@@ -125,7 +131,13 @@ const CachedTree& PatchTreeCache::find_or_build_elsewhere(TraceContext& context,
                            ? static_cast<CachedTree*>(make_directory(context, surface, key))
                            : make_tree(context, surface, key);
     const bool is_scratch = tree == context.tree_scratch.get() || tree == context.directory_scratch.get();
-    if (!is_scratch) offer(context, tree);
+    if (slot_count_ > 0) note_rebuild(context, *tree);
+    if (context.owns_trees)
+        own(context, tree);
+    else if (is_scratch)
+        given_up_.add(hash_key(key));
+    else
+        offer(context, tree);
     context.counters.bottom_build_s += timer.seconds();
     return *tree;
 }
@@ -173,7 +185,8 @@ void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
         free_retired(context);
         // What is unlinked already becomes free when the other workers move on; more would only empty the
         // table.
-        if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_) evict(context, bytes);
+        if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_ && !grow())
+            evict(context, bytes);
         if (!has_room()) return nullptr;
     }
     const size_t now = allocated_.fetch_add(bytes) + bytes;
@@ -236,10 +249,35 @@ void PatchTreeCache::free_retired(TraceContext& context) {
 void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
     const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
     for (const TraceContext::Retired& retired : context.retired) {
+    given_up_.add(hash_key(tree->key));
         if (!is_free(retired)) continue;
         retired_.fetch_sub(retired.tree->byte_count);
         free_tree(retired.tree);
     }
+void PatchTreeCache::note_rebuild(TraceContext& context, const CachedTree& tree) {
+    if (!given_up_.may_contain(hash_key(tree.key))) return;
+    context.counters.rebuilt += tree.key.tile != kDirectoryTile;
+    rebuilt_bytes_.fetch_add(tree.byte_count, std::memory_order_relaxed);
+}
+
+size_t PatchTreeCache::find_room() const {
+    const size_t cap = cap_bytes_.load();
+    return cap + std::min(most_bytes_ - cap, cap < most_bytes_ ? available_memory_bytes() / 2 : 0);
+}
+
+/// Raises the cap if trees are built again and memory is available; true if there is more room now.
+bool PatchTreeCache::grow() {
+    size_t cap = cap_bytes_.load();
+    if (cap >= most_bytes_ || rebuilt_bytes_.load(std::memory_order_relaxed) < cap / 4) return false;
+    const size_t wanted = std::min(2 * cap, most_bytes_);
+    if (available_memory_bytes() / 2 < wanted - cap) {
+        rebuilt_bytes_.store(0); // looks again after as many builds
+        return false;
+    }
+    if (cap_bytes_.compare_exchange_strong(cap, wanted)) rebuilt_bytes_.store(0);
+    return true;
+}
+
     std::erase_if(context.retired, is_free);
 }
 

@@ -15,6 +15,7 @@
 #include <memory>
 #include <vector>
 
+#include "cpu/patch_trees/given_up_trees.h"
 #include "cpu/patch_trees/patch_tree.h"
 #include "relief/render.h"
 
@@ -24,6 +25,7 @@ namespace relief::cpu {
 struct TraceCounters {
     uint64_t pairs_emitted = 0, pairs_with_hit = 0;
     uint64_t built = 0, reused = 0;
+    uint64_t rebuilt = 0; ///< of `built`: had been built before and given up for want of room
     uint64_t built_at_level[kMaxLevel + 1] = {};
     uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0; ///< visited; see Statistics
     double bottom_build_s = 0;
@@ -88,8 +90,15 @@ struct StopRequest : std::exception {
 
 class PatchTreeCache {
   public:
-    /// `cap_bytes` bounds trees, directories and table; 0: nothing is kept. `build_tree` makes the trees.
-    PatchTreeCache(size_t cap_bytes, BuildTreeFunction build_tree);
+/// Bounds of trees, directories and table. The cap is doubled, up to `most_bytes` and half of the memory that
+/// is available, when a quarter of it has been built again since it was last set.
+struct CacheLimits {
+    size_t cap_bytes = 0; ///< at first; 0: nothing is kept
+    size_t most_bytes = 0;
+};
+
+    /// `build_tree` makes the trees.
+    PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree);
     ~PatchTreeCache();
     PatchTreeCache(const PatchTreeCache&) = delete;
     PatchTreeCache& operator=(const PatchTreeCache&) = delete;
@@ -141,6 +150,9 @@ class PatchTreeCache {
     PatchTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
     TileDirectory* make_directory(TraceContext& context, const Surface& surface, const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
+    size_t cap_byte_count() const { return cap_bytes_.load(); }
+    /// Bytes that trees may take: the cap, and what it may grow by now.
+    size_t find_room() const;
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);
@@ -150,7 +162,10 @@ class PatchTreeCache {
     void free_tree(CachedTree* tree);
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
-    size_t cap_bytes_;
+    std::atomic<size_t> cap_bytes_; ///< without the table
+    size_t most_bytes_;             ///< likewise
+    GivenUpTrees given_up_;
+    std::atomic<size_t> rebuilt_bytes_{0}; ///< since the cap was set
     BuildTreeFunction build_tree_;
     size_t slot_count_ = 0; ///< power of two, or 0
     std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
@@ -162,3 +177,8 @@ class PatchTreeCache {
 };
 
 } // namespace relief::cpu
+    void note_rebuild(TraceContext& context, const CachedTree& tree);
+    bool grow();
+    void note_peak(size_t now);
+    void own(TraceContext& context, CachedTree* tree) const;
+    CachedTree* find_owned(TraceContext& context, const TreeKey& key) const;
