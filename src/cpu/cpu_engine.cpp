@@ -1,5 +1,6 @@
 // The CPU engine: tiles of the picture over all threads, pass by pass; batches of rays for other programs.
 #include "cpu/cpu_engine.h"
+#include "cpu/ordered_hits.h"
 
 #include <algorithm>
 #include <atomic>
@@ -98,12 +99,11 @@ class CpuEngine final : public Engine {
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override {
         tracer_.rebuild_if_worthwhile();
-        parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
-            std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
-            std::vector<TraceHit> found(batch.size());
-            tracer_.closest_hits(batch, found, 0, mask);
-            make_ray_hits(found, hits.subspan(begin, end - begin));
-        });
+        for (size_t first = 0; first < rays.size(); first += kOrderedRays) {
+            const size_t count = std::min(kOrderedRays, rays.size() - first);
+            if (find_ordered_hits(rays.subspan(first, count), hits.subspan(first, count), mask)) continue;
+            find_hits(rays.subspan(first, count), hits.subspan(first, count), mask);
+        }
     }
 
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const override {
@@ -184,6 +184,26 @@ class CpuEngine final : public Engine {
             }
         });
         return done == tiles.size();
+    }
+
+    bool find_ordered_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const {
+        if (!tracer_.may_order(rays.size())) return false;
+        const std::vector<TraceRay> batch = make_batch(rays);
+        std::vector<TraceHit> found(batch.size());
+        if (!tracer_.ordered_hits(batch, found, mask)) return false;
+        parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
+            make_ray_hits(std::span(found).subspan(begin, end - begin), hits.subspan(begin, end - begin));
+        });
+        return true;
+    }
+
+    void find_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const {
+        parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
+            std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
+            std::vector<TraceHit> found(batch.size());
+            tracer_.closest_hits(batch, found, 0, mask);
+            make_ray_hits(found, hits.subspan(begin, end - begin));
+        });
     }
 
     static std::vector<TraceRay> make_batch(std::span<const Ray> rays) {

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "cpu/ordered_hits.h"
 #include "cpu/scene_trees.h"
 #include "cpu/shading/surface_points.h"
 #include "cpu/traversal/kernels.h"
@@ -43,6 +44,7 @@ struct Tracer::Implementation {
     std::unique_ptr<PatchTreeCache> cache;
     SceneView view;                         ///< but for the scene trees
     std::unique_ptr<SceneTreeHolder> trees; ///< null: those of a walk requested by name
+    size_t most_tree_bytes = 0;
 
     void make_trees(const PreparedScene& scene) {
         if (walk) return;
@@ -54,6 +56,17 @@ struct Tracer::Implementation {
     /// An only instance is entered without a look at its mask.
     bool is_hidden(uint32_t mask) const {
         return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
+    }
+
+    /// Of the trees of all patches, if those of an instance all had its finest level.
+    void find_most_tree_bytes() {
+        most_tree_bytes = 0;
+        for (size_t k = 0; k < view.instance_count; ++k) {
+            const Surface& surface = view.surfaces[view.instances[k].surface];
+            if (surface.has_displacement)
+                most_tree_bytes +=
+                    surface.quads.size() * count_tree_bytes(uint32_t(view.instances[k].levels->max_level()));
+        }
     }
 
     void add_casts(Statistics& statistics) const {
@@ -137,6 +150,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.view.cache = self.cache.get();
     self.view.leaf = settings.surface.leaf, self.view.lod = settings.surface.lod;
     self.view.pixel_angle = settings.surface.pixel_error * pixel;
+    self.find_most_tree_bytes();
 }
 
 Tracer::~Tracer() = default;
@@ -166,6 +180,7 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
     Implementation& self = *implementation_;
     if (!self.trees) return false;
     self.trees->apply_changes(changes, places);
+    self.find_most_tree_bytes();
     self.cache->remove([&](const TreeKey& key) {
         return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
             return key.surface == change.surface && change.is_changed[key.patch];
@@ -180,7 +195,6 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
     if (self.is_hidden(mask)) {
         std::fill(hits.begin(), hits.end(), TraceHit{});
         return;
-    self.find_most_tree_bytes();
     }
     Batch batch(self, 2 * size_t(depth), rays.size(), mask);
     if (self.trees)

@@ -124,7 +124,8 @@ CachedTree* PatchTreeCache::find(TraceContext& context, const TreeKey& key) cons
 
 const CachedTree& PatchTreeCache::find_or_build_elsewhere(TraceContext& context, const Surface& surface,
                                                           const TreeKey& key) {
-    if (const CachedTree* found = find(context, key)) return *found;
+    if (const CachedTree* found = context.owns_trees ? find_owned(context, key) : find(context, key))
+        return *found;
     if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
     const Timer timer;
     CachedTree* tree = key.tile == kDirectoryTile
@@ -179,6 +180,10 @@ TileDirectory* PatchTreeCache::make_directory(TraceContext& context, const Surfa
 }
 
 void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
+    if (context.owns_trees) {
+        note_peak(allocated_.fetch_add(bytes) + bytes);
+        return allocate_aligned(bytes);
+    }
     if (slot_count_ == 0) return nullptr;
     const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
     if (!has_room()) {
@@ -194,11 +199,43 @@ void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
         allocated_.fetch_sub(bytes);
         return nullptr;
     }
-    for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
-    }
+    note_peak(now);
     void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!memory) allocated_.fetch_sub(bytes);
     return memory;
+}
+
+void PatchTreeCache::note_peak(size_t now) {
+    for (size_t peak = peak_.load(); peak < now && !peak_.compare_exchange_weak(peak, now);) {
+    }
+}
+
+PatchTreeCache::OwnedTrees::OwnedTrees(PatchTreeCache& cache, TraceContext& context)
+    : cache_(cache), context_(context) {
+    context_.owns_trees = true;
+}
+
+PatchTreeCache::OwnedTrees::~OwnedTrees() {
+    for (CachedTree* tree : context_.owned) {
+        context_.recent.place(tree->key).epoch = 0;
+        cache_.free_tree(tree);
+    }
+    context_.owned.clear();
+    context_.owns_trees = false;
+}
+
+void PatchTreeCache::own(TraceContext& context, CachedTree* tree) const {
+    context.owned.push_back(tree);
+    context.recent.place(tree->key) = {tree->key, tree, context.epoch.load(std::memory_order_relaxed)};
+}
+
+CachedTree* PatchTreeCache::find_owned(TraceContext& context, const TreeKey& key) const {
+    const auto found =
+        std::ranges::find_if(context.owned, [&](const auto* tree) { return tree->key == key; });
+    if (found == context.owned.end()) return nullptr;
+    ++context.counters.reused;
+    context.recent.place(key) = {key, *found, context.epoch.load(std::memory_order_relaxed)};
+    return *found;
 }
 
 void PatchTreeCache::offer(TraceContext& context, CachedTree* tree) {
@@ -217,6 +254,30 @@ void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
 }
 
 void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
+void PatchTreeCache::note_rebuild(TraceContext& context, const CachedTree& tree) {
+    if (!given_up_.may_contain(hash_key(tree.key))) return;
+    context.counters.rebuilt += tree.key.tile != kDirectoryTile;
+    rebuilt_bytes_.fetch_add(tree.byte_count, std::memory_order_relaxed);
+}
+
+size_t PatchTreeCache::find_room() const {
+    const size_t cap = cap_bytes_.load();
+    return cap + std::min(most_bytes_ - cap, cap < most_bytes_ ? available_memory_bytes() / 2 : 0);
+}
+
+/// Raises the cap if trees are built again and memory is available; true if there is more room now.
+bool PatchTreeCache::grow() {
+    size_t cap = cap_bytes_.load();
+    if (cap >= most_bytes_ || rebuilt_bytes_.load(std::memory_order_relaxed) < cap / 4) return false;
+    const size_t wanted = std::min(2 * cap, most_bytes_);
+    if (available_memory_bytes() / 2 < wanted - cap) {
+        rebuilt_bytes_.store(0); // looks again after as many builds
+        return false;
+    }
+    if (cap_bytes_.compare_exchange_strong(cap, wanted)) rebuilt_bytes_.store(0);
+    return true;
+}
+
     // A little more than requested, so that the next builds find room without a search; and no endless
     // search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
@@ -254,30 +315,6 @@ void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
         retired_.fetch_sub(retired.tree->byte_count);
         free_tree(retired.tree);
     }
-void PatchTreeCache::note_rebuild(TraceContext& context, const CachedTree& tree) {
-    if (!given_up_.may_contain(hash_key(tree.key))) return;
-    context.counters.rebuilt += tree.key.tile != kDirectoryTile;
-    rebuilt_bytes_.fetch_add(tree.byte_count, std::memory_order_relaxed);
-}
-
-size_t PatchTreeCache::find_room() const {
-    const size_t cap = cap_bytes_.load();
-    return cap + std::min(most_bytes_ - cap, cap < most_bytes_ ? available_memory_bytes() / 2 : 0);
-}
-
-/// Raises the cap if trees are built again and memory is available; true if there is more room now.
-bool PatchTreeCache::grow() {
-    size_t cap = cap_bytes_.load();
-    if (cap >= most_bytes_ || rebuilt_bytes_.load(std::memory_order_relaxed) < cap / 4) return false;
-    const size_t wanted = std::min(2 * cap, most_bytes_);
-    if (available_memory_bytes() / 2 < wanted - cap) {
-        rebuilt_bytes_.store(0); // looks again after as many builds
-        return false;
-    }
-    if (cap_bytes_.compare_exchange_strong(cap, wanted)) rebuilt_bytes_.store(0);
-    return true;
-}
-
     std::erase_if(context.retired, is_free);
 }
 

@@ -73,6 +73,8 @@ struct TraceContext {
     };
     std::vector<Retired> retired;
     RecentTrees recent;
+    bool owns_trees = false;        ///< see PatchTreeCache::OwnedTrees
+    std::vector<CachedTree*> owned; ///< then, the trees
     struct AlignedFree {
         void operator()(void* memory) const;
     };
@@ -106,6 +108,20 @@ struct CacheLimits {
     TraceContext& acquire();
     void release(TraceContext& context);
 
+    /// While this lives, a context builds and finds trees of its own alone, whatever their bytes: for a
+    /// worker that needs those of one patch for many rays and then never again.
+    class OwnedTrees {
+      public:
+        OwnedTrees(PatchTreeCache& cache, TraceContext& context);
+        ~OwnedTrees();
+        OwnedTrees(const OwnedTrees&) = delete;
+        OwnedTrees& operator=(const OwnedTrees&) = delete;
+
+      private:
+        PatchTreeCache& cache_;
+        TraceContext& context_;
+    };
+
     /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
     /// StopRequest. Empty: never. Not while a context is taken.
     void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
@@ -134,6 +150,9 @@ struct CacheLimits {
     /// Bytes held now and at most so far, table included.
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
     size_t peak_byte_count() const { return peak_.load() + table_bytes(); }
+    size_t cap_byte_count() const { return cap_bytes_.load(); }
+    /// Bytes that trees may take: the cap, and what it may grow by now.
+    size_t find_room() const;
     TraceCounters sum_counters() const;
     std::vector<CastCounters> sum_casts() const;
 
@@ -150,9 +169,6 @@ struct CacheLimits {
     PatchTree* make_tree(TraceContext& context, const Surface& surface, const TreeKey& key);
     TileDirectory* make_directory(TraceContext& context, const Surface& surface, const TreeKey& key);
     CachedTree* find(TraceContext& context, const TreeKey& key) const;
-    size_t cap_byte_count() const { return cap_bytes_.load(); }
-    /// Bytes that trees may take: the cap, and what it may grow by now.
-    size_t find_room() const;
     void* allocate(TraceContext& context, size_t bytes);
     void offer(TraceContext& context, CachedTree* tree);
     void evict(TraceContext& context, size_t bytes);
@@ -160,6 +176,11 @@ struct CacheLimits {
     void free_retired(TraceContext& context);
     void free_older(TraceContext& context, uint64_t epoch);
     void free_tree(CachedTree* tree);
+    void note_rebuild(TraceContext& context, const CachedTree& tree);
+    bool grow();
+    void note_peak(size_t now);
+    void own(TraceContext& context, CachedTree* tree) const;
+    CachedTree* find_owned(TraceContext& context, const TreeKey& key) const;
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
 
     std::atomic<size_t> cap_bytes_; ///< without the table
@@ -177,8 +198,3 @@ struct CacheLimits {
 };
 
 } // namespace relief::cpu
-    void note_rebuild(TraceContext& context, const CachedTree& tree);
-    bool grow();
-    void note_peak(size_t now);
-    void own(TraceContext& context, CachedTree* tree) const;
-    CachedTree* find_owned(TraceContext& context, const TreeKey& key) const;

@@ -11,6 +11,7 @@
 
 #include "cpu/traversal/bundle_traversal-inl.h"
 #include "cpu/traversal/kernels.h"
+#include "cpu/traversal/patch_list-inl.h"
 #include "engine/finite_ray.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -165,10 +166,9 @@ void evaluate_cells(const Surface& surface, const cpu::PatchCells& cells, Vec3f*
 
 const cpu::Kernels& kernels(const char* name) {
     static const cpu::Kernels kKernels{
-        name,           closest_hits,
-        camera_hits,    any_hits,
-        build_tree,     find_box,
-        evaluate_cells, {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
+        name,     closest_hits,   camera_hits,
+        any_hits, list_patches,   build_tree,
+        find_box, evaluate_cells, {visit_primitive<Query::closest>, visit_primitive<Query::any>}};
     return kKernels;
 }
 

@@ -39,6 +39,12 @@ struct PrimitiveKernels {
     Function closest, any;
 };
 
+/// A displaced patch whose box a ray enters, at distance `entry`.
+struct PatchEntry {
+    float entry;
+    uint32_t ray, instance, patch;
+};
+
 /// Cells [cell_x, cell_x + cell_count) x [cell_y, cell_y + cell_count) of a patch at its levels, at most
 /// 2^kTileLevel a side.
 struct PatchCells {
@@ -63,6 +69,9 @@ struct Kernels {
     /// 256. They are written to `rays` unless it is null.
     void (*camera_hits)(const SceneView&, TraceContext&, const CameraPixels&, TraceRay* rays, TraceHit*);
     void (*any_hits)(const SceneView&, TraceContext&, const TraceRay*, uint8_t*, size_t count);
+    /// Appends the displaced patches that ray `index` of a batch may meet; `hit` becomes that of polygons.
+    void (*list_patches)(const SceneView&, TraceContext&, const TraceRay&, uint32_t index, TraceHit& hit,
+                         std::vector<PatchEntry>&);
     BuildTreeFunction build_tree;
     /// Holds a displaced patch at `level`, at most kTileLevel, and below, whatever the levels of its edges.
     Box (*find_box)(const Surface&, uint32_t patch, uint32_t level);

@@ -1,0 +1,138 @@
+#include "cpu/ordered_hits.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "formulas/levels.h"
+#include "formulas/object_ray.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr size_t kSliceSize = 1024;
+
+/// Pairs by patch; those of one patch at one set of levels are neighbours.
+struct OrderedPairs {
+    std::vector<PatchEntry> entries;
+    std::vector<size_t> begins; ///< of each group, and the end of the last
+};
+
+using Slices = std::vector<std::vector<PatchEntry>>;
+
+Slices list_pairs(const Kernels& kernels, const RunCast& run, std::span<const TraceRay> rays,
+                  std::span<TraceHit> hits) {
+    Slices slices((rays.size() + kSliceSize - 1) / kSliceSize);
+    parallel_for("list_patches", rays.size(), kSliceSize, [&](size_t begin, size_t end) {
+        run(end - begin, [&](const SceneView& scene, TraceContext& context) {
+            for (size_t k = begin; k < end; ++k)
+                kernels.list_patches(scene, context, rays[k], uint32_t(k), hits[k],
+                                     slices[begin / kSliceSize]);
+        });
+    });
+    return slices;
+}
+
+/// A counting sort by the number of the patch among those of all surfaces.
+OrderedPairs order_pairs(const SceneView& scene, Slices slices) {
+    std::vector<size_t> first_patch(1, 0);
+    for (uint32_t instance = 0; instance < scene.instance_count; ++instance) {
+        const uint32_t surface = scene.instances[instance].surface;
+        if (surface + 2 > first_patch.size()) first_patch.resize(surface + 2);
+        first_patch[surface + 1] = scene.surfaces[surface].quads.size();
+    }
+    for (size_t k = 1; k < first_patch.size(); ++k) first_patch[k] += first_patch[k - 1];
+    const auto number = [&](const PatchEntry& e) {
+        return first_patch[scene.instances[e.instance].surface] + e.patch;
+    };
+    std::vector<size_t> ends(first_patch.back() + 1);
+    for (const std::vector<PatchEntry>& slice : slices)
+        for (const PatchEntry& entry : slice) ++ends[number(entry) + 1];
+    OrderedPairs pairs;
+    pairs.begins.push_back(0);
+    for (size_t k = 1; k < ends.size(); ++k) {
+        if (ends[k] > 0) pairs.begins.push_back(pairs.begins.back() + ends[k]);
+        ends[k] += ends[k - 1];
+    }
+    pairs.entries.resize(ends.back());
+    for (std::vector<PatchEntry>& slice : slices) {
+        for (const PatchEntry& entry : slice) pairs.entries[ends[number(entry)]++] = entry;
+        slice = {};
+    }
+    return pairs;
+}
+
+/// Instances of one surface may have different levels, and each of these its own trees.
+size_t count_bytes(const SceneView& scene, const OrderedPairs& pairs) {
+    size_t bytes = 0;
+    for (size_t group = 0; group + 1 < pairs.begins.size(); ++group) {
+        const PatchEntry& first = pairs.entries[pairs.begins[group]];
+        bytes += count_tree_bytes(
+            scalar::packed_patch_level(scene.instances[first.instance].levels->packed_at(first.patch)));
+    }
+    return bytes;
+}
+
+/// Patches are met by several workers at once, and a ray by one at a time: hits at one distance are in an
+/// order that does not depend on which came first.
+class RayLocks {
+  public:
+    explicit RayLocks(size_t count) : is_taken_(count) {}
+    void lock(size_t ray) {
+        while (is_taken_[ray].exchange(1, std::memory_order_acquire)) std::this_thread::yield();
+    }
+    void unlock(size_t ray) { is_taken_[ray].store(0, std::memory_order_release); }
+
+  private:
+    std::vector<std::atomic<uint8_t>> is_taken_;
+};
+
+void trace_group(const Kernels& kernels, const SceneView& scene, TraceContext& context,
+                 std::span<PatchEntry> group, std::span<const TraceRay> rays, std::span<TraceHit> hits,
+                 RayLocks& locks) {
+    const auto key = [&](const PatchEntry& e) {
+        return std::tuple(scene.instances[e.instance].levels->packed_at(e.patch), e.entry, e.ray);
+    };
+    std::sort(group.begin(), group.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    const PatchTreeCache::OwnedTrees scope(*scene.cache, context);
+    for (const PatchEntry& entry : group) {
+        locks.lock(entry.ray);
+        TraceHit& hit = hits[entry.ray];
+        if (!(entry.entry > hit.t * scalar::kBoxSlack))
+            kernels.primitive.closest(scene, context, rays[entry.ray], entry.instance, entry.patch, hit);
+        locks.unlock(entry.ray);
+    }
+}
+
+} // namespace
+
+size_t count_tree_bytes(uint32_t level) {
+    if (level <= uint32_t(kTileLevel)) return PatchTree::size_bytes(int(level));
+    const uint32_t depth = level - kTileLevel;
+    return (PatchTree::size_bytes(kTileLevel) << 2 * depth) + TileDirectory::size_bytes(depth + 1);
+}
+
+bool trace_ordered(const Kernels& kernels, const SceneView& scene, const RunCast& run,
+                   std::span<const TraceRay> rays, std::span<TraceHit> hits, size_t room_bytes) {
+    DCHECK(rays.size() == hits.size() && rays.size() <= kOrderedRays);
+    OrderedPairs pairs = order_pairs(scene, list_pairs(kernels, run, rays, hits));
+    if (count_bytes(scene, pairs) <= room_bytes) return false;
+    RayLocks locks(rays.size());
+    parallel_for("ordered_hits", pairs.begins.size() - 1, 1, [&](size_t begin, size_t end) {
+        run(0, [&](const SceneView& view, TraceContext& context) {
+            for (size_t k = begin; k < end; ++k)
+                trace_group(
+                    kernels, view, context,
+                    std::span(pairs.entries).subspan(pairs.begins[k], pairs.begins[k + 1] - pairs.begins[k]),
+                    rays, hits, locks);
+        });
+    });
+    return true;
+}
+
+} // namespace relief::cpu
