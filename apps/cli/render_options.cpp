@@ -119,6 +119,13 @@ void add_level_options(CLI::App& verb, RenderOptions& o) {
             constexpr std::array<Word<LodRule>, 2> words{{{"field", LodRule::field}, {"ray", LodRule::ray}}};
             o.settings.surface.lod = parse_word("--lod", text, words);
         });
+    add(verb, "--bounce-levels", "NAME",
+        "auto (default): coarser away from where a bounce begins, or camera: the camera's everywhere",
+        [&o](const std::string& text) {
+            constexpr std::array<Word<BounceLevels>, 2> words{
+                {{"auto", BounceLevels::automatic}, {"camera", BounceLevels::camera}}};
+            o.settings.surface.bounce_levels = parse_word("--bounce-levels", text, words);
+        });
     add(verb, "--leaf", "NAME", "exact (default) triangles, or their box", [&o](const std::string& text) {
         constexpr std::array<Word<LeafKind>, 2> words{{{"exact", LeafKind::exact}, {"box", LeafKind::box}}};
         o.settings.surface.leaf = parse_word("--leaf", text, words);
@@ -215,8 +222,8 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
     add_machine_options(verb, o);
     add_report_options(verb, o);
     add_options_of_meshes(verb, o);
-    for (const char* name :
-         {"--surface", "--lod", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
+    for (const char* name : {"--surface", "--lod", "--bounce-levels", "--leaf", "--bottom", "--isa",
+                             "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
     for (const char* name : {"--filter", "--subdivision-level", "--autobump", "--no-dilate", "--type",
                              "--frame", "--lengths", "--encoding", "--wrap"})

@@ -12,7 +12,7 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 32> kOptions{{
+constexpr std::array<OptionName, 33> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
@@ -24,6 +24,7 @@ constexpr std::array<OptionName, 32> kOptions{{
     {"surface.level", "--level"},
     {"surface.pixel_error", "--pixel-error"},
     {"surface.lod", "--lod"},
+    {"surface.bounce_levels", "--bounce-levels"},
     {"surface.leaf", "--leaf"},
     {"surface.cache_bytes", "--bottom-cache"},
     {"device.engine", "--engine"},

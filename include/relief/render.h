@@ -16,6 +16,9 @@ namespace relief {
 enum class SurfaceMode { direct, tessellated };
 enum class LeafKind { exact, box };
 enum class LodRule { field, ray };
+/// Levels that bounce rays see: `automatic`: those of the camera near the vertex that a ray leaves, and, with
+/// automatic levels, coarser ones beyond; `camera`: those of the camera everywhere.
+enum class BounceLevels { automatic, camera };
 enum class EngineKind { cpu, vulkan };
 /// How the Vulkan engine builds and traverses patch trees: `fused` is one kernel of persistent work groups
 /// that take jobs from a queue (Harada 2015); `split` is a build kernel, then one invocation per pair of
@@ -34,14 +37,15 @@ struct Window {
     friend bool operator==(const Window&, const Window&) = default;
 };
 
+inline constexpr size_t kDefaultCacheBytes = size_t(176) << 20;
+
 /// Representation and resolution of displaced surfaces.
 struct SurfaceSettings {
     SurfaceMode mode = SurfaceMode::direct;
-inline constexpr size_t kDefaultCacheBytes = size_t(176) << 20;
-
     int level = kAutoLevel; ///< kAutoLevel, or fixed: 2^level cells per patch side, [0, kMaxLevel]
     float pixel_error = 1;  ///< automatic levels: target cell size, pixels, (0, 1e6]
     LodRule lod = LodRule::field;
+    BounceLevels bounce_levels = BounceLevels::automatic;
     LeafKind leaf = LeafKind::exact;
     /// Limit of the patch tree cache; 0 disables it. Not given: kDefaultCacheBytes, and on the CPU engine up
     /// to half of the memory that is available, while trees have to be built again for want of room.
@@ -113,11 +117,11 @@ struct Statistics {
     /// Independent of the number of threads and of the cache.
     uint64_t upper_nodes = 0, patch_nodes = 0, blocks = 0;
     uint64_t bottom_built = 0, bottom_reused = 0;
+    uint64_t bottom_rebuilt = 0; ///< of bottom_built, those that the CPU engine's cache had no room to keep
     std::vector<uint64_t> bottom_levels; ///< trees built at level 0, 1, 2, ...
     uint64_t geometry_bytes = 0, structures_bytes = 0, displacement_bytes = 0, bottom_cache_bytes = 0;
     uint64_t ray_buffers_bytes = 0, peak_resident_bytes = 0;
     std::vector<CastStatistics> casts; ///< by depth, camera and bounce rays before shadow rays
-    uint64_t bottom_rebuilt = 0; ///< of bottom_built, those that the CPU engine's cache had no room to keep
     std::vector<std::string> warnings;
 };
 

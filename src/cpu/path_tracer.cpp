@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "base/timer.h"
+#include "cpu/bounce_rays.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/textures.h"
 #include "formulas/camera.h"
 #include "formulas/light.h"
 #include "formulas/path.h"
 #include "formulas/sobol.h"
+#include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
 
 namespace relief::cpu {
@@ -89,6 +91,7 @@ class TileTracer {
     TileCounters& counters_;
     PictureFootprints* footprints_;
     scalar::CameraFrame camera_;
+    scalar::BounceLod bounce_lod_;
     uint32_t sample_index_ = 0;
     int depth_ = 0;               ///< vertices behind the wave: 0 for camera rays
     std::vector<Path> paths_;     ///< in packets of kPacketEdge squared pixels
@@ -96,6 +99,7 @@ class TileTracer {
 
     std::vector<uint32_t> active_; ///< paths still on their way, in order
     std::vector<TraceRay> rays_;
+    std::vector<float> coarse_from_; ///< see closest_bounce_hits; of bounce rays
     std::vector<TraceHit> hits_;
     std::vector<Vec2f> places_; ///< of camera rays in the picture, in pixels
     std::vector<uint32_t> missed_;
@@ -115,6 +119,7 @@ class TileTracer {
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
     PointScratch scratch_;
+    BounceScratch bounce_scratch_;
 };
 
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report)
@@ -124,7 +129,8 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       film_(film),
       counters_(report.counters),
       footprints_(report.footprints),
-      camera_(make_camera_frame(scene.tracer.scene())) {
+      camera_(make_camera_frame(scene.tracer.scene())),
+      bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
             for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
@@ -174,8 +180,10 @@ void TileTracer::trace_paths() {
     hits_.resize(rays_.size());
     if (depth_ == 0 && is_pinhole())
         tracer_.camera_hits(camera_, places_, rays_, hits_);
+    else if (depth_ == 0)
+        tracer_.closest_hits(rays_, hits_);
     else
-        tracer_.closest_hits(rays_, hits_, depth_);
+        closest_bounce_hits(tracer_, rays_, coarse_from_, hits_, depth_, bounce_scratch_, scratch_);
     if (!footprints_) return;
     for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
 }
@@ -189,13 +197,13 @@ void TileTracer::shade_paths() {
     shadow_rays_.clear(), shadows_.clear();
     add_backgrounds();
     drop_misses();
-    points_.resize(hits_.size());
+    points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
     draw_random();
     size_t next = 0;
     for (size_t first = 0; first < active_.size(); first += kBlock)
         next = shade_block(first, std::min(kBlock, active_.size() - first), next);
-    active_.resize(next), rays_.resize(next);
+    active_.resize(next), rays_.resize(next), coarse_from_.resize(next);
     counters_.bounce_rays += active_.size();
     counters_.shade_s += timer.seconds();
 }
@@ -388,6 +396,8 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
                    uint32_t(hits_[k].lod_bias)};
+    coarse_from_[next] =
+        scalar::find_coarse_distance(bounce_lod_, rays_[next].origin, rays_[next].lod_bias, path.bsdf_pdf);
     return true;
 }
 

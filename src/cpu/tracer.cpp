@@ -26,7 +26,6 @@ namespace {
 /// much in all of them.
 constexpr uint64_t kTimedBatchInterval = 32;
 
-} // namespace
 /// With fewer rays, or less room for trees, the order of rays is not worth its time.
 constexpr size_t kLeastOrdered = 4096, kLeastOrderedRoom = size_t(4) << 20;
 
@@ -35,6 +34,7 @@ CacheLimits make_limits(const SurfaceSettings& settings) {
     return {kDefaultCacheBytes, std::numeric_limits<size_t>::max()};
 }
 
+} // namespace
 
 struct Tracer::Implementation {
     const Kernels* kernels = nullptr;
@@ -197,20 +197,6 @@ void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
         return;
     }
     Batch batch(self, 2 * size_t(depth), rays.size(), mask);
-    if (self.trees)
-        self.kernels->closest_hits(batch.view, batch.context, rays.data(), hits.data(), rays.size());
-    else
-        self.walk->closest_hits(batch.view, self.kernels->primitive, batch.context, rays.data(), hits.data(),
-                                rays.size());
-}
-
-void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
-                         std::span<TraceRay> rays, std::span<TraceHit> hits) const {
-    DCHECK(camera.aperture_radius == 0 && hits.size() == positions.size());
-    DCHECK(rays.empty() || rays.size() == positions.size());
-    const Implementation& self = *implementation_;
-    if (self.trees) {
-        Batch batch(self, 0, positions.size());
     trace_closest(batch, rays, hits);
 }
 
@@ -239,6 +225,20 @@ void Tracer::continued_hits(std::span<const TraceRay> rays, std::span<TraceHit> 
 
 void Tracer::trace_closest(Batch& batch, std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
     const Implementation& self = *implementation_;
+    if (self.trees)
+        self.kernels->closest_hits(batch.view, batch.context, rays.data(), hits.data(), rays.size());
+    else
+        self.walk->closest_hits(batch.view, self.kernels->primitive, batch.context, rays.data(), hits.data(),
+                                rays.size());
+}
+
+void Tracer::camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
+                         std::span<TraceRay> rays, std::span<TraceHit> hits) const {
+    DCHECK(camera.aperture_radius == 0 && hits.size() == positions.size());
+    DCHECK(rays.empty() || rays.size() == positions.size());
+    const Implementation& self = *implementation_;
+    if (self.trees) {
+        Batch batch(self, 0, positions.size());
         self.kernels->camera_hits(batch.view, batch.context, {camera, positions.data(), positions.size()},
                                   rays.empty() ? nullptr : rays.data(), hits.data());
         return;
@@ -294,6 +294,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
     statistics.upper_nodes += counters.upper_nodes, statistics.patch_nodes += counters.patch_nodes;
     statistics.blocks += counters.blocks;
     statistics.bottom_built += counters.built, statistics.bottom_reused += counters.reused;
+    statistics.bottom_rebuilt += counters.rebuilt;
     statistics.bottom_levels.resize(kTileLevel + 1);
     for (int level = 0; level <= kTileLevel; ++level)
         statistics.bottom_levels[size_t(level)] += counters.built_at_level[level];
@@ -308,7 +309,6 @@ void Tracer::add_statistics(Statistics& statistics) const {
 }
 
 size_t Tracer::count_plain_bytes() const {
-    statistics.bottom_rebuilt += counters.rebuilt;
     size_t bytes = 0;
     for (const PolygonTree& tree : implementation_->polygon_trees) bytes += tree.byte_count();
     for (const Surface& surface : scene_->surfaces)

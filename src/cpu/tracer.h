@@ -143,6 +143,7 @@ class Tracer {
   private:
     struct Implementation;
     class Batch;
+    void trace_closest(Batch& batch, std::span<const TraceRay> rays, std::span<TraceHit> hits) const;
     std::shared_ptr<const PreparedScene> scene_;
     std::unique_ptr<Implementation> implementation_;
 };

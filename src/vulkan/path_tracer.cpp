@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/timer.h"
 #include "formulas/pixel_order.h"
+#include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_paths.h"
@@ -66,6 +67,8 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     shading_normal_ = make_kernel(device, "shading_normal");
     light_sample_ = make_kernel(device, "light_sample");
     bounce_ = make_kernel(device, "bounce");
+    far_rays_ = make_kernel(device, "far_rays");
+    inner_hits_ = make_kernel(device, "inner_hits");
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
     make_buffers();
@@ -127,6 +130,7 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     push.capacity = capacity_;
     push.last_depth = uint32_t(settings_.image.bounces);
     push.sample_index = sample_index;
+    push.bounce_lod = make_bounce_lod(tracer_.scene(), settings_);
     return push;
 }
 
@@ -147,8 +151,9 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     scalar::PathPush push = make_push(sample_index);
     push.count = uint32_t(pixels.count);
     for (; push.count > 0; ++push.depth) {
-        CastStatistics cast = rasteriser_ && push.depth == 0 ? rasteriser_->first_hits(camera)
-                                                             : tracer_.closest_hits(path_list_, push.count);
+        CastStatistics cast = push.depth > 0 ? trace_bounces(push)
+                              : rasteriser_  ? rasteriser_->first_hits(camera)
+                                             : tracer_.closest_hits(path_list_, push.count);
         cast.depth = int(push.depth);
         add_cast(batch_casts_, cast);
         const NextRays next = shade_depth(push);
@@ -162,19 +167,52 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     commands.dispatch(film_, pixels.count, push);
 }
 
+/// Both parts of bounce rays; counterpart of cpu/bounce_rays.h. Lists for shadow rays and for the next depth
+/// are free until shade_depth.
+CastStatistics PathTracer::trace_bounces(scalar::PathPush push) {
+    CastStatistics cast = tracer_.closest_hits(path_list_, push.count);
+    if (push.bounce_lod.cell_angle == 0) return cast;
+    const auto trace_further = [&](const Buffer& list, uint32_t count) {
+        add_cast_work(cast, tracer_.closest_hits(list, count));
+    };
+    push.count = list_rays(far_rays_, push).shadow_count;
+    if (push.count == 0) return cast;
+    trace_further(shadow_list_, push.count);
+    push.count = list_rays(inner_hits_, push).path_count;
+    if (push.count > 0) trace_further(next_path_list_, push.count);
+    return cast;
+}
+
+/// Runs a kernel that appends rays to lists.
+PathTracer::NextRays PathTracer::list_rays(const Kernel& kernel, const scalar::PathPush& push) {
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    clear_lists();
+    commands.dispatch(kernel, push.count, push);
+    return read_lists();
+}
+
+void PathTracer::clear_lists() {
+    tracer_.commands().fill(tracer_.counter_buffer(), offsetof(scalar::CounterData, path_count),
+                            2 * sizeof(uint32_t), 0);
+}
+
+PathTracer::NextRays PathTracer::read_lists() {
+    const scalar::CounterData& counters = tracer_.read_counters();
+    return {counters.path_count, counters.shadow_count};
+}
+
 /// Emission seen by rays, surface points, light and BSDF sampling.
 PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
     Commands& commands = tracer_.commands();
     commands.begin_stage(Stage::shade);
-    commands.fill(tracer_.counter_buffer(), offsetof(scalar::CounterData, path_count), 2 * sizeof(uint32_t),
-                  0);
+    clear_lists();
     commands.dispatch(background_, push.count, push);
     commands.dispatch(surface_point_, push.count, push);
     commands.dispatch(shading_normal_, push.count, push);
     commands.dispatch(light_sample_, push.count, push);
     if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
-    const scalar::CounterData& counters = tracer_.read_counters();
-    return {counters.path_count, counters.shadow_count};
+    return read_lists();
 }
 
 void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {

@@ -53,7 +53,11 @@ class PathTracer {
     void trace_batch(Film& film, PixelRange pixels, SampleRange samples);
     void make_buffers();
     void trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index);
+    CastStatistics trace_bounces(scalar::PathPush push);
     NextRays shade_depth(const scalar::PathPush& push);
+    NextRays list_rays(const Kernel& kernel, const scalar::PathPush& push);
+    void clear_lists();
+    NextRays read_lists();
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void add_to_film(Film& film, PixelRange pixels, int sample_count) const;
     scalar::PathPush make_push(uint32_t sample_index) const;
@@ -63,8 +67,8 @@ class PathTracer {
     scalar::CameraFrame camera_;
     uint32_t capacity_;
     DeviceLights lights_;
-    Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_,
-        shadow_light_, film_;
+    Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
+        inner_hits_, shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
     std::unique_ptr<Rasteriser> rasteriser_;          ///< hybrid method only
     std::vector<CastStatistics> casts_, batch_casts_; ///< of completed batches; of the current one

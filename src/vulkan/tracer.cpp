@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "formulas/patch_tree.h"
+#include "prepare/bounce_lod.h"
 #include "relief/error.h"
 #include "vulkan/cast_buffers.h"
 #include "vulkan/cast_kernels.h"
@@ -29,8 +30,11 @@ using scalar::CounterData;
 
 constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(uint32_t);
 
-/// A ray of a later round needs room for all candidates that it offers.
-TracerConfig with_room_for_a_ray(TracerConfig config) {
+/// Bounces of a render may see coarser trees. A ray of a later round needs room for all candidates that it
+/// offers.
+TracerConfig complete_config(TracerConfig config, const PreparedScene& scene,
+                             const RenderSettings& settings) {
+    config.may_see_coarser |= make_bounce_lod(scene, settings).cell_angle > 0;
     config.pair_capacity = std::max(config.pair_capacity, scalar::kMostSlots);
     return config;
 }
@@ -49,14 +53,14 @@ struct Tracer::Implementation {
         : device(d),
           scene(s),
           device_scene(ds),
-          config(with_room_for_a_ray(c)),
+          config(complete_config(c, s, settings)),
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
           cache(d, settings.surface.cache_bytes.value_or(kDefaultCacheBytes), c.pool_restart_units),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
-          kernels(d, ds, settings, c, ds.stack_size() + directories.stack_size()) {
+          kernels(d, ds, settings, config, ds.stack_size() + directories.stack_size()) {
         device_scene.bind(bindings);
         directories.bind(bindings);
         cache.bind(bindings);

@@ -22,7 +22,7 @@ struct TracerConfig {
     uint32_t pool_restart_units = 1u << 31; ///< units of trees built, after which the pool discards all trees
     uint32_t fused_group_count = 0;    ///< persistent groups of the fused form; 0: enough to fill the device
     uint32_t fused_jobs_per_group = 0; ///< trees per group and launch; 0: as many as are safe
-    bool may_see_coarser = false;      ///< rays may have an LOD bias; those of a render have none
+    bool may_see_coarser = false;      ///< rays may have an LOD bias, beside the bounces of a render
 };
 
 /// Not thread safe; all calls are synchronous.

@@ -249,11 +249,11 @@ void PatchTreeCache::offer(TraceContext& context, CachedTree* tree) {
 }
 
 void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
+    given_up_.add(hash_key(tree->key));
     retired_.fetch_add(tree->byte_count);
     context.retired.push_back({tree, epoch_.fetch_add(1)});
 }
 
-void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
 void PatchTreeCache::note_rebuild(TraceContext& context, const CachedTree& tree) {
     if (!given_up_.may_contain(hash_key(tree.key))) return;
     context.counters.rebuilt += tree.key.tile != kDirectoryTile;
@@ -278,6 +278,7 @@ bool PatchTreeCache::grow() {
     return true;
 }
 
+void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
     // A little more than requested, so that the next builds find room without a search; and no endless
     // search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
@@ -310,7 +311,6 @@ void PatchTreeCache::free_retired(TraceContext& context) {
 void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
     const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
     for (const TraceContext::Retired& retired : context.retired) {
-    given_up_.add(hash_key(tree->key));
         if (!is_free(retired)) continue;
         retired_.fetch_sub(retired.tree->byte_count);
         free_tree(retired.tree);

@@ -90,8 +90,6 @@ struct StopRequest : std::exception {
     const char* what() const noexcept override { return "render cancelled"; }
 };
 
-class PatchTreeCache {
-  public:
 /// Bounds of trees, directories and table. The cap is doubled, up to `most_bytes` and half of the memory that
 /// is available, when a quarter of it has been built again since it was last set.
 struct CacheLimits {
@@ -99,6 +97,8 @@ struct CacheLimits {
     size_t most_bytes = 0;
 };
 
+class PatchTreeCache {
+  public:
     /// `build_tree` makes the trees.
     PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree);
     ~PatchTreeCache();

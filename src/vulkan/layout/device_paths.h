@@ -2,6 +2,7 @@
 // + p. Scalar block layout, members of 4 bytes.
 #ifndef RELIEF_DEVICE_PATHS_H
 #define RELIEF_DEVICE_PATHS_H
+#include "formulas/bounce_lod.h"
 #include "formulas/camera.h"
 #include "formulas/environment_data.h"
 
@@ -71,6 +72,7 @@ struct PathPush {
     uint has_background; ///< camera rays see `background` in place of the environment
     Vec3 background;
     EnvironmentData environment;
+    BounceLod bounce_lod;
 };
 
 #include "formulas/end.h"

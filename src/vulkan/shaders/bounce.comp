@@ -1,4 +1,4 @@
-// Samples the next ray of each path, or terminates it.
+// Samples the next ray of each path, up to where it sees a coarser surface, or terminates it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
@@ -27,7 +27,8 @@ bool continue_path(uint path_index, HitData hit) {
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
-    RayData next = {origin, 0.0, direction, make_infinity(), ray.lod_bias};
+    float near_end = find_coarse_distance(push.bounce_lod, origin, ray.lod_bias, drawn.pdf);
+    RayData next = {origin, 0.0, direction, near_end, ray.lod_bias};
     rays[path_index] = next;
     return true;
 }

@@ -7,6 +7,7 @@
 #include "formulas/warp.h"
 #include "formulas/picture_plane.h"
 #include "formulas/camera.h"
+#include "formulas/bounce_lod.h"
 #include "vulkan/shaders/ggx_table.glsl"
 #include "formulas/ggx_albedo.h"
 #include "formulas/bsdf.h"

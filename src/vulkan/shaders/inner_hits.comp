@@ -1,0 +1,29 @@
+// Far parts of bounce rays that met the coarse surface from within, as they began between it and the fine one:
+// these go on along the fine one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vulkan/shaders/kernel.glsl"
+#include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/surface_point.glsl"
+
+layout(scalar, push_constant) uniform Push { PathPush push; };
+
+bool is_inner(uint path_index, HitData hit) {
+    InstanceData instance = instances[hit.instance];
+    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
+    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    return dot(found.triangle.normal, rays[path_index].direction) > 0.0;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.count) return;
+    uint path_index = shadow_list[index];
+    HitData hit = hits[path_index];
+    uint count = is_hit(hit) && is_inner(path_index, hit) ? 1u : 0u;
+    uint place = atomicAdd(counters.path_count, count);
+    if (count == 0u) return;
+    rays[path_index].lod_bias = 0u;
+    next_path_list[place] = path_index;
+}

@@ -1,0 +1,39 @@
+// Levels that bounce rays see, as the settings choose them.
+#include <gtest/gtest.h>
+
+#include "relief/render.h"
+#include "support/bodies.h"
+
+namespace relief {
+
+namespace {
+
+/// Rough, so that rays bounce from it to it.
+Scene make_scene() {
+    const Displacement displacement =
+        test::make_displacement(test::make_random_map(64, 64, 0.15f, 5), DisplacementSpace::tangent);
+    Scene scene = test::make_body_scene(test::make_torus(6, 9), displacement);
+    scene.camera.from = {0, 0, 4}, scene.camera.to = {0, 0, 0};
+    scene.environment = Environment{};
+    return scene;
+}
+
+RenderResult render_body(BounceLevels bounce_levels, int level) {
+    RenderSettings settings;
+    settings.image.width = settings.image.height = 96, settings.image.spp = 2, settings.image.bounces = 2;
+    settings.surface.level = level, settings.surface.bounce_levels = bounce_levels;
+    return render(make_scene(), settings);
+}
+
+TEST(BounceLevelsSetting, are_those_of_the_camera_with_a_fixed_level_or_on_request) {
+    const RenderResult fixed = render_body(BounceLevels::automatic, 4);
+    EXPECT_TRUE(fixed.image.pixels == render_body(BounceLevels::camera, 4).image.pixels);
+    const RenderResult coarse = render_body(BounceLevels::automatic, kAutoLevel);
+    const RenderResult camera = render_body(BounceLevels::camera, kAutoLevel);
+    EXPECT_FALSE(coarse.image.pixels == camera.image.pixels);
+    EXPECT_GT(coarse.statistics.bottom_built, camera.statistics.bottom_built);
+}
+
+} // namespace
+
+} // namespace relief
