@@ -14,7 +14,7 @@ DECLARED = {
         none_of nth_element remove_if replace reverse shuffle sort stable_sort swap_ranges transform unique upper_bound
         ranges""",
     "array": "array",
-    "atomic": "atomic memory_order_relaxed memory_order_seq_cst",
+    "atomic": "atomic memory_order_acquire memory_order_relaxed memory_order_release memory_order_seq_cst",
     "bit": "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero endian has_single_bit popcount",
     "cctype": "isalnum isalpha isdigit isspace isxdigit tolower",
     "charconv": "from_chars from_chars_result to_chars",
