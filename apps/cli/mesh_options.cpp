@@ -9,6 +9,12 @@
 
 namespace relief::cli {
 
+MeshReaderSettings make_mesh_reader() {
+    MeshReaderSettings reader;
+    reader.program = "/proc/self/exe";
+    return reader;
+}
+
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given) {
     const auto add = [&](const char* name, const char* value, const char* help,
@@ -33,6 +39,7 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
                 help)
             ->group(group);
     };
+    options.reader = make_mesh_reader();
     add("--vdm", "MAP", "displacement map; may hold <UDIM>",
         [&options](const std::string& text) { options.displacement_map = text; });
     add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",

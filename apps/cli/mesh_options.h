@@ -9,8 +9,11 @@
 
 namespace relief::cli {
 
-/// Adds --vdm, --subdivision, --subdivision-level, --filter, --autobump and --no-dilate. Given options are
-/// appended to `given`; all arguments must outlive parsing.
+/// Third-party readers run in a child process, which is this program again.
+MeshReaderSettings make_mesh_reader();
+
+/// Adds --vdm, --subdivision, --subdivision-level, --filter, --autobump and --no-dilate, and sets the reader
+/// to that of make_mesh_reader(). Given options are appended to `given`; all arguments must outlive parsing.
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given);
 

@@ -21,6 +21,7 @@
 #include "edit_stream.h"
 #include "inputs.h"
 #include "interrupt.h"
+#include "mesh_options.h"
 #include "output.h"
 #include "pixel.h"
 #include "relief/error.h"
@@ -47,7 +48,7 @@ Scene load_input(const RenderOptions& options) {
         throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
                                        "a map goes with its mesh: relief render MESH --vdm MAP"});
     try {
-        return load_scene(options.input);
+        return load_scene(options.input, make_mesh_reader());
     } catch (const Error& error) {
         if (extension == ".json" || !error.hint().empty()) throw;
         throw Error(error.kind(), {error.message(), error.where(),
