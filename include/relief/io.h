@@ -23,7 +23,7 @@ struct MeshReaderSettings {
     std::filesystem::path program;
     uint64_t memory_bytes = 0;          ///< of the child; 0: half of what the machine has available
     uint64_t stack_bytes = 64ull << 20; ///< of the child's thread
-    double seconds = 60;                ///< of the clock; a second more for each MiB of the file
+    double seconds = 60;                ///< of the clock; in proportion for files above 64 MiB
     /// Returning true ends the child and throws Error{failed}. Called every few milliseconds by the thread
     /// that reads. May be empty.
     std::function<bool()> is_cancelled;

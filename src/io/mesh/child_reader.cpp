@@ -31,6 +31,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kLargeFile = 64 << 20; ///< bytes, from which on the limit of time grows with the file
 const char* const kOtherFormat = "the file is damaged or unusual: export it as glTF, OBJ or PLY";
 
 /// Memory without a name in the file system.
@@ -131,12 +132,13 @@ uint64_t get_memory_limit(const MeshReaderSettings& settings) {
 double get_seconds_limit(const std::filesystem::path& file, const MeshReaderSettings& settings) {
     std::error_code ignored;
     const auto bytes = std::filesystem::file_size(file, ignored);
-    return settings.seconds + (ignored ? 0 : double(bytes) / (1 << 20));
+    return settings.seconds * (ignored ? 1 : std::max(1.0, double(bytes) / kLargeFile));
 }
 
 /// Waits for the end of the child. Sleeps short at first: most files take milliseconds.
 int wait_for(Child& child, const std::filesystem::path& file, const MeshReaderSettings& settings) {
-    using namespace std::chrono_literals;
+    constexpr Clock::duration kShortest = std::chrono::microseconds(200),
+                              kLongest = std::chrono::milliseconds(5);
     const double limit_s = get_seconds_limit(file, settings);
     const Clock::time_point start = Clock::now();
     for (;;) {
@@ -145,7 +147,7 @@ int wait_for(Child& child, const std::filesystem::path& file, const MeshReaderSe
         const Clock::duration waited = Clock::now() - start;
         if (std::chrono::duration<double>(waited).count() > limit_s)
             fail(file, fmt::format("was not done after {:.3g} s", limit_s));
-        std::this_thread::sleep_for(std::clamp<Clock::duration>(waited / 32, 200us, 5ms));
+        std::this_thread::sleep_for(std::clamp(waited / 32, kShortest, kLongest));
     }
 }
 
