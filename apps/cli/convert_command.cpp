@@ -13,10 +13,10 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
-#include "mesh_options.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/io.h"

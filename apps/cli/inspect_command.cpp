@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/option_names.h"
 #include "common/report.h"
 #include "common/values.h"

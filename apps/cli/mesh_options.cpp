@@ -5,15 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/mesh_reader.h"
 #include "common/values.h"
 
 namespace relief::cli {
-
-MeshReaderSettings make_mesh_reader() {
-    MeshReaderSettings reader;
-    reader.program = "/proc/self/exe";
-    return reader;
-}
 
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given) {

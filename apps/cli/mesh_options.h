@@ -9,9 +9,6 @@
 
 namespace relief::cli {
 
-/// Third-party readers run in a child process, which is this program again.
-MeshReaderSettings make_mesh_reader();
-
 /// Adds --vdm, --subdivision, --subdivision-level, --filter, --autobump and --no-dilate, and sets the reader
 /// to that of make_mesh_reader(). Given options are appended to `given`; all arguments must outlive parsing.
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,

@@ -16,12 +16,12 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/report.h"
 #include "common/values.h"
 #include "edit_stream.h"
 #include "inputs.h"
 #include "interrupt.h"
-#include "mesh_options.h"
 #include "output.h"
 #include "pixel.h"
 #include "relief/error.h"

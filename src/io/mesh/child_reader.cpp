@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <system_error>
@@ -31,7 +32,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLargeFile = 64 << 20; ///< bytes, from which on the limit of time grows with the file
+constexpr uint64_t kMostBytes = INT64_MAX; ///< of a limit, as the child reads it
+constexpr double kLargeFile = 64 << 20;    ///< bytes, from which on the limit of time grows with the file
 const char* const kOtherFormat = "the file is damaged or unusual: export it as glTF, OBJ or PLY";
 
 /// Memory without a name in the file system.
@@ -126,7 +128,8 @@ void refuse_cancelled(const std::filesystem::path& file, const MeshReaderSetting
 
 /// Bytes that the reader may hold. Half: the mesh is there twice for a moment, in the child and here.
 uint64_t get_memory_limit(const MeshReaderSettings& settings) {
-    return settings.memory_bytes > 0 ? settings.memory_bytes : available_memory_bytes() / 2;
+    return std::min(settings.memory_bytes > 0 ? settings.memory_bytes : available_memory_bytes() / 2,
+                    kMostBytes);
 }
 
 double get_seconds_limit(const std::filesystem::path& file, const MeshReaderSettings& settings) {
@@ -186,7 +189,7 @@ Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions
                                             file.string(),
                                             std::to_string(options.uv_set),
                                             std::to_string(memory_limit),
-                                            std::to_string(settings.stack_bytes),
+                                            std::to_string(std::min(settings.stack_bytes, kMostBytes)),
                                             std::to_string(getpid())};
     Child child(settings.program, words, memory.descriptor());
     const int status = wait_for(child, file, settings);
