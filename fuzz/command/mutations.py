@@ -108,6 +108,23 @@ def change_json(text, random):
     return json.dumps(document).replace(json.dumps(DEEP), "[" * depth + "]" * depth).encode()
 
 
+def change_fbx(data, random):
+    """Of a text also the graph of its objects: connections among numbers that stand in the file already."""
+    start = data.find(b"Connections:")
+    if start < 0 or random.random() < 0.5:
+        return change_words(data, random)
+    lines = data[start:].split(b"\n")
+    numbers = [b"0", b"10", b"20", b"21", b"22"]
+    for _ in range(random.choice((1, 2, 4))):
+        line = b"\tC: \"OO\"," + random.choice(numbers) + b"," + random.choice(numbers)
+        at = random.randrange(1, len(lines) - 2)
+        if random.random() < 0.5:
+            lines[at] = line
+        else:
+            lines.insert(at, line)
+    return data[:start] + b"\n".join(lines)
+
+
 def change_glb(data, random):
     text, buffer = seeds.unpack_glb(data)
     if random.random() < 0.25:
@@ -146,12 +163,13 @@ def change_png(data, random):
 
 
 STRUCTURED = {".png": change_png, ".glb": change_glb, ".gltf": change_json, ".json": change_json, ".obj": change_words,
-              ".ply": change_words, ".fbx": change_words, ".hdr": change_words}
+              ".ply": change_words, ".fbx": change_fbx, ".hdr": change_words}
 
 
 def mutate(suffix, data, random):
     """A changed copy; most changes keep to the structure of the format."""
     change = STRUCTURED.get(suffix, change_bytes)
-    if change is change_words and b"\0" in data[:2000] or random.random() < 0.3:
+    is_binary = b"\0" in data[:2000] and suffix in (".fbx", ".ply", ".hdr")
+    if is_binary or random.random() < 0.3:
         change = change_bytes
     return change(data, random)
