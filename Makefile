@@ -5,6 +5,7 @@
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
+FUZZ_FILES ?= 2000
 RELIEF := build/release/bin/relief
 SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.cpp' '*.h')
 
@@ -16,7 +17,7 @@ help:
 	@echo 'make dev       optimised build with internal checks, all tests'
 	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
 	@echo 'make tsan      all tests under the thread sanitizer'
-	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers'
+	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers; then FUZZ_FILES (2000) mutated files'
 	@echo 'make coverage  line coverage of the tests: build/coverage/report.txt'
 	@echo 'make gpu-bundle  tests and measurements for a bare GPU machine: out/relief-gpu-bundle'
 	@echo 'make format    clang-format over all sources'
@@ -56,7 +57,7 @@ asan-slice: packages
 	$(call configure_and_build,asan-slice,core_tests)
 	ctest --preset asan-slice -j $(JOBS)
 
-# Three seconds of each fuzzer, without sanitizers.
+# Three seconds of each fuzzer, without sanitizers, and a minute of mutated files through the command.
 fuzz-slice: packages
 	$(call configure_and_build,release,fuzzers,-DRELIEF_FUZZ=ON)
 	ctest --preset release -R '^fuzz' -j $(JOBS)
@@ -81,6 +82,8 @@ tsan: packages
 fuzz: packages
 	$(call configure_and_build,fuzz,fuzzers)
 	tools/run_fuzzers.sh build/fuzz $(FUZZ_SECONDS)
+	$(call configure_and_build,release,relief)
+	fuzz/command/fuzz_command.py $(RELIEF) --count $(FUZZ_FILES) --keep build/fuzz/command
 
 coverage: packages
 	$(call configure_and_build,coverage)

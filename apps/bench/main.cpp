@@ -63,5 +63,6 @@ int parse_and_run(int argument_count, const char* const* arguments) {
 } // namespace relief::bench
 
 int main(int argument_count, char** arguments) {
+    if (const auto read = relief::run_mesh_reader(argument_count, arguments)) return *read;
     return relief::cli::run_guarded([&] { return relief::bench::parse_and_run(argument_count, arguments); });
 }

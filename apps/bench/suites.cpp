@@ -15,6 +15,7 @@
 #include "bench/paper2.h"
 #include "bench/paper3.h"
 #include "bench/tables.h"
+#include "common/mesh_reader.h"
 #ifdef RELIEF_EMBREE
 #include "bench/peers.h"
 #include "bench/peers_goals.h"
@@ -48,7 +49,7 @@ std::vector<std::string> check_scenes(const BenchOptions& o, const std::vector<s
 std::vector<Scene> load_meshes(const BenchOptions& o) {
     std::vector<Scene> scenes;
     for (const std::string& file : o.meshes) {
-        Scene scene = load_mesh_scene(file, {});
+        Scene scene = load_mesh_scene(file, {.reader = cli::make_mesh_reader()});
         scene.meshes.resize(1), scene.objects.resize(1);
         scene.meshes[0].name = std::filesystem::path(file).filename().string();
         scene.environment.reset();
@@ -129,7 +130,7 @@ SuiteResult run_peers_suite(const BenchOptions& o, const Report& report) {
     options.isa = settings.device.isa, options.threads = settings.device.threads;
     options.scenes = check_scenes(o, peers_scene_names());
     for (const std::string& file : o.scene_files) {
-        options.files.push_back(load_scene(file));
+        options.files.push_back(load_scene(file, cli::make_mesh_reader()));
         options.files.back().source = file;
     }
     if (!o.scene_files.empty()) options.scenes = o.scenes;

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
@@ -120,7 +121,7 @@ int convert_map_file(const ConvertOptions& options) {
     print_warnings(warnings);
     warnings.clear();
     std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
     const MapSamples samples = choose_samples(options, from);
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement converted =
@@ -132,8 +133,9 @@ int convert_map_file(const ConvertOptions& options) {
 }
 
 Scene load_surface(const ConvertOptions& options) {
-    if (get_kind(options.input) == FileKind::scene) return load_scene(options.input);
+    if (get_kind(options.input) == FileKind::scene) return load_scene(options.input, make_mesh_reader());
     MeshSceneOptions scene;
+    scene.reader = make_mesh_reader();
     scene.displacement_map = options.displacement_map;
     scene.map = options.from;
     scene.subdivision = options.subdivision;
@@ -152,7 +154,7 @@ int convert_surface(const ConvertOptions& options) {
             refuse((options.level ? std::string("--level") : options.from_given.front()) +
                        " goes with --vdm MAP",
                    options.input, "a plain mesh is written as it is");
-        write_mesh(load_mesh(options.input), options.output);
+        write_mesh(load_mesh(options.input, {.reader = make_mesh_reader()}), options.output);
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }

@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/option_names.h"
 #include "common/report.h"
 #include "common/values.h"
@@ -84,7 +85,7 @@ Inspection inspect_map_file(const InspectOptions& options) {
     const Displacement map = load_map(options.file, options.scene.map, warnings);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh);
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
     Inspection inspection = inspect_map(map, meaning, mesh_or_null);
@@ -107,7 +108,7 @@ Inspection inspect_map_file(const InspectOptions& options) {
 }
 
 Inspection inspect_plain_mesh(const InspectOptions& options) {
-    Mesh mesh = load_mesh(options.file);
+    Mesh mesh = load_mesh(options.file, {.reader = make_mesh_reader()});
     Inspection inspection = inspect_mesh(mesh);
     if (!options.picture.empty())
         write_check_picture(make_mesh_scene(std::move(mesh), nullptr), make_check_settings(),
@@ -159,7 +160,7 @@ Inspection inspect_file(const InspectOptions& options) {
     case FileKind::scene:
         break;
     }
-    return inspect_as_scene(load_scene(options.file), options);
+    return inspect_as_scene(load_scene(options.file, make_mesh_reader()), options);
 }
 
 /// JSON readers get an unreadable input as a finding.

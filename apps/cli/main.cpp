@@ -9,6 +9,7 @@
 #include "common/command_line.h"
 #include "common/option_hints.h"
 #include "relief/error.h"
+#include "relief/io.h"
 
 namespace relief::cli {
 
@@ -61,6 +62,8 @@ const Command& find_command(CLI::App& app, const std::vector<Verb>& verbs) {
 
 int main(int argument_count, char** arguments) {
     using namespace relief::cli;
+    // The command starts itself to read files that a third-party library parses.
+    if (const auto read = relief::run_mesh_reader(argument_count, arguments)) return *read;
     return run_guarded([&] {
         CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
         prepare_parsing(app);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/mesh_reader.h"
 #include "common/values.h"
 
 namespace relief::cli {
@@ -33,6 +34,7 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
                 help)
             ->group(group);
     };
+    options.reader = make_mesh_reader();
     add("--vdm", "MAP", "displacement map; may hold <UDIM>",
         [&options](const std::string& text) { options.displacement_map = text; });
     add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",

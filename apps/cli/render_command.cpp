@@ -17,6 +17,7 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/mesh_reader.h"
 #include "common/report.h"
 #include "common/values.h"
 #include "edit_stream.h"
@@ -48,7 +49,7 @@ Scene load_input(const RenderOptions& options) {
         throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
                                        "a map goes with its mesh: relief render MESH --vdm MAP"});
     try {
-        return load_scene(options.input);
+        return load_scene(options.input, make_mesh_reader());
     } catch (const Error& error) {
         if (extension == ".json" || !error.hint().empty()) throw;
         throw Error(error.kind(), {error.message(), error.where(),

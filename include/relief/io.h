@@ -3,6 +3,7 @@
 // relief_pictures beside the program, loaded when the first such image is opened.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -14,9 +15,28 @@
 
 namespace relief {
 
+/// Where meshes are read whose format a third-party library parses (FBX): in this process, or in a child
+/// process with limits, so that whatever the library does with a file ends in an Error.
+struct MeshReaderSettings {
+    /// Started for each file; a program whose main() calls run_mesh_reader() first: the command `relief`, or
+    /// "/proc/self/exe" for the running program itself. Empty: files are read in this process.
+    std::filesystem::path program;
+    uint64_t memory_bytes = 0;          ///< of the child; 0: half of what the machine has available
+    uint64_t stack_bytes = 64ull << 20; ///< of the child's thread
+    double seconds = 60;                ///< of the clock; in proportion for files above 64 MiB
+    /// Returning true ends the child and throws Error{failed}. Called every few milliseconds by the thread
+    /// that reads. May be empty.
+    std::function<bool()> is_cancelled;
+};
+
+/// For the first line of main() of a program that is named as MeshReaderSettings::program: does the work of
+/// the child process where the arguments ask for it, and returns its exit code. Else nothing.
+std::optional<int> run_mesh_reader(int argument_count, const char* const* arguments);
+
 /// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file. Throws
-/// Error{bad_input} with file, line and column, object and hint; for images as read_image.
-Scene load_scene(const std::filesystem::path& file);
+/// Error{bad_input} with file, line and column, object and hint; for meshes as load_mesh, for images as
+/// read_image.
+Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader = {});
 
 /// Convention of a displacement map. Unset values come from the preset, then from the file; docs/formats.md
 /// lists the names.
@@ -61,6 +81,7 @@ struct MeshSceneOptions {
     std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
     std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel]
     std::filesystem::path environment;      ///< empty: a soft sky and a sun
+    MeshReaderSettings reader;
 };
 
 /// A mesh with automatic camera (from above, front; the object fills about 85 % of the height of a square or
@@ -85,9 +106,11 @@ void refuse_foreign_file(const std::filesystem::path& file);
 
 struct MeshReadOptions {
     int uv_set = 0; ///< of glTF and FBX, from 0; OBJ and PLY have only set 0
+    MeshReaderSettings reader;
 };
 
-/// Reads a polygon mesh; quads and n-gons are kept. Throws Error{bad_input} with file, place and hint.
+/// Reads a polygon mesh; quads and n-gons are kept. Throws Error{bad_input} with file, place and hint, also
+/// where a child process was ended by a signal or reached a limit; Error{failed} where it cannot be started.
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options = {});
 
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws

@@ -11,7 +11,7 @@ from sources import INCLUDE, finish, list_code
 DECLARED = {
     "algorithm": """adjacent_find all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n find
         find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element next_permutation
-        none_of nth_element remove_if replace reverse shuffle sort stable_sort swap_ranges transform unique upper_bound
+        none_of nth_element remove_if replace replace_if reverse shuffle sort stable_sort swap_ranges transform unique upper_bound
         ranges""",
     "array": "array",
     "atomic": "atomic memory_order_acquire memory_order_relaxed memory_order_release memory_order_seq_cst",
@@ -59,10 +59,10 @@ DECLARED = {
     "streambuf": "streambuf",
     "string": "getline stod stoi stoul string to_string u8string wstring",
     "string_view": "string_view",
-    "system_error": "errc error_code system_error",
+    "system_error": "errc error_code generic_category system_error",
     "thread": "jthread this_thread thread",
     "tuple": "get tie tuple tuple_element_t",
-    "type_traits": "conditional_t decay_t invoke_result_t is_arithmetic_v is_same_v remove_reference_t type_identity_t",
+    "type_traits": "conditional_t decay_t invoke_result_t is_arithmetic_v is_same_v is_trivially_copyable_v remove_reference_t type_identity_t",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_set",
     "utility": "as_const declval exchange forward get in_place index_sequence make_index_sequence make_pair move pair swap",

@@ -1,5 +1,8 @@
 #include "io/mesh/mesh_assimp.h"
 
+#include <exception>
+#include <new>
+
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -99,11 +102,23 @@ class AssimpBuilder {
     bool has_normals_ = true;
 };
 
+/// The importer catches every exception and keeps it.
+void rethrow_out_of_memory(const std::exception_ptr& kept) {
+    if (!kept) return;
+    try {
+        std::rethrow_exception(kept);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (...) { // has become the importer's error text
+    }
+}
+
 } // namespace
 
 Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+    if (!scene) rethrow_out_of_memory(importer.GetException());
     if (!scene || !scene->mRootNode)
         throw Error(ErrorKind::bad_input, {fmt::format("cannot be read: {}", importer.GetErrorString()),
                                            file.string(), "the file is damaged: export it again"});

@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// All meshes of the file as one. Throws bad_input with file and reason.
+/// All meshes of the file as one. Throws bad_input with file and reason, std::bad_alloc.
 Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options);
 
 } // namespace relief

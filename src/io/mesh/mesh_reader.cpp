@@ -6,6 +6,7 @@
 
 #include "base/suggest.h"
 #include "io/file_system.h"
+#include "io/mesh/child_reader.h"
 #include "io/mesh/mesh_assimp.h"
 #include "io/mesh/mesh_gltf.h"
 #include "io/mesh/mesh_obj.h"
@@ -21,7 +22,9 @@ constexpr std::array<std::string_view, 5> kMeshExtensions = {".obj", ".ply", ".g
 
 Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     const std::string extension = get_extension(file), name = file.string();
-    if (extension == ".fbx") return read_assimp_mesh(file, options);
+    if (extension == ".fbx")
+        return options.reader.program.empty() ? read_assimp_mesh(file, options)
+                                              : read_mesh_in_child(file, options);
     if (extension == ".gltf" || extension == ".glb") {
         const auto read_beside = [&file](const std::string& path) {
             const std::filesystem::path other = file.parent_path() / path;

@@ -101,7 +101,7 @@ Mesh make_map_plane() {
 } // namespace
 
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
-    Scene scene = make_clay_scene(load_mesh(mesh));
+    Scene scene = make_clay_scene(load_mesh(mesh, {.reader = options.reader}));
     Subdivision& subdivision = scene.meshes.front().subdivision;
     if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;

@@ -48,12 +48,14 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
     return index;
 }
 
-Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets) {
+Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets,
+               const MeshReaderSettings& reader) {
     node.check_keys(scene_keys::kMesh);
     const JsonNode file = node.get("file");
     const std::filesystem::path path = assets.resolve(file.as_string());
     constexpr int kLastUvSet = 255;
     MeshReadOptions options;
+    options.reader = reader;
     if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
     Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
     mesh.name = name;
@@ -113,7 +115,8 @@ void read_objects(const JsonNode& section, const ObjectNames& names, const Asset
 }
 
 /// Content of files that the scene does not hold goes into `hash`.
-void read_root(const JsonNode& root, Scene& scene, AssetCache& assets, ContentHash& hash) {
+void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& scene, AssetCache& assets,
+               ContentHash& hash) {
     root.check_keys(scene_keys::kRoot);
     if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
         version->fail("only version 1 is known", "use a newer version of the program");
@@ -127,8 +130,9 @@ void read_root(const JsonNode& root, Scene& scene, AssetCache& assets, ContentHa
     names.displacements =
         read_section(root, "displacements", scene.displacements,
                      [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
-    names.meshes = read_section(root, "meshes", scene.meshes,
-                                [&](const auto& name, const auto& n) { return read_mesh(n, name, assets); });
+    names.meshes = read_section(root, "meshes", scene.meshes, [&](const auto& name, const auto& n) {
+        return read_mesh(n, name, assets, reader);
+    });
     if (const auto node = root.find("objects")) read_objects(*node, names, assets, scene, hash);
     if (const auto node = root.find("lights"))
         for (const JsonNode& element : node->elements()) scene.lights.push_back(read_light(element));
@@ -146,13 +150,14 @@ uint64_t compute_hash(const Json& document, const Scene& scene, ContentHash hash
 
 } // namespace
 
-Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                  const MeshReaderSettings& reader) {
     const Json document = parse_json(text, name);
     Scene scene;
     scene.source = name;
     AssetCache assets(folder);
     ContentHash hash;
-    read_root(JsonNode(document, "", name), scene, assets, hash);
+    read_root(JsonNode(document, "", name), reader, scene, assets, hash);
     scene.warnings = std::move(assets.warnings());
     try {
         validate_scene(scene);
@@ -163,9 +168,9 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& folder, co
     return scene;
 }
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {
     refuse_foreign_file(file);
-    return parse_scene(read_file_bytes(file), file.parent_path(), file.string());
+    return parse_scene(read_file_bytes(file), file.parent_path(), file.string(), reader);
 }
 
 } // namespace relief

@@ -1,0 +1,26 @@
+// Reads meshes by third-party libraries in a child process: a fault of theirs ends the child, not the
+// program.
+#pragma once
+
+#include <filesystem>
+
+#include "relief/io.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Starts `options.reader.program` for this file, waits for it and takes the mesh over, as load_mesh would
+/// read it in this process, without name and source. The child runs no code of this process: other threads
+/// may hold locks. Throws the Error of the child's load_mesh; Error{bad_input} where the child was ended by a
+/// signal, reached a limit or left no mesh; Error{failed} where it cannot be started or was cancelled. For
+/// any thread; the child ends with the thread that waits for it.
+Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions& options);
+
+/// The descriptor by which the child gets the shared memory.
+inline constexpr int kSharedMemory = 3;
+
+/// The first word after the child's name; file, uv set, bytes of memory, bytes of stack and the parent's
+/// process id follow.
+inline constexpr const char* kReadMeshWord = "--read-mesh";
+
+} // namespace relief
