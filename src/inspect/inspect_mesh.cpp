@@ -7,6 +7,7 @@
 #include "analysis/mesh_statistics.h"
 #include "math/box.h"
 #include "relief/inspect.h"
+#include "scene/faces_without_uvs.h"
 
 namespace relief {
 
@@ -205,6 +206,11 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
             add(result.findings, Severity::warning, "W-NOUV",
                 "no uvs: the mesh cannot be displaced by a map; export it with uvs");
     } else {
+        if (const FacesWithoutUvs missing = find_faces_without_uvs(mesh); missing.count > 0)
+            add(result.findings, Severity::warning, "W-NOUV",
+                fmt::format("{} of {} faces have no uvs and are not displaced, the first is face {}: unwrap "
+                            "them too, or export them with uvs",
+                            missing.count, mesh.face_sizes.size(), missing.first));
         const MeshUvs uvs = measure_uvs(mesh);
         describe_uvs(uvs, displacement, result);
         find_uv_mistakes(uvs, displacement, result.findings);
