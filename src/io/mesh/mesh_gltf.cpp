@@ -1,5 +1,6 @@
 #include "io/mesh/mesh_gltf.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -169,8 +170,16 @@ class GltfBuilder {
             for (auto child = indices.rbegin(); child != indices.rend(); ++child)
                 open.push_back({&GltfFile::resolve(*child, nodes_, "node"), world_from_node});
         }
+        if (file_.list("scenes").empty()) check_all_seen(is_seen);
         if (nodes_.empty()) // a library of meshes
             for (const JsonNode& mesh : meshes_) instances_.push_back({&mesh, {}});
+    }
+
+    /// A node below none of the roots has only itself above it.
+    void check_all_seen(const std::vector<bool>& is_seen) const {
+        const auto unseen = std::find(is_seen.begin(), is_seen.end(), false);
+        if (unseen != is_seen.end())
+            nodes_[size_t(unseen - is_seen.begin())].fail("is a descendant of itself", kDamagedHint);
     }
 
     void read_parts(const JsonNode& mesh) {
