@@ -13,6 +13,7 @@
 #include "api/picture_report.h"
 #include "base/timer.h"
 #include "film/film.h"
+#include "inspect/facts.h"
 #include "prepare/prepared_scene.h"
 #include "prepare/tessellate.h"
 #include "prepare/validate_settings.h"
@@ -49,9 +50,9 @@ void describe_maps(const Scene& scene, const std::set<Pair>& pairs, Inspection& 
         const Mesh* mesh = is_used ? &scene.meshes.at(pair->second) : nullptr;
         const Inspection inspection = inspect_map(map, MapMeaning::declared, mesh);
         for (const Fact& fact : inspection.facts)
-            result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value});
+            result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value, fact.numbers});
         if (std::string frame = describe_frame(map, mesh); !frame.empty())
-            result.facts.push_back({fmt::format("map.{}.frame", map.name), std::move(frame)});
+            result.facts.push_back({fmt::format("map.{}.frame", map.name), std::move(frame), {}});
         for (const Finding& finding : inspection.findings)
             result.findings.push_back({finding.severity, finding.code,
                                        fmt::format("displacement '{}': {}", map.name, finding.text)});
@@ -72,7 +73,8 @@ void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection
     for (const auto& [map, mesh] : pairs) {
         if (displaced.insert(mesh).second)
             result.facts.push_back({fmt::format("mesh.{}.base", scene.meshes.at(mesh).name),
-                                    describe_base(scene.meshes.at(mesh))});
+                                    describe_base(scene.meshes.at(mesh)),
+                                    {}});
         add_mesh_findings(scene.meshes.at(mesh), &scene.displacements.at(map), result);
     }
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
@@ -117,8 +119,8 @@ class TrialRender {
 
 /// What a render would take: groups of rows are rendered for about a second, and the rest is taken to be like
 /// the last of them, whose trees are mostly made.
-std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
-                          const RenderSettings& settings) {
+Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
+                   const RenderSettings& settings) {
     constexpr double kBudget_s = 1;
     const Timer timer;
     TrialRender trial(prepared, settings);
@@ -131,11 +133,16 @@ std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, 
     }
     first_s += last_s * (trial.group_count() - done);
     const double next_s = trial.time_group(0) * trial.group_count();
-    return fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
-                       "{}x{} on the CPU; measured on {} of {} parts of the picture",
-                       ready_s, first_s, ready_s + first_s + next_s * (settings.image.spp - 1),
-                       settings.image.spp, settings.image.width, settings.image.height, done,
-                       trial.group_count());
+    const double all_s = ready_s + first_s + next_s * (settings.image.spp - 1);
+    return {"time",
+            fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
+                        "{}x{} on the CPU; measured on {} of {} parts of the picture",
+                        ready_s, first_s, all_s, settings.image.spp, settings.image.width,
+                        settings.image.height, done, trial.group_count()),
+            {{"", all_s, "s"},
+             {"ready", ready_s, "s"},
+             {"first_sample", first_s, "s"},
+             {"samples", double(settings.image.spp), "count"}}};
 }
 
 void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
@@ -157,19 +164,20 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     RenderSettings on_cpu = settings;
     on_cpu.device.engine = EngineKind::cpu;
     make_engine(prepared, on_cpu)->add_statistics(statistics);
-    const auto add = [&](const char* name, std::string value) {
-        result.facts.push_back({name, std::move(value)});
+    const auto add_bytes = [&](const char* name, uint64_t bytes, const char* remark) {
+        result.facts.push_back(
+            {name, fmt::format("{} bytes{}", bytes, remark), {{"", double(bytes), "bytes"}}});
     };
-    add("patches", fmt::format("{}", patches));
-    add("triangles", fmt::format("{}", triangles));
-    add("finest_level", fmt::format("{}", max_level));
-    add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
-    add("structures", fmt::format("{} bytes", statistics.structures_bytes));
+    result.facts.push_back(make_count("patches", patches));
+    result.facts.push_back(make_count("triangles", triangles));
+    result.facts.push_back(
+        {"finest_level", fmt::format("{}", max_level), {{"", double(max_level), "level"}}});
+    add_bytes("geometry", statistics.geometry_bytes, "");
+    add_bytes("structures", statistics.structures_bytes, "");
     count_scene(*prepared, statistics);
-    add("map_texels", fmt::format("{} bytes with their bounds and copies", statistics.displacement_bytes));
-    add("tessellated",
-        fmt::format("{} bytes at the levels of this view", estimate_tessellation(*prepared).peak_bytes));
-    add("time", estimate_time(prepared, prepare_s, settings));
+    add_bytes("map_texels", statistics.displacement_bytes, " with their bounds and copies");
+    add_bytes("tessellated", estimate_tessellation(*prepared).peak_bytes, " at the levels of this view");
+    result.facts.push_back(estimate_time(prepared, prepare_s, settings));
     for (size_t k = scene.warnings.size(); k < prepared->warnings.size(); ++k)
         result.findings.push_back({Severity::warning, "W-SCENE", prepared->warnings[k]});
 }
@@ -188,10 +196,15 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
     size_t displaced = 0;
     for (const Object& object : scene.objects) displaced += object.displacement != kNoIndex;
     result.facts = {
-        {"meshes", fmt::format("{}", scene.meshes.size())},
-        {"objects", fmt::format("{}, {} displaced", scene.objects.size(), displaced)},
-        {"maps", fmt::format("{}", scene.displacements.size())},
-        {"lights", fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : "")}};
+        make_count("meshes", scene.meshes.size()),
+        {"objects",
+         fmt::format("{}, {} displaced", scene.objects.size(), displaced),
+         {{"", double(scene.objects.size()), "count"}, {"displaced", double(displaced), "count"}}},
+        make_count("maps", scene.displacements.size()),
+        {"lights",
+         fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : ""),
+         {{"", double(scene.lights.size()), "count"},
+          {"environments", scene.environment ? 1.0 : 0.0, "count"}}}};
     for (const std::string& warning : scene.warnings)
         result.findings.push_back({Severity::warning, "W-READ", warning});
     try {
