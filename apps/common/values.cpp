@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cstring>
 
 #include "relief/render.h"
 
@@ -47,8 +46,8 @@ namespace {
 /// A size that may have been meant: of two numbers with another separator, or one number as a width at 16:9.
 std::string suggest_size(const std::string& text, int64_t most) {
     std::string changed = text;
-    std::replace_if(
-        changed.begin(), changed.end(), [](char c) { return c != 0 && std::strchr("X*,:/ ", c); }, 'x');
+    for (char& c : changed)
+        if (std::string_view("X*,:/ ").find(c) != std::string_view::npos) c = 'x';
     if (changed.find('x') == std::string::npos) changed += "x1";
     try {
         const std::vector<int64_t> size = parse_integers("", changed, 'x', 2, {1, most});

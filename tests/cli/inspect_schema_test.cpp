@@ -146,7 +146,7 @@ TEST_F(InspectSchema, describes_a_scene) {
     EXPECT_GT(scene["values"]["time"]["value"], scene["values"]["time.ready"]["value"]);
     for (const char* name : {"geometry", "structures", "map_texels", "tessellated"}) {
         const std::string text = scene["facts"][name];
-        EXPECT_EQ(scene["values"][name]["value"], std::stoll(text)) << name;
+        EXPECT_EQ(scene["values"][name]["value"], std::stoul(text)) << name;
         EXPECT_EQ(scene["values"][name]["unit"], "bytes");
     }
     EXPECT_TRUE(scene["values"].contains("map.bump.size.width"));
