@@ -32,6 +32,7 @@ class AssimpBuilder {
         if (uv_set_ > 0 && with_uv_ == 0)
             fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
         add_node(*scene_.mRootNode, aiMatrix4x4());
+        if (mesh_.uvs.empty()) mesh_.uv_indices.clear(); // no node has a part with uvs
         return std::move(mesh_);
     }
 
