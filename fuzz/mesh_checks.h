@@ -56,13 +56,30 @@ inline void check_indices(const std::vector<uint32_t>& indices, size_t corners, 
     for (const uint32_t index : indices) require(index < count);
 }
 
+/// A face has a uv at each of its corners, or at none; some face has them, or there are no indices.
+inline void check_uv_indices(const Mesh& mesh, size_t corners) {
+    if (mesh.uv_indices.empty()) return;
+    require(mesh.uv_indices.size() == corners);
+    size_t first = 0, faces_with_uvs = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        const bool has_uvs = mesh.uv_indices[first] != kNoIndex;
+        faces_with_uvs += has_uvs;
+        for (size_t corner = first; corner < first + size; ++corner) {
+            const uint32_t index = mesh.uv_indices[corner];
+            require(has_uvs ? index < mesh.uvs.size() : index == kNoIndex);
+        }
+        first += size;
+    }
+    require(faces_with_uvs > 0 || corners == 0);
+}
+
 inline void check_mesh(const Mesh& mesh) {
     const size_t corners =
         std::accumulate(mesh.face_sizes.begin(), mesh.face_sizes.end(), size_t(0),
                         [](size_t sum, uint32_t size) { return require(size >= 3), sum + size; });
     require(mesh.position_indices.size() == corners);
     check_indices(mesh.position_indices, corners, mesh.positions.size());
-    check_indices(mesh.uv_indices, corners, mesh.uvs.size());
+    check_uv_indices(mesh, corners);
     check_indices(mesh.normal_indices, corners, mesh.normals.size());
     require(mesh.tangents.empty() || mesh.tangents.size() == corners);
     for (const Crease& crease : mesh.creases) {

@@ -49,10 +49,7 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
     add("--size", "WxH",
         "pixels; default 1280x720 for paper1, peers, cycles and edits, 320x180 for paper2, 640x360 for "
         "paper3",
-        [&o](const std::string& text) {
-            const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
-            o.size = {int(size[0]), int(size[1])};
-        });
+        [&o](const std::string& text) { o.size = parse_size("--size", text, kMaxPictureSize); });
     add("--level", "auto|N", "paper1: from the size on screen (default), or 2^N cells a side",
         [&o](const std::string& text) { o.level = parse_level(text); });
     add("--levels", "LIST", "peers: levels to measure, of auto and 0 to 12; default 3,4,5,6,auto",

@@ -1,5 +1,6 @@
 // inspect: properties, cost and problems of a scene, mesh or map.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -57,7 +58,10 @@ std::string get_severity_name(Severity severity) {
 
 /// Appends facts and findings of a mesh to those of its map.
 void append(Inspection mesh, Inspection& map) {
-    for (Fact& fact : mesh.facts) map.facts.push_back({"mesh." + fact.name, std::move(fact.value)});
+    for (Fact& fact : mesh.facts) {
+        fact.name = "mesh." + fact.name;
+        map.facts.push_back(std::move(fact));
+    }
     for (Finding& finding : mesh.findings) {
         finding.text = "mesh: " + finding.text;
         map.findings.push_back(std::move(finding));
@@ -184,9 +188,23 @@ void print_inspection(const Inspection& inspection) {
                    name_options(finding.text));
 }
 
+/// Whole numbers without a fraction; nothing where a number is not finite, which JSON cannot say.
+Value make_number(double number) {
+    constexpr double kMostExact = 9007199254740992; // 2^53
+    if (!std::isfinite(number)) return {};
+    if (number == std::floor(number) && std::fabs(number) <= kMostExact) return int64_t(number);
+    return number;
+}
+
 void print_inspection_json(const Inspection& inspection, const std::string& file) {
-    Value json = {{"file", file}, {"facts", Value::record()}, {"findings", Value::list()}};
-    for (const Fact& fact : inspection.facts) json["facts"][fact.name] = fact.value;
+    Value json = {
+        {"file", file}, {"facts", Value::record()}, {"values", Value::record()}, {"findings", Value::list()}};
+    for (const Fact& fact : inspection.facts) {
+        json["facts"][fact.name] = fact.value;
+        for (const FactNumber& number : fact.numbers)
+            json["values"][number.part.empty() ? fact.name : fact.name + "." + number.part] = {
+                {"value", make_number(number.value)}, {"unit", number.unit}};
+    }
     for (const Finding& finding : inspection.findings)
         json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
                                     {"code", finding.code},

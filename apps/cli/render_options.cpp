@@ -35,8 +35,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "-o", "FILE", "picture: .exr (layers), .hdr or .png; default: the input's name as .exr",
         [&o](const std::string& text) { o.output = text; });
     add(verb, "--size", "WxH", "pixels; default 1280x720", [&o](const std::string& text) {
-        const std::vector<int64_t> size = parse_integers("--size", text, 'x', 2, {1, kMaxPictureSize});
-        o.given.width = int(size[0]), o.given.height = int(size[1]);
+        const auto [width, height] = parse_size("--size", text, kMaxPictureSize);
+        o.given.width = width, o.given.height = height;
     });
     add(verb, "--spp", "N", "samples a pixel; default 64",
         [&o](const std::string& text) { o.given.spp = int(parse_integer("--spp", text, 1, kMaxSamples)); });

@@ -1,5 +1,6 @@
 #include "common/values.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 
@@ -38,6 +39,36 @@ std::vector<int64_t> parse_integers(const std::string& option, const std::string
     for (const std::string& part : parts)
         values.push_back(parse_integer(option, part, range.first, range.second));
     return values;
+}
+
+namespace {
+
+/// A size that may have been meant: of two numbers with another separator, or one number as a width at 16:9.
+std::string suggest_size(const std::string& text, int64_t most) {
+    std::string changed = text;
+    for (char& c : changed)
+        if (std::string_view("X*,:/ ").find(c) != std::string_view::npos) c = 'x';
+    if (changed.find('x') == std::string::npos) changed += "x1";
+    try {
+        const std::vector<int64_t> size = parse_integers("", changed, 'x', 2, {1, most});
+        if (changed.size() == text.size()) return changed;
+        return fmt::format("{}x{}", size[0], std::max<int64_t>(1, size[0] * 9 / 16));
+    } catch (const Error&) {
+        return "1280x720";
+    }
+}
+
+} // namespace
+
+std::pair<int, int> parse_size(const std::string& option, const std::string& text, int64_t most) {
+    try {
+        const std::vector<int64_t> size = parse_integers(option, text, 'x', 2, {1, most});
+        return {int(size[0]), int(size[1])};
+    } catch (const Error&) {
+        throw Error(ErrorKind::usage,
+                    {fmt::format("'{}' is not WIDTHxHEIGHT, two integers from 1 to {}", text, most), option,
+                     fmt::format("{} {}", option, suggest_size(text, most))});
+    }
 }
 
 int parse_level(const std::string& text) {

@@ -25,6 +25,9 @@ int64_t parse_integer(const std::string& option, const std::string& text, int64_
 /// Finite number in [low, high].
 double parse_number(const std::string& option, const std::string& text, double low, double high);
 
+/// "1280x720": width and height in [1, most]; the hint of the usage error shows what may have been meant.
+std::pair<int, int> parse_size(const std::string& option, const std::string& text, int64_t most);
+
 /// Exactly `count` integers in [low, high], separated by `separator`.
 std::vector<int64_t> parse_integers(const std::string& option, const std::string& text, char separator,
                                     size_t count, std::pair<int64_t, int64_t> range);

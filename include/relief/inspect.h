@@ -20,9 +20,17 @@ struct Finding {
     std::string text; ///< message, with the remedy
 };
 
+/// A number that the text of a fact is made of.
+struct FactNumber {
+    std::string part; ///< stable key of one of several, e.g. "mirrored"; empty: what the fact is named after
+    double value = 0; ///< may be NaN or infinite where texels are
+    std::string unit; ///< one of those that docs/inspect.schema.json lists
+};
+
 struct Fact {
-    std::string name;  ///< stable key, e.g. "patches"
-    std::string value; ///< formatted, with its unit
+    std::string name;                     ///< stable key, e.g. "patches"
+    std::string value;                    ///< formatted, with its unit
+    std::vector<FactNumber> numbers = {}; ///< empty where the fact is words only
 };
 
 struct Inspection {

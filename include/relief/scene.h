@@ -59,7 +59,7 @@ struct Mesh {
     std::vector<Vec3f> normals;       ///< may be empty; used by undisplaced faces and by FrameKind::file
     std::vector<uint32_t> face_sizes; ///< corners of each face, >= 3
     std::vector<uint32_t> position_indices; ///< one per corner, face after face, counter-clockwise
-    std::vector<uint32_t> uv_indices;       ///< one a corner, or empty
+    std::vector<uint32_t> uv_indices;       ///< one a corner, or empty; kNoIndex: its face has no uvs
     std::vector<uint32_t> normal_indices;   ///< one a corner, or empty
     std::vector<std::array<float, 4>>
         tangents;                ///< one per corner: unit x, y, z, and the sign of the bitangent; or empty

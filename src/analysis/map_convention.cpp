@@ -12,6 +12,7 @@
 #include "analysis/map_on_mesh.h"
 #include "analysis/map_on_plane.h"
 #include "relief/error.h"
+#include "scene/faces_without_uvs.h"
 #include "surface/map/displacement_map.h"
 
 namespace relief {
@@ -316,6 +317,10 @@ void guess_on_mesh(const Displacement& map, const MapStatistics& statistics, con
 } // namespace
 
 MapConvention guess_convention(const Displacement& map, const MapStatistics& statistics, const Mesh* mesh) {
+    if (mesh && find_faces_without_uvs(*mesh).count > 0) {
+        const Mesh kept = drop_faces_without_uvs(*mesh);
+        return guess_convention(map, statistics, &kept);
+    }
     MapConvention result;
     result.space.reason = "not to be seen without a mesh that has seams or bends: give the mesh as well";
     if (statistics.channel_count < 3 || statistics.is_gray || statistics.texel_count == statistics.bad_count)

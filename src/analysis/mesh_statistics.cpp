@@ -18,6 +18,21 @@ size_t count_out_of_range(const std::vector<uint32_t>& indices, size_t size) {
         std::count_if(indices.begin(), indices.end(), [size](uint32_t index) { return index >= size; }));
 }
 
+/// Uv indices that point nowhere; those of a face without uvs do not count where other faces have them.
+size_t count_bad_uv_indices(const Mesh& mesh) {
+    size_t bad = 0, first = 0, faces_with_uvs = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        if (first + size > mesh.uv_indices.size()) break;
+        const auto begin = mesh.uv_indices.begin() + ptrdiff_t(first), end = begin + ptrdiff_t(size);
+        if (!std::all_of(begin, end, [](uint32_t index) { return index == kNoIndex; })) {
+            ++faces_with_uvs;
+            bad += count_out_of_range({begin, end}, mesh.uvs.size());
+        }
+        first += size;
+    }
+    return faces_with_uvs > 0 ? bad : mesh.uv_indices.size();
+}
+
 /// One side of an edge: its two points, the smaller first.
 struct HalfEdge {
     uint64_t key;
@@ -118,7 +133,7 @@ MeshFaults find_mesh_faults(const Mesh& mesh) {
         has_bad_count(mesh.normal_indices) ||
         std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](uint32_t size) { return size < 3; });
     faults.bad_indices = count_out_of_range(mesh.position_indices, mesh.positions.size()) +
-                         count_out_of_range(mesh.uv_indices, mesh.uvs.size()) +
+                         count_bad_uv_indices(mesh) +
                          count_out_of_range(mesh.normal_indices, mesh.normals.size());
     const auto position = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
     if (position != mesh.positions.end()) faults.bad_position = size_t(position - mesh.positions.begin());

@@ -11,6 +11,7 @@
 #include "analysis/mesh_points.h"
 #include "analysis/mesh_statistics.h"
 #include "math/vec.h"
+#include "scene/faces_without_uvs.h"
 
 namespace relief {
 
@@ -188,6 +189,7 @@ FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
 } // namespace
 
 MeshUvs measure_uvs(const Mesh& mesh) {
+    if (find_faces_without_uvs(mesh).count > 0) return measure_uvs(drop_faces_without_uvs(mesh));
     MeshUvs result;
     result.low = result.high = mesh.uvs[mesh.uv_indices.front()];
     std::vector<double> areas;

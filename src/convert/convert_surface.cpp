@@ -145,7 +145,8 @@ void add_plain(const Mesh& source, const Object& object, Mesh& mesh) {
         for (uint32_t k = 0; k < size; ++k) {
             const size_t corner = begin + (is_turned ? size - 1 - k : k);
             mesh.position_indices.push_back(first + source.position_indices[corner]);
-            mesh.uv_indices.push_back(first_uv + (has_uvs ? source.uv_indices[corner] : 0));
+            const uint32_t uv = has_uvs ? source.uv_indices[corner] : 0;
+            mesh.uv_indices.push_back(uv == kNoIndex ? kNoIndex : first_uv + uv);
         }
         begin += size;
     }

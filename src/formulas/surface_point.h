@@ -51,13 +51,13 @@ FN Float bound_position_error(Float corner, Float row, Float translation, Float 
     return Float(units) * (row * corner + translation + position);
 }
 
-/// uv in a displaced patch; corners in order.
+/// uv in a displaced patch, or a quad cut from one; corners in order.
 FN Vec2 blend_patch_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
     return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) +
            (c3 * (Float(1.0f) - at.x) + c2 * at.x) * at.y;
 }
 
-/// uv in a plain polygon: linear on each of its two triangles, as their positions are.
+/// uv in any other polygon: linear on each of its two triangles, as their positions are.
 FN Vec2 blend_polygon_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
     Vec2 lower = c0 * (Float(1.0f) - at.x) + c1 * (at.x - at.y) + c2 * at.y;
     Vec2 upper = c0 * (Float(1.0f) - at.y) + c2 * at.x + c3 * (at.y - at.x);

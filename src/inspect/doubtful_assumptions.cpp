@@ -115,6 +115,36 @@ void add_range(const Displacement& map, const Mesh& mesh, std::vector<Finding>& 
                  mesh.name)});
 }
 
+/// What one pass over the corners of a sound mesh tells; overlaps of uvs take longer than reading the mesh.
+void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
+    if (mesh.uv_indices.empty()) return;
+    size_t triangles = 0, mirrored = 0, first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        double area = 0;
+        for (uint32_t k = 0; k < size && mesh.uv_indices[first] != kNoIndex; ++k) {
+            const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
+            const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1 == size ? 0 : k + 1)]];
+            area += double(a.x) * b.y - double(a.y) * b.x;
+        }
+        triangles += size == 3, mirrored += area < 0;
+        first += size;
+    }
+    if (triangles > mesh.face_sizes.size() / 2)
+        findings.push_back({Severity::warning, "W-TRI",
+                            fmt::format("{} of {} faces of mesh '{}' are triangles: probably a triangulated "
+                                        "export; export the quads that the map was baked on",
+                                        triangles, mesh.face_sizes.size(), mesh.name)});
+    const bool is_tangent =
+        map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent && map.assumed.space;
+    if (is_tangent && mirrored > 0)
+        findings.push_back(
+            {Severity::warning, "W-MIRROR",
+             fmt::format("tangent space is assumed, and the uvs of {} of {} faces of mesh '{}' "
+                         "are mirrored: the map is mirrored there; write displacement.space = "
+                         "tangent if it was baked so",
+                         mirrored, mesh.face_sizes.size(), mesh.name)});
+}
+
 std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     std::vector<Finding> findings;
     const AssumedConvention& assumed = map.assumed;
@@ -123,6 +153,7 @@ std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     });
     if (map.tiles.empty() || !has_texels) return findings;
     add_range(map, mesh, findings);
+    add_mesh_doubts(map, mesh, findings);
     if (!assumed.space && !assumed.axes && !assumed.midlevel) return findings;
     const Displacement thin = thin_out(map);
     std::optional<Vec3f> midlevel;

@@ -7,6 +7,7 @@
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
 #include "analysis/mesh_statistics.h"
+#include "inspect/facts.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
@@ -31,6 +32,20 @@ const char* get_type_name(SampleType type) {
         break;
     }
     return "32-bit float";
+}
+
+int get_bits(SampleType type) {
+    switch (type) {
+    case SampleType::uint8:
+        return 8;
+    case SampleType::uint16:
+    case SampleType::float16:
+        return 16;
+    case SampleType::uint32:
+    case SampleType::float32:
+        break;
+    }
+    return 32;
 }
 
 const char* get_space_name(DisplacementSpace space) {
@@ -59,21 +74,28 @@ void describe_files(const Displacement& map, const MapStatistics& statistics, st
         bytes += tile.texture->byte_count();
         is_one_size &= tile.texture->width == first.width && tile.texture->height == first.height;
     }
-    facts.push_back({"size", fmt::format("{} x {} texels{}", first.width, first.height,
-                                         is_one_size ? "" : "; other tiles have other sizes")});
+    facts.push_back({"size",
+                     fmt::format("{} x {} texels{}", first.width, first.height,
+                                 is_one_size ? "" : "; other tiles have other sizes"),
+                     {{"width", double(first.width), "texels"}, {"height", double(first.height), "texels"}}});
     if (map.is_udim) {
         std::string tiles;
         for (const MapTile& tile : map.tiles)
             tiles += fmt::format("{}{}", tiles.empty() ? "" : " ", tile.udim);
-        facts.push_back({"tiles", tiles});
+        facts.push_back({"tiles", tiles, {{"", double(map.tiles.size()), "count"}}});
     }
-    facts.push_back({"channels", fmt::format("{}", statistics.channel_count)});
-    facts.push_back({"type", get_type_name(statistics.type)});
-    facts.push_back({"memory", fmt::format("{} bytes", bytes)});
+    facts.push_back(make_count("channels", statistics.channel_count));
+    facts.push_back(
+        {"type", get_type_name(statistics.type), {{"", double(get_bits(statistics.type)), "bits"}}});
+    facts.push_back({"memory", fmt::format("{} bytes", bytes), {{"", double(bytes), "bytes"}}});
     for (size_t c = 0; c < std::min<size_t>(3, statistics.channel_count); ++c) {
         const ChannelStatistics& channel = statistics.channels[c];
-        facts.push_back({kChannelNames[c], fmt::format("{:.6g} to {:.6g}, mean {:.6g}", channel.low,
-                                                       channel.high, channel.mean)});
+        facts.push_back(
+            {kChannelNames[c],
+             fmt::format("{:.6g} to {:.6g}, mean {:.6g}", channel.low, channel.high, channel.mean),
+             {{"low", double(channel.low), "texel value"},
+              {"high", double(channel.high), "texel value"},
+              {"mean", double(channel.mean), "texel value"}}});
     }
 }
 
@@ -111,24 +133,34 @@ std::string describe_looks(const MapStatistics& statistics, const MapConvention&
 void describe_convention(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                          const MapConvention& convention, std::vector<Fact>& facts) {
     const bool is_vector = statistics.channel_count >= 3 && !statistics.is_gray;
-    facts.push_back({"midlevel", describe_zero(map, meaning, statistics)});
-    facts.push_back({"largest", fmt::format("{:.6g} from the midlevel, times scale", statistics.largest)});
+    facts.push_back({"midlevel",
+                     describe_zero(map, meaning, statistics),
+                     {{"R", statistics.midlevel[0], "texel value"},
+                      {"G", statistics.midlevel[1], "texel value"},
+                      {"B", statistics.midlevel[2], "texel value"}}});
+    facts.push_back({"largest",
+                     fmt::format("{:.6g} from the midlevel, times scale", statistics.largest),
+                     {{"", statistics.largest, "texel value"}}});
     if (statistics.is_periodic)
-        facts.push_back({"wrap", "opposite edges continue each other: probably repeat"});
+        facts.push_back({"wrap", "opposite edges continue each other: probably repeat", {}});
     if (!is_vector) {
-        facts.push_back({"looks_like", "a height map"});
+        facts.push_back({"looks_like", "a height map", {}});
         return;
     }
-    facts.push_back({"space", fmt::format("{}: {}",
-                                          convention.space.is_clear ? get_space_name(convention.space.value)
-                                                                    : "tangent, unless told otherwise",
-                                          convention.space.reason)});
-    facts.push_back({"axes", fmt::format("{}: {}",
-                                         convention.axes.is_clear
-                                             ? format_map_axes(convention.axes.value, convention.space.value)
-                                             : "not clear",
-                                         convention.axes.reason)});
-    facts.push_back({"looks_like", describe_looks(statistics, convention)});
+    facts.push_back({"space",
+                     fmt::format("{}: {}",
+                                 convention.space.is_clear ? get_space_name(convention.space.value)
+                                                           : "tangent, unless told otherwise",
+                                 convention.space.reason),
+                     {}});
+    facts.push_back(
+        {"axes",
+         fmt::format("{}: {}",
+                     convention.axes.is_clear ? format_map_axes(convention.axes.value, convention.space.value)
+                                              : "not clear",
+                     convention.axes.reason),
+         {}});
+    facts.push_back({"looks_like", describe_looks(statistics, convention), {}});
 }
 
 /// What the texels say, and the mesh if it can be used.

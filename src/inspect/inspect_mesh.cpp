@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include "analysis/mesh_statistics.h"
+#include "inspect/facts.h"
 #include "math/box.h"
 #include "relief/inspect.h"
+#include "scene/faces_without_uvs.h"
 
 namespace relief {
 
@@ -62,6 +64,18 @@ void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) 
                         shape.turned_edges, *shape.turned_face));
 }
 
+Fact describe_bounds(const Box& box) {
+    return {"bounds",
+            fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x, box.lower.y,
+                        box.lower.z, box.upper.x, box.upper.y, box.upper.z),
+            {{"low_x", box.lower.x, "scene units"},
+             {"low_y", box.lower.y, "scene units"},
+             {"low_z", box.lower.z, "scene units"},
+             {"high_x", box.upper.x, "scene units"},
+             {"high_y", box.upper.y, "scene units"},
+             {"high_z", box.upper.z, "scene units"}}};
+}
+
 std::string list_valences(const MeshShape& shape) {
     std::string text;
     for (size_t valence = 1; valence < shape.valences.size(); ++valence)
@@ -70,26 +84,43 @@ std::string list_valences(const MeshShape& shape) {
     return text;
 }
 
+/// Points by the number of edges that meet there.
+Fact describe_points(const MeshShape& shape) {
+    Fact fact{"points", "by number of edges: " + list_valences(shape), {}};
+    double count = 0;
+    for (size_t valence = 1; valence < shape.valences.size(); ++valence) {
+        if (shape.valences[valence] == 0) continue;
+        count += double(shape.valences[valence]);
+        fact.numbers.push_back(
+            {fmt::format("of_{}_edges", valence), double(shape.valences[valence]), "count"});
+    }
+    fact.numbers.insert(fact.numbers.begin(), {"", count, "count"});
+    return fact;
+}
+
 void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result) {
     Box box;
     for (const Vec3f& position : mesh.positions) box.extend(position);
-    result.facts.insert(
-        result.facts.end(),
-        {{"vertices", fmt::format("{}", mesh.positions.size())},
-         {"faces", fmt::format("{}: {} quads, {} triangles, {} with more corners", shape.faces(), shape.quads,
-                               shape.triangles, shape.others)},
-         {"points", "by number of edges: " + list_valences(shape)},
-         {"open_edges", fmt::format("{}", shape.open_edges)},
-         {"bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.lower.x,
-                                box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z)},
-         {"base", describe_base(mesh)},
-         {"normals", mesh.normal_indices.empty() ? "none" : "in the file"},
-         {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file"}});
+    result.facts.insert(result.facts.end(),
+                        {make_count("vertices", mesh.positions.size()),
+                         {"faces",
+                          fmt::format("{}: {} quads, {} triangles, {} with more corners", shape.faces(),
+                                      shape.quads, shape.triangles, shape.others),
+                          {{"", double(shape.faces()), "count"},
+                           {"quads", double(shape.quads), "count"},
+                           {"triangles", double(shape.triangles), "count"},
+                           {"others", double(shape.others), "count"}}},
+                         describe_points(shape),
+                         make_count("open_edges", shape.open_edges),
+                         describe_bounds(box),
+                         {"base", describe_base(mesh), {}},
+                         {"normals", mesh.normal_indices.empty() ? "none" : "in the file", {}},
+                         {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file", {}}});
 }
 
 void add_frame(const Mesh& mesh, const Displacement& map, Inspection& result) {
     if (std::string frame = describe_frame(map, &mesh); !frame.empty())
-        result.facts.push_back({"frame", std::move(frame)});
+        result.facts.push_back({"frame", std::move(frame), {}});
     const bool uses_frames = map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
     if (map.frame != FrameKind::file || !uses_frames) return;
     if (mesh.normal_indices.empty())
@@ -115,16 +146,27 @@ std::string list_tiles(const std::set<int>& tiles) {
 }
 
 void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& result) {
-    result.facts.push_back({"uv_range", fmt::format("u {:.6g} to {:.6g}, v {:.6g} to {:.6g}", uvs.low.x,
-                                                    uvs.high.x, uvs.low.y, uvs.high.y)});
     result.facts.push_back(
-        {"uv_islands", fmt::format("{}, {} of them mirrored", uvs.islands, uvs.mirrored_islands)});
-    result.facts.push_back({"uv_overlap", fmt::format("{:.2f} % of the covered area", 100 * uvs.overlap)});
-    result.facts.push_back({"uv_tiles", uvs.tiles.empty() ? "none" : list_tiles(uvs.tiles)});
+        {"uv_range",
+         fmt::format("u {:.6g} to {:.6g}, v {:.6g} to {:.6g}", uvs.low.x, uvs.high.x, uvs.low.y, uvs.high.y),
+         {{"low_u", uvs.low.x, "uv"},
+          {"high_u", uvs.high.x, "uv"},
+          {"low_v", uvs.low.y, "uv"},
+          {"high_v", uvs.high.y, "uv"}}});
+    result.facts.push_back(
+        {"uv_islands",
+         fmt::format("{}, {} of them mirrored", uvs.islands, uvs.mirrored_islands),
+         {{"", double(uvs.islands), "count"}, {"mirrored", double(uvs.mirrored_islands), "count"}}});
+    result.facts.push_back({"uv_overlap",
+                            fmt::format("{:.2f} % of the covered area", 100 * uvs.overlap),
+                            {{"", 100 * uvs.overlap, "%"}}});
+    result.facts.push_back({"uv_tiles",
+                            uvs.tiles.empty() ? "none" : list_tiles(uvs.tiles),
+                            {{"", double(uvs.tiles.size()), "count"}}});
     if (!map || !map->is_udim) return;
     std::set<int> found;
     for (const MapTile& tile : map->tiles) found.insert(tile.udim);
-    result.facts.push_back({"map_tiles", list_tiles(found)});
+    result.facts.push_back({"map_tiles", list_tiles(found), {{"", double(found.size()), "count"}}});
 }
 
 void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector<Finding>& findings) {
@@ -189,8 +231,8 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     const MeshFaults faults = find_mesh_faults(mesh);
     find_faults(faults, result.findings);
     if (!faults.is_sound()) {
-        result.facts = {{"vertices", fmt::format("{}", mesh.positions.size())},
-                        {"faces", fmt::format("{}", mesh.face_sizes.size())}};
+        result.facts = {make_count("vertices", mesh.positions.size()),
+                        make_count("faces", mesh.face_sizes.size())};
         return result;
     }
     const MeshShape shape = measure_shape(mesh);
@@ -205,6 +247,11 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
             add(result.findings, Severity::warning, "W-NOUV",
                 "no uvs: the mesh cannot be displaced by a map; export it with uvs");
     } else {
+        if (const FacesWithoutUvs missing = find_faces_without_uvs(mesh); missing.count > 0)
+            add(result.findings, Severity::warning, "W-NOUV",
+                fmt::format("{} of {} faces have no uvs and are not displaced, the first is face {}: unwrap "
+                            "them too, or export them with uvs",
+                            missing.count, mesh.face_sizes.size(), missing.first));
         const MeshUvs uvs = measure_uvs(mesh);
         describe_uvs(uvs, displacement, result);
         find_uv_mistakes(uvs, displacement, result.findings);

@@ -1,5 +1,6 @@
 // What a scene is, what it costs as it is and what it would cost tessellated.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -12,7 +13,9 @@
 #include "api/make_engine.h"
 #include "api/picture_report.h"
 #include "base/timer.h"
+#include "cpu/path_tracer.h"
 #include "film/film.h"
+#include "inspect/facts.h"
 #include "prepare/prepared_scene.h"
 #include "prepare/tessellate.h"
 #include "prepare/validate_settings.h"
@@ -49,9 +52,9 @@ void describe_maps(const Scene& scene, const std::set<Pair>& pairs, Inspection& 
         const Mesh* mesh = is_used ? &scene.meshes.at(pair->second) : nullptr;
         const Inspection inspection = inspect_map(map, MapMeaning::declared, mesh);
         for (const Fact& fact : inspection.facts)
-            result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value});
+            result.facts.push_back({fmt::format("map.{}.{}", map.name, fact.name), fact.value, fact.numbers});
         if (std::string frame = describe_frame(map, mesh); !frame.empty())
-            result.facts.push_back({fmt::format("map.{}.frame", map.name), std::move(frame)});
+            result.facts.push_back({fmt::format("map.{}.frame", map.name), std::move(frame), {}});
         for (const Finding& finding : inspection.findings)
             result.findings.push_back({finding.severity, finding.code,
                                        fmt::format("displacement '{}': {}", map.name, finding.text)});
@@ -72,70 +75,140 @@ void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection
     for (const auto& [map, mesh] : pairs) {
         if (displaced.insert(mesh).second)
             result.facts.push_back({fmt::format("mesh.{}.base", scene.meshes.at(mesh).name),
-                                    describe_base(scene.meshes.at(mesh))});
+                                    describe_base(scene.meshes.at(mesh)),
+                                    {}});
         add_mesh_findings(scene.meshes.at(mesh), &scene.displacements.at(map), result);
     }
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
         if (displaced.count(mesh) == 0) add_mesh_findings(scene.meshes[mesh], nullptr, result);
 }
 
-/// Times samples of a part of a picture.
+/// Reads what an engine has built when it has taken the first sample; nothing is traced at that moment.
+class FirstPass final : public RenderObserver {
+  public:
+    explicit FirstPass(const Engine& engine) : engine_(engine) {}
+    void on_progress(const Progress& progress) override {
+        if (progress.samples_done > 0 && !is_done_) engine_.add_statistics(statistics_), is_done_ = true;
+    }
+    bool is_cancelled() const override { return false; }
+    double bottom_build_s() const { return statistics_.bottom_build_s; }
+
+  private:
+    const Engine& engine_;
+    Statistics statistics_;
+    bool is_done_ = false;
+};
+
+/// Times all passes over parts of a picture: the first sample, and those after it, which find most trees made
+/// and share them within a tile.
 class TrialRender {
   public:
     TrialRender(const std::shared_ptr<const PreparedScene>& prepared, const RenderSettings& settings)
         : settings_(settings) {
-        settings_.image.spp = 1;
+        settings_.image.spp = std::min(settings.image.spp, kMostSamples);
         settings_.device.engine = EngineKind::cpu;
         engine_ = make_engine(prepared, settings_);
-        groups_ = std::max(1, (settings.image.height + kBands * kRows - 1) / (kBands * kRows));
-        while (std::gcd(stride_, groups_) != 1) ++stride_;
+        const ImageSettings& image = settings_.image;
+        const int tiles = kTilesOfAThread * std::max(1, read_statistics().threads);
+        const int columns = (image.width + kTileEdge - 1) / kTileEdge;
+        width_ = std::min(tiles, columns) * kTileEdge;
+        height_ = std::max(1, tiles / columns) * kTileEdge;
+        columns_ = (image.width + width_ - 1) / width_;
+        part_count_ = columns_ * ((image.height + height_ - 1) / height_);
+        // Near the golden section, which spreads any number of parts evenly.
+        stride_ = std::max(1, int(0.618 * part_count_));
+        while (std::gcd(stride_, part_count_) != 1) ++stride_;
     }
 
-    int group_count() const { return groups_; }
-    /// Seconds of one sample of each pixel in a group of bands of rows, spread over the picture; full width,
-    /// so that all threads have work. Groups [0, group_count) make up about the whole.
-    double time_group(int group) {
+    /// Of the picture, each of as many tiles as keep all threads at work.
+    int part_count() const { return part_count_; }
+    int sample_count() const { return settings_.image.spp; }
+
+    struct Seconds {
+        double first = 0, next = 0; ///< of the first sample, and of all others
+        double build = 0;           ///< of the first, for patch trees
+    };
+    /// Parts [0, part_count) are the whole picture; one after another is far from the one before.
+    Seconds time_part(int part) {
+        const ImageSettings& image = settings_.image;
+        const int place = int(int64_t(part) * stride_ % part_count_);
+        const int x0 = place % columns_ * width_, y0 = place / columns_ * height_;
+        Film film(image.width, image.height,
+                  {x0, y0, std::min(image.width, x0 + width_), std::min(image.height, y0 + height_)}, {});
+        const Statistics before = read_statistics();
         const Timer timer;
-        for (int band = 0; band < kBands; ++band) {
-            // Far from the group before, so that its trees do not serve this one more than others.
-            const int slot = band * groups_ + int((int64_t(group) * stride_) % groups_);
-            const int y0 = slot * kRows, y1 = std::min(settings_.image.height, y0 + kRows);
-            if (y0 >= y1) continue;
-            Film film(settings_.image.width, settings_.image.height, {0, y0, settings_.image.width, y1}, {});
-            engine_->render(film, nullptr);
-        }
-        return timer.seconds();
+        FirstPass first_pass(*engine_);
+        engine_->render(film, &first_pass);
+        const double all = timer.seconds();
+        const Statistics after = read_statistics();
+        // Stages are summed over threads.
+        const double build =
+            (first_pass.bottom_build_s() - before.bottom_build_s) / std::max(1, after.threads);
+        return {after.first_image_s, all - after.first_image_s, build};
     }
 
   private:
-    static constexpr int kBands = 8, kRows = 4;
+    static constexpr int kMostSamples = 7; ///< passes of 1, 2 and 4
+    static constexpr int kTileEdge = cpu::kTileEdge, kTilesOfAThread = 6;
+
+    Statistics read_statistics() const {
+        Statistics statistics;
+        engine_->add_statistics(statistics);
+        return statistics;
+    }
+
     RenderSettings settings_;
     std::unique_ptr<Engine> engine_;
-    int groups_ = 1;
-    int stride_ = 7; ///< has no factor in common with groups_
+    int width_ = 0, height_ = 0, columns_ = 1, part_count_ = 1;
+    int stride_ = 1; ///< has no factor in common with part_count_
 };
 
-/// What a render would take: groups of rows are rendered for about a second, and the rest is taken to be like
-/// the last of them, whose trees are mostly made.
-std::string estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
-                          const RenderSettings& settings) {
-    constexpr double kBudget_s = 1;
+/// What `count` parts take whose trees are shared: building grows as a power of their number, the one that it
+/// grew by over the parts that were timed.
+double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int count) {
+    double half = 0, all = 0;
+    for (size_t k = 0; k < parts.size(); ++k) {
+        all += parts[k].build;
+        if (k < parts.size() / 2) half += parts[k].build;
+    }
+    if (parts.size() < 2 || !(half > 0)) return all * count / double(parts.size());
+    const double whole = double(parts.size()), part = double(parts.size() / 2);
+    const double power = std::clamp(std::log(all / half) / std::log(whole / part), 0.0, 1.0);
+    return all * std::pow(count / whole, power);
+}
+
+/// What a render would take: parts of the picture are rendered for about a second and a half with a few
+/// samples. Tracing grows with pixels and samples, building of patch trees for the first sample with the part
+/// of the surfaces that is seen; what later samples build they build for all pixels, as trees were dropped.
+Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
+                   const RenderSettings& settings) {
+    constexpr double kBudget_s = 1.5;
     const Timer timer;
     TrialRender trial(prepared, settings);
     const double ready_s = prepare_s + timer.seconds();
-    double first_s = 0, last_s = 0;
-    int done = 0;
-    while (done < trial.group_count() && (done == 0 || first_s < kBudget_s)) {
-        last_s = trial.time_group(done++);
-        first_s += last_s;
+    const Timer trial_timer;
+    std::vector<TrialRender::Seconds> parts;
+    double first_s = 0, next_s = 0, built_s = 0;
+    while (int(parts.size()) < trial.part_count() &&
+           (parts.size() < 2 || trial_timer.seconds() < kBudget_s)) {
+        parts.push_back(trial.time_part(int(parts.size())));
+        first_s += parts.back().first, next_s += parts.back().next, built_s += parts.back().build;
     }
-    first_s += last_s * (trial.group_count() - done);
-    const double next_s = trial.time_group(0) * trial.group_count();
-    return fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
-                       "{}x{} on the CPU; measured on {} of {} parts of the picture",
-                       ready_s, first_s, ready_s + first_s + next_s * (settings.image.spp - 1),
-                       settings.image.spp, settings.image.width, settings.image.height, done,
-                       trial.group_count());
+    const double share = double(parts.size()) / trial.part_count();
+    const double build_s = extrapolate_build(parts, trial.part_count());
+    first_s = std::max(0.0, first_s - built_s) / share + build_s;
+    const int more = settings.image.spp - 1, timed = trial.sample_count() - 1;
+    next_s = timed > 0 ? next_s / share * more / timed : 0;
+    const double all_s = ready_s + first_s + next_s;
+    return {"time",
+            fmt::format("about {:.2g} s to be ready, {:.2g} s for the first sample, {:.3g} s for all {} at "
+                        "{}x{} on the CPU; measured on {} of {} parts of the picture",
+                        ready_s, first_s, all_s, settings.image.spp, settings.image.width,
+                        settings.image.height, parts.size(), trial.part_count()),
+            {{"", all_s, "s"},
+             {"ready", ready_s, "s"},
+             {"first_sample", first_s, "s"},
+             {"samples", double(settings.image.spp), "count"}}};
 }
 
 void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
@@ -157,19 +230,20 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     RenderSettings on_cpu = settings;
     on_cpu.device.engine = EngineKind::cpu;
     make_engine(prepared, on_cpu)->add_statistics(statistics);
-    const auto add = [&](const char* name, std::string value) {
-        result.facts.push_back({name, std::move(value)});
+    const auto add_bytes = [&](const char* name, uint64_t bytes, const char* remark) {
+        result.facts.push_back(
+            {name, fmt::format("{} bytes{}", bytes, remark), {{"", double(bytes), "bytes"}}});
     };
-    add("patches", fmt::format("{}", patches));
-    add("triangles", fmt::format("{}", triangles));
-    add("finest_level", fmt::format("{}", max_level));
-    add("geometry", fmt::format("{} bytes", statistics.geometry_bytes));
-    add("structures", fmt::format("{} bytes", statistics.structures_bytes));
+    result.facts.push_back(make_count("patches", patches));
+    result.facts.push_back(make_count("triangles", triangles));
+    result.facts.push_back(
+        {"finest_level", fmt::format("{}", max_level), {{"", double(max_level), "level"}}});
+    add_bytes("geometry", statistics.geometry_bytes, "");
+    add_bytes("structures", statistics.structures_bytes, "");
     count_scene(*prepared, statistics);
-    add("map_texels", fmt::format("{} bytes with their bounds and copies", statistics.displacement_bytes));
-    add("tessellated",
-        fmt::format("{} bytes at the levels of this view", estimate_tessellation(*prepared).peak_bytes));
-    add("time", estimate_time(prepared, prepare_s, settings));
+    add_bytes("map_texels", statistics.displacement_bytes, " with their bounds and copies");
+    add_bytes("tessellated", estimate_tessellation(*prepared).peak_bytes, " at the levels of this view");
+    result.facts.push_back(estimate_time(prepared, prepare_s, settings));
     for (size_t k = scene.warnings.size(); k < prepared->warnings.size(); ++k)
         result.findings.push_back({Severity::warning, "W-SCENE", prepared->warnings[k]});
 }
@@ -188,10 +262,15 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
     size_t displaced = 0;
     for (const Object& object : scene.objects) displaced += object.displacement != kNoIndex;
     result.facts = {
-        {"meshes", fmt::format("{}", scene.meshes.size())},
-        {"objects", fmt::format("{}, {} displaced", scene.objects.size(), displaced)},
-        {"maps", fmt::format("{}", scene.displacements.size())},
-        {"lights", fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : "")}};
+        make_count("meshes", scene.meshes.size()),
+        {"objects",
+         fmt::format("{}, {} displaced", scene.objects.size(), displaced),
+         {{"", double(scene.objects.size()), "count"}, {"displaced", double(displaced), "count"}}},
+        make_count("maps", scene.displacements.size()),
+        {"lights",
+         fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : ""),
+         {{"", double(scene.lights.size()), "count"},
+          {"environments", scene.environment ? 1.0 : 0.0, "count"}}}};
     for (const std::string& warning : scene.warnings)
         result.findings.push_back({Severity::warning, "W-READ", warning});
     try {

@@ -173,6 +173,10 @@ double measure_texels_a_face(const Displacement& map, const Mesh& mesh) {
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
         double area = 0;
+        if (mesh.uv_indices[first] == kNoIndex) {
+            first += size;
+            continue;
+        }
         for (uint32_t k = 0; k < size; ++k) {
             const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
             const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/faces_without_uvs.h"
 #include "surface/mesh/degenerate_faces.h"
 
 namespace relief {
@@ -68,6 +69,20 @@ void warn_of_degenerate_faces(const Mesh& mesh, std::vector<std::string>& warnin
                     mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
 }
 
+bool has_texture(const Material& material) {
+    return material.base_color_texture || material.roughness_texture;
+}
+
+/// Of a mesh that is displaced, or whose material reads a texture.
+void warn_of_faces_without_uvs(const Mesh& mesh, std::vector<std::string>& warnings) {
+    const FacesWithoutUvs faces = find_faces_without_uvs(mesh);
+    if (faces.count == 0) return;
+    warnings.push_back(fmt::format(
+        "mesh '{}': {} of {} faces have no uvs: they are not displaced, and textures are read at (0, 0) "
+        "there; the first is face {}",
+        mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
+}
+
 bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
 
 void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
@@ -94,11 +109,15 @@ std::vector<std::string> find_scene_warnings(const Scene& scene) {
     std::vector<std::string> warnings;
     warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
-    std::set<uint32_t> meshes;
+    std::set<uint32_t> meshes, read_meshes;
     std::set<uint32_t> used;
     for (const Object& object : scene.objects)
         if (used.insert(object.mesh).second) warn_of_degenerate_faces(scene.meshes[object.mesh], warnings);
     for (const Object& object : scene.objects) {
+        const bool reads_uvs = object.displacement != kNoIndex ||
+                               (object.material != kNoIndex && has_texture(scene.materials[object.material]));
+        if (reads_uvs && read_meshes.insert(object.mesh).second)
+            warn_of_faces_without_uvs(scene.meshes[object.mesh], warnings);
         if (object.displacement == kNoIndex) continue;
         const Mesh& mesh = scene.meshes[object.mesh];
         if (pairs.insert({object.mesh, object.displacement}).second)

@@ -106,6 +106,7 @@ Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     const PatchOffsets offsets = compute_offsets(surface, levels);
     Surface result;
     result.name = surface.name;
+    result.has_bilinear_uvs = true;
     result.positions.resize(offsets.vertex.back());
     result.frames.resize(offsets.vertex.back());
     result.uvs.resize(offsets.vertex.back());

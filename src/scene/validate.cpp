@@ -1,6 +1,7 @@
 // validate_scene: every index, range and number of a scene, before anything is built from it.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,31 @@ void check_indices(const std::string& where, const char* what, const std::vector
     }
 }
 
+/// A face has a uv at each of its corners, or at none of them.
+void check_uv_indices(const std::string& where, const Mesh& mesh, size_t corners) {
+    if (mesh.uv_indices.size() != corners) {
+        check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
+        return;
+    }
+    bool has_uvs = false;
+    size_t first = 0;
+    for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face], ++face) {
+        const std::span<const uint32_t> indices(mesh.uv_indices.data() + first, mesh.face_sizes[face]);
+        const auto missing = size_t(std::count(indices.begin(), indices.end(), kNoIndex));
+        if (missing != 0 && missing != indices.size())
+            fail(where, fmt::format("face {} has {} uvs for {} corners", face, indices.size() - missing,
+                                    indices.size()));
+        has_uvs = has_uvs || missing == 0;
+        for (size_t k = 0; missing == 0 && k < indices.size(); ++k)
+            if (indices[k] >= mesh.uvs.size())
+                fail(where,
+                     fmt::format("uv index {} of corner {} is out of range: there are {}", indices[k],
+                                 first + k, mesh.uvs.size()),
+                     "the mesh is damaged: export it again");
+    }
+    if (!has_uvs) fail(where, "has uv indices, but no face has uvs", "leave them out");
+}
+
 } // namespace
 
 void validate_mesh(const Mesh& mesh, size_t index) {
@@ -63,7 +89,7 @@ void validate_mesh(const Mesh& mesh, size_t index) {
     }
     if (mesh.face_sizes.empty()) fail(where, "has no faces");
     check_indices(where, "position", mesh.position_indices, corners, mesh.positions.size());
-    if (!mesh.uv_indices.empty()) check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
+    if (!mesh.uv_indices.empty()) check_uv_indices(where, mesh, corners);
     if (!mesh.normal_indices.empty())
         check_indices(where, "normal", mesh.normal_indices, corners, mesh.normals.size());
     if (!mesh.tangents.empty() && mesh.tangents.size() != corners)

@@ -155,6 +155,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
             arrays.override_bits.push_back(uint32_t(word >> 32));
         }
         data.first_mip = append(arrays.override_bits, surface.mips);
+        data.has_bilinear_uvs = surface.has_bilinear_uvs ? 1 : 0;
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
         if (surface.has_displacement) add_map(surface);
         tables_.surfaces.push_back(data);

@@ -53,7 +53,11 @@ TEST_F(Usage, the_picture_and_its_statistics_are_two_files) {
 TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
     expect_refused({"render", "plane.obj", "--size", "0x0"}, "from 1 to 65536");
     expect_refused({"render", "plane.obj", "--size", "1000000x4"}, "from 1 to 65536");
-    expect_refused({"render", "plane.obj", "--size", "8"}, "--size");
+    expect_refused({"render", "plane.obj", "--size", "800"}, "'800' is not WIDTHxHEIGHT");
+    expect_refused({"render", "plane.obj", "--size", "800"}, "hint: --size 800x450");
+    expect_refused({"render", "plane.obj", "--size", "800,600"}, "hint: --size 800x600");
+    expect_refused({"render", "plane.obj", "--size", "big"}, "hint: --size 1280x720");
+    expect_refused({"render", "plane.obj", "--size", "99999999999999999999"}, "hint: --size 1280x720");
     expect_refused({"render", "plane.obj", "--spp", "-4"}, "from 1 to 1048576");
     expect_refused({"render", "plane.obj", "--spp", "4x"}, "--spp");
     expect_refused({"render", "plane.obj", "--level", "13"}, "from 0 to 12");

@@ -24,6 +24,7 @@ constexpr uint64_t kDefaultRays = 10000000;
 constexpr uint64_t kBatch = 4096;
 
 enum class Body { sphere, torus, creased };
+enum class Uvs { everywhere, missing_on_some_faces };
 enum class Placement { single, instances };
 
 struct Case {
@@ -36,6 +37,7 @@ struct Case {
     FrameKind frame = FrameKind::mikk;
     FrameLengths lengths = FrameLengths::absolute;
     MapFilter filter = MapFilter::none;
+    Uvs uvs = Uvs::everywhere;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -69,6 +71,12 @@ const Case kCases[] = {
      SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
     {"filtered_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
      Placement::instances, SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip},
+    {"sphere_with_faces_without_uvs_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::none, FrameKind::mikk, FrameLengths::relative, MapFilter::none,
+     Uvs::missing_on_some_faces},
+    {"smooth_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::object, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip,
+     Uvs::missing_on_some_faces},
 };
 
 uint64_t ray_count() {
@@ -116,6 +124,7 @@ Scene make_scene(const Case& c) {
     Mesh mesh = c.body == Body::sphere    ? test::make_cube_sphere(is_smooth ? 2 : 4)
                 : c.body == Body::creased ? test::make_shape(test::Shape::tangled_cube)
                                           : test::make_torus(8, 14);
+    if (c.uvs == Uvs::missing_on_some_faces) test::remove_uvs(mesh, 5);
     mesh.subdivision.scheme = c.scheme;
     mesh.subdivision.level = c.body == Body::sphere ? 1 : c.body == Body::creased ? 2 : 0;
     Scene scene = test::make_body_scene(

@@ -46,6 +46,23 @@ TEST(DoubtfulAssumptions, say_nothing_of_what_was_stated) {
     EXPECT_FALSE(has_code(find(half, {.space = true, .axes = true, .wrap = true}), "E-NONEG"));
 }
 
+TEST(DoubtfulAssumptions, tell_mirrored_uvs_and_triangles_of_the_mesh) {
+    const auto texture = make_sculpt_texture(64);
+    Mesh mirrored = make_sculpt_plane();
+    for (Vec2f& uv : mirrored.uvs) uv.x = 1 - uv.x;
+    const std::string text = find_text(find(texture, kAll, mirrored), "W-MIRROR");
+    EXPECT_HAS_PART(text, "of mesh 'plane' are mirrored");
+    EXPECT_HAS_PART(text, "displacement.space = tangent");
+    EXPECT_FALSE(has_code(find(texture, {.axes = true}, mirrored), "W-MIRROR")) << "tangent space was said";
+    EXPECT_FALSE(has_code(find(texture, kAll), "W-MIRROR"));
+    Mesh triangle = make_sculpt_plane();
+    triangle.face_sizes = {3};
+    triangle.position_indices.resize(3), triangle.uv_indices.resize(3);
+    EXPECT_HAS_PART(find_text(find(texture, kAll, triangle), "W-TRI"), "1 of 1 faces");
+    EXPECT_FALSE(has_code(find(texture, AssumedConvention{}, triangle), "W-TRI")) << "all was said";
+    EXPECT_FALSE(has_code(find(texture, kAll), "W-TRI"));
+}
+
 /// A tube that is open on one side, without seams, and what moves it outwards in object space.
 Mesh make_open_tube(Texture& outwards) {
     constexpr uint32_t kColumns = 24;

@@ -2,6 +2,8 @@
 #include <assimp/scene.h>
 
 #include "io/mesh/mesh_obj.h"
+#include "io/mesh/mesh_ply.h"
+#include "io/mesh/mesh_writer.h"
 #include "io/scene/scene_reader.h"
 #include "io/test_files.h"
 #include "relief/io.h"
@@ -72,10 +74,18 @@ TEST_F(MeshFiles, obj_lines_go_on_after_a_backslash) {
                "more than three indices");
 }
 
-TEST_F(MeshFiles, obj_uvs_on_some_faces_only_are_refused) {
-    EXPECT_HAS(
-        message_of([] { parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\nf 1 2 3\n", "m.obj"); }),
-        "line 6, face 2");
+TEST_F(MeshFiles, faces_without_uvs_stand_among_others_and_are_written_so) {
+    const char* const text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                             "f 1//1 2//1 3//1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/1 2//1 3/3/1\n";
+    const Mesh mesh = parse_obj(text, "m.obj");
+    constexpr uint32_t kNone = kNoIndex;
+    EXPECT_EQ(mesh.uv_indices, (std::vector<uint32_t>{kNone, kNone, kNone, 0, 1, 2, kNone, kNone, kNone}));
+    validate_mesh(mesh);
+    const Mesh obj = parse_obj(format_obj(mesh), "again.obj");
+    EXPECT_EQ(obj.uv_indices, mesh.uv_indices);
+    EXPECT_EQ(obj.normal_indices, mesh.normal_indices);
+    EXPECT_EQ(parse_ply(format_ply(mesh), "again.ply").uv_indices, mesh.uv_indices);
+    EXPECT_TRUE(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1 2 3\n", "m.obj").uv_indices.empty());
 }
 
 TEST_F(MeshFiles, obj_tags_become_creases) {

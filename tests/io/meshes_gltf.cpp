@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/mesh/mesh_gltf.h"
@@ -150,6 +151,41 @@ TEST_F(GltfFiles, a_mirroring_node_turns_faces_normals_and_tangents_round) {
     EXPECT_EQ(mirrored.tangents[2], (std::array<float, 4>{-1, 0, 0, -1}));
 }
 
+/// Text of a file of a triangle below `depth` nodes, each the only child of the one before. `last`: what the
+/// last node holds beside the mesh; `scenes`: the scenes of the file.
+std::string make_chain(int depth, const std::string& last, const std::string& scenes) {
+    std::string nodes;
+    for (int k = 0; k + 1 < depth; ++k) nodes += R"({"children":[)" + std::to_string(k + 1) + "]},";
+    return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"p.bin"}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":36}],)"
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
+           scenes + R"("nodes":[)" + nodes + R"({"mesh":0)" + last + "}]}";
+}
+
+TEST_F(GltfFiles, nodes_may_be_nested_deeply) {
+    constexpr int kDepth = 200000;
+    const auto parse_text = [](const std::string& text) {
+        return parse_gltf(text, "m.gltf", [](const std::string&) { return std::string(36, '\0'); }, {});
+    };
+    const std::string scenes = R"("scenes":[{"nodes":[0]}],)";
+    EXPECT_EQ(parse_text(make_chain(kDepth, R"(,"translation":[1,2,3])", scenes)).positions.at(0),
+              (Vec3f{1, 2, 3}));
+    EXPECT_EQ(parse_text(make_chain(10, "", "")).face_sizes.size(), 1u);
+    EXPECT_HAS(message_of([&] { parse_text(make_chain(10, R"(,"children":[0])", scenes)); }),
+               "nodes[0]: stands twice in the tree of nodes");
+    EXPECT_HAS(message_of([&] { parse_text(make_chain(10, R"(,"children":[0])", "")); }),
+               "nodes[0]: is a descendant of itself");
+}
+
+TEST_F(GltfFiles, nodes_that_are_no_tree_are_refused) {
+    Document document = make_square();
+    document.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"children", {1}}}};
+    EXPECT_HAS(message_of([&] { parse(document); }), "nodes[1]: is a descendant of itself");
+    document.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
+    EXPECT_HAS(message_of([&] { parse(document); }), "nodes[2]: stands twice in the tree of nodes");
+}
+
 TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
     Document document = make_square();
     Json& attributes = primitive_of(document)["attributes"];
@@ -167,8 +203,10 @@ TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
     bare["attributes"].erase("TEXCOORD_1");
     document.json["meshes"][0]["primitives"].push_back(bare);
     EXPECT_EQ(parse(document).face_sizes.size(), 4u);
-    EXPECT_HAS(message_of([&] { parse(document, {.uv_set = 1}); }),
-               "some parts have uv set 1 and some have not");
+    const Mesh partly = parse(document, {.uv_set = 1});
+    EXPECT_NE(partly.uv_indices.at(0), kNoIndex);
+    EXPECT_EQ(std::count(partly.uv_indices.begin() + 6, partly.uv_indices.end(), kNoIndex), 6);
+    validate_mesh(partly);
 }
 
 TEST_F(GltfFiles, buffers_may_be_data_or_files_beside) {

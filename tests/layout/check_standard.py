@@ -50,7 +50,7 @@ DECLARED = {
     "optional": "nullopt optional",
     "ostream": "endl flush ios ostream streamoff streamsize",
     "random": "mt19937 mt19937_64 normal_distribution random_device uniform_int_distribution uniform_real_distribution",
-    "regex": "regex smatch sregex_iterator",
+    "regex": "regex regex_search smatch sregex_iterator",
     "set": "multiset set",
     "shared_mutex": "shared_lock shared_mutex",
     "span": "as_bytes as_writable_bytes span",

@@ -68,6 +68,21 @@ TEST(Warnings, count_the_faces_without_area_and_name_the_first) {
         << warnings[0];
 }
 
+TEST(Warnings, count_the_faces_without_uvs_and_name_the_first) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(4, 6),
+        test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
+    test::remove_uvs(scene.meshes[0], 5);
+    Scene plain = scene;
+    const std::vector<std::string> warnings = prepare_scene(std::move(scene), {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("4 of 24 faces have no uvs"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("the first is face 4"), std::string::npos) << warnings[0];
+    plain.objects[0].displacement = kNoIndex;
+    EXPECT_TRUE(prepare_scene(std::move(plain), {})->warnings.empty()) << "nothing reads uvs";
+}
+
 TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
     const auto prepare = [](const std::function<void(Scene&)>& change) {
         Scene scene = test::make_body_scene(test::make_torus(4, 6), {});

@@ -128,6 +128,14 @@ inline std::shared_ptr<Texture> make_random_map(uint32_t width, uint32_t height,
     return map;
 }
 
+/// Leaves every `step`th face without uvs.
+inline void remove_uvs(Mesh& mesh, size_t step) {
+    size_t first = 0;
+    for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face], ++face)
+        for (size_t k = 0; face % step == step - 1 && k < mesh.face_sizes[face]; ++k)
+            mesh.uv_indices[first + k] = kNoIndex;
+}
+
 inline Displacement make_displacement(std::shared_ptr<const Texture> map, DisplacementSpace space) {
     Displacement displacement;
     displacement.name = "map";

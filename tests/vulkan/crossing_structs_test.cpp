@@ -26,7 +26,7 @@ namespace relief::vulkan::tests {
 namespace {
 
 static_assert(sizeof(scalar::InstanceData) == 31 * 4);
-static_assert(sizeof(scalar::SurfaceData) == 13 * 4);
+static_assert(sizeof(scalar::SurfaceData) == 14 * 4);
 static_assert(sizeof(scalar::MapData) == 17 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);
 static_assert(sizeof(scalar::MaterialData) == 11 * 4);

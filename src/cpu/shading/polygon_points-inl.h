@@ -77,7 +77,8 @@ HWY_NOINLINE inline void make_polygon_points(const cpu::PointBatch& batch, size_
     const cpu::TraceHit& any = batch.hits[batch.order[first]];
     const Surface& surface = batch.scene.surfaces[batch.scene.instances[any.instance].surface];
     store_points(batch, first, count, lanes, cell, blend_polygon_normals(surface, c, is_triangle, at),
-                 wide::blend_polygon_uv(c[0].uv, c[1].uv, c[2].uv, c[3].uv, at));
+                 surface.has_bilinear_uvs ? wide::blend_patch_uv(c[0].uv, c[1].uv, c[2].uv, c[3].uv, at)
+                                          : wide::blend_polygon_uv(c[0].uv, c[1].uv, c[2].uv, c[3].uv, at));
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -42,8 +42,9 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     if (surface.uvs.empty()) return {};
     const Quad quad = surface.quads[patch];
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
-    return surface.has_displacement ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
-                                    : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
+    return surface.has_displacement || surface.has_bilinear_uvs
+               ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
+               : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
 }
 
 /// Hits of one key are on polygons of one surface, or on patches of one that read the same image: they go to

@@ -29,18 +29,13 @@ class AssimpBuilder {
         for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
             const aiMesh& mesh = *scene_.mMeshes[m];
             if (!(mesh.mPrimitiveTypes & (aiPrimitiveType_TRIANGLE | aiPrimitiveType_POLYGON))) continue;
-            if (mesh.HasTextureCoords(uv_set_))
-                ++with_uv_;
-            else
-                ++without_uv_;
+            if (mesh.HasTextureCoords(uv_set_)) ++with_uv_;
             if (!mesh.HasNormals()) has_normals_ = false;
         }
-        if (with_uv_ > 0 && without_uv_ > 0)
-            fail(fmt::format("some parts have uv set {} and some have not", uv_set_),
-                 "give every part uvs, or none");
         if (uv_set_ > 0 && with_uv_ == 0)
             fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
         add_node(*scene_.mRootNode, aiMatrix4x4());
+        if (mesh_.uvs.empty()) mesh_.uv_indices.clear(); // no node has a part with uvs
         return std::move(mesh_);
     }
 
@@ -84,6 +79,8 @@ class AssimpBuilder {
         if (mesh.HasTextureCoords(uv_set_)) {
             const aiVector3D& uv = mesh.mTextureCoords[uv_set_][corner];
             mesh_.uv_indices.push_back(uvs_.add({uv.x, uv.y}));
+        } else if (with_uv_ > 0) {
+            mesh_.uv_indices.push_back(kNoIndex);
         }
         if (has_normals_) {
             const aiVector3D n = normal_matrix * mesh.mNormals[corner];
@@ -98,7 +95,7 @@ class AssimpBuilder {
     PointWelder positions_;
     UvWelder uvs_;
     PointWelder normals_;
-    int with_uv_ = 0, without_uv_ = 0;
+    int with_uv_ = 0; ///< parts
     bool has_normals_ = true;
 };
 

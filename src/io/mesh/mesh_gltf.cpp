@@ -1,5 +1,6 @@
 #include "io/mesh/mesh_gltf.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -169,8 +170,16 @@ class GltfBuilder {
             for (auto child = indices.rbegin(); child != indices.rend(); ++child)
                 open.push_back({&GltfFile::resolve(*child, nodes_, "node"), world_from_node});
         }
+        if (file_.list("scenes").empty()) check_all_seen(is_seen);
         if (nodes_.empty()) // a library of meshes
             for (const JsonNode& mesh : meshes_) instances_.push_back({&mesh, {}});
+    }
+
+    /// A node below none of the roots has only itself above it.
+    void check_all_seen(const std::vector<bool>& is_seen) const {
+        const auto unseen = std::find(is_seen.begin(), is_seen.end(), false);
+        if (unseen != is_seen.end())
+            nodes_[size_t(unseen - is_seen.begin())].fail("is a descendant of itself", kDamagedHint);
     }
 
     void read_parts(const JsonNode& mesh) {
@@ -179,7 +188,7 @@ class GltfBuilder {
         for (const JsonNode& primitive : mesh.get("primitives").elements()) {
             GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_);
             if (part.face_sizes.empty()) continue;
-            ++(part.uvs.empty() ? without_uv_ : with_uv_);
+            with_uv_ += part.uvs.empty() ? 0 : 1;
             most_uv_sets_ = std::max(most_uv_sets_, part.uv_set_count);
             if (part.normals.empty()) has_normals_ = false;
             if (part.tangents.empty()) has_tangents_ = false;
@@ -188,9 +197,6 @@ class GltfBuilder {
     }
 
     void check_uvs() const {
-        if (with_uv_ > 0 && without_uv_ > 0)
-            fail(fmt::format("some parts have uv set {} and some have not", uv_set_),
-                 "give every part uvs, or none");
         if (uv_set_ > 0 && with_uv_ == 0)
             fail(fmt::format("has no uv set {}", uv_set_),
                  fmt::format("it has {}, counted from 0", most_uv_sets_));
@@ -239,7 +245,7 @@ class GltfBuilder {
         Corner corner;
         corner.copy = copy_count_;
         corner.position = positions_.add(transform_point(world_from_node, load(part.positions, 3)));
-        if (with_uv_ > 0)
+        if (!part.uvs.empty())
             corner.uv = uvs_.add({part.uvs[2 * vertex], 1 - part.uvs[2 * vertex + 1]}); // v from the top
         Vec3f normal{};
         if (!part.normals.empty()) normal = vectors.carry_normal(load(part.normals, 3));
@@ -264,7 +270,7 @@ class GltfBuilder {
     std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
     std::vector<Corner> corners_;                                 ///< by vertex
     uint32_t copy_count_ = 0;
-    int with_uv_ = 0, without_uv_ = 0;
+    int with_uv_ = 0; ///< parts
     size_t most_uv_sets_ = 0;
     bool has_normals_ = true, has_tangents_ = true;
 };

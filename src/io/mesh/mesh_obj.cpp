@@ -96,7 +96,7 @@ class ObjReader {
         check_range(mesh_.uv_indices, mesh_.uvs.size(), "uv");
         check_range(mesh_.normal_indices, mesh_.normals.size(), "normal");
         check_creases();
-        if (mesh_.uv_indices.empty()) mesh_.uvs.clear();
+        if (!has_uvs_) mesh_.uvs.clear(), mesh_.uv_indices.clear();
         if (mesh_.normal_indices.size() != mesh_.position_indices.size())
             mesh_.normal_indices.clear(), mesh_.normals.clear();
         return std::move(mesh_);
@@ -162,16 +162,17 @@ class ObjReader {
         for (std::string_view word = text_.next_word(); !word.empty(); word = text_.next_word())
             corners_.push_back(read_corner(word));
         if (corners_.size() < 3) return;
+        // One corner without a uv leaves the whole face without.
+        const bool has_uvs = std::all_of(corners_.begin(), corners_.end(),
+                                         [](const Corner& corner) { return corner.indices[1] != 0; });
+        has_uvs_ = has_uvs_ || has_uvs;
         for (const Corner& corner : corners_) {
             const auto [position, uv, normal] = corner.indices;
             mesh_.position_indices.push_back(resolve(position, mesh_.positions.size(), "position"));
-            if (uv != 0) mesh_.uv_indices.push_back(resolve(uv, mesh_.uvs.size(), "uv"));
+            mesh_.uv_indices.push_back(has_uvs ? resolve(uv, mesh_.uvs.size(), "uv") : kNoIndex);
             if (normal != 0) mesh_.normal_indices.push_back(resolve(normal, mesh_.normals.size(), "normal"));
         }
         mesh_.face_sizes.push_back(uint32_t(corners_.size()));
-        const size_t uv_count = mesh_.uv_indices.size();
-        if (uv_count != 0 && uv_count != mesh_.position_indices.size())
-            fail_face("some corners have a uv and some have none", "give every face uvs, or none");
     }
 
     uint32_t resolve(int64_t index, size_t count, const char* what) const {
@@ -185,7 +186,7 @@ class ObjReader {
     void check_range(const std::vector<uint32_t>& indices, size_t count, const char* what) const {
         size_t face = 0, corner = 0;
         for (const uint32_t index : indices) {
-            if (index >= count) {
+            if (index >= count && index != kNoIndex) {
                 throw Error(ErrorKind::bad_input, {fmt::format("{} index {} is out of range: there are {}",
                                                                what, uint64_t(index) + 1, count),
                                                    fmt::format("{}, face {}", name_, face + 1),
@@ -264,6 +265,7 @@ class ObjReader {
     std::vector<Corner> corners_;
     std::vector<size_t> crease_lines_;
     size_t face_ = 0;
+    bool has_uvs_ = false; ///< of a face at least
 };
 
 } // namespace

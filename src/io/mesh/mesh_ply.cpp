@@ -138,9 +138,8 @@ class PlyBuilder {
         if (corners.size() < 3) return;
         mesh_.face_sizes.push_back(uint32_t(corners.size()));
         corners_.insert(corners_.end(), corners.begin(), corners.end());
+        has_face_uvs_.push_back(!uvs.empty());
         for (size_t k = 0; k + 1 < uvs.size(); k += 2) corner_uvs_.push_back({uvs[k], uvs[k + 1]});
-        if (!corner_uvs_.empty() && corner_uvs_.size() != corners_.size())
-            cursor_.fail("some faces have texture coordinates and some have none");
     }
 
     /// Welds the values of the vertices; the corners get the index of theirs.
@@ -160,10 +159,18 @@ class PlyBuilder {
         if (corner_uvs_.empty()) {
             weld<Vec2f, 2>(uvs_, mesh_.uvs, mesh_.uv_indices);
         } else {
-            UvWelder uvs(mesh_.uvs);
-            for (const Vec2f& uv : corner_uvs_) mesh_.uv_indices.push_back(uvs.add(uv));
+            weld_corner_uvs();
         }
         return std::move(mesh_);
+    }
+
+    /// Faces with an empty list have no uvs.
+    void weld_corner_uvs() {
+        UvWelder uvs(mesh_.uvs);
+        auto uv = corner_uvs_.begin();
+        for (size_t face = 0; face < mesh_.face_sizes.size(); ++face)
+            for (uint32_t k = 0; k < mesh_.face_sizes[face]; ++k)
+                mesh_.uv_indices.push_back(has_face_uvs_[face] ? uvs.add(*uv++) : kNoIndex);
     }
 
     const std::string& name_;
@@ -173,6 +180,7 @@ class PlyBuilder {
     uint64_t vertex_count_ = 0;
     std::vector<Vec3f> positions_, normals_;
     std::vector<Vec2f> uvs_, corner_uvs_;
+    std::vector<bool> has_face_uvs_;
     std::vector<uint32_t> corners_; ///< of the vertices as they stand in the file
 };
 

@@ -22,11 +22,12 @@ void append_uint32(std::string& bytes, uint32_t value) {
 
 void append_float(std::string& bytes, float value) { append_uint32(bytes, std::bit_cast<uint32_t>(value)); }
 
-/// The uv of each vertex; empty where the mesh has none, or a vertex has several.
+/// The uv of each vertex; empty where the mesh has none, a face has none, or a vertex has several.
 std::vector<Vec2f> find_vertex_uvs(const Mesh& mesh) {
     std::vector<Vec2f> uvs(mesh.positions.size());
     std::vector<uint8_t> is_set(mesh.positions.size());
     for (size_t corner = 0; corner < mesh.uv_indices.size(); ++corner) {
+        if (mesh.uv_indices[corner] == kNoIndex) return {};
         const uint32_t vertex = mesh.position_indices[corner];
         const Vec2f& uv = mesh.uvs[mesh.uv_indices[corner]];
         if (is_set[vertex] != 0 && !(uvs[vertex] == uv)) return {};
@@ -58,9 +59,9 @@ std::string format_obj(const Mesh& mesh) {
         text += 'f';
         for (uint32_t k = 0; k < size; ++k, ++corner) {
             fmt::format_to(out, " {}", mesh.position_indices[corner] + 1);
-            if (has_uvs) fmt::format_to(out, "/{}", mesh.uv_indices[corner] + 1);
-            if (has_normals)
-                fmt::format_to(out, "{}/{}", has_uvs ? "" : "/", mesh.normal_indices[corner] + 1);
+            const bool has_uv = has_uvs && mesh.uv_indices[corner] != kNoIndex;
+            if (has_uv) fmt::format_to(out, "/{}", mesh.uv_indices[corner] + 1);
+            if (has_normals) fmt::format_to(out, "{}/{}", has_uv ? "" : "/", mesh.normal_indices[corner] + 1);
         }
         text += '\n';
     }
@@ -81,8 +82,9 @@ std::string format_ply(const Mesh& mesh) {
     for (const uint32_t size : mesh.face_sizes) {
         append_uint32(bytes, size);
         for (uint32_t k = 0; k < size; ++k) append_uint32(bytes, mesh.position_indices[first + k]);
-        if (has_corner_uvs) append_uint32(bytes, 2 * size);
-        for (uint32_t k = 0; has_corner_uvs && k < size; ++k) {
+        const bool has_uvs = has_corner_uvs && mesh.uv_indices[first] != kNoIndex;
+        if (has_corner_uvs) append_uint32(bytes, has_uvs ? 2 * size : 0);
+        for (uint32_t k = 0; has_uvs && k < size; ++k) {
             const Vec2f& uv = mesh.uvs[mesh.uv_indices[first + k]];
             append_float(bytes, uv.x), append_float(bytes, uv.y);
         }

@@ -16,6 +16,7 @@ struct FaceFrame {
     std::array<Vec3f, 4> positions;
     std::array<Vec2f, 4> uvs;
     Vec3f t, b, n;
+    bool has_uvs = false;
 };
 
 FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size, FrameLengths lengths) {
@@ -23,7 +24,8 @@ FaceFrame make_face_frame(const Mesh& mesh, size_t first, uint32_t size, FrameLe
     for (size_t k = 0; k < 4; ++k) {
         const size_t corner = first + std::min<size_t>(k, size - 1);
         face.positions[k] = mesh.positions[mesh.position_indices[corner]];
-        if (!mesh.uv_indices.empty()) face.uvs[k] = mesh.uvs[mesh.uv_indices[corner]];
+        face.has_uvs = !mesh.uv_indices.empty() && mesh.uv_indices[corner] != kNoIndex;
+        if (face.has_uvs) face.uvs[k] = mesh.uvs[mesh.uv_indices[corner]];
     }
     const Vec3f a = face.positions[1] - face.positions[0], c = face.positions[2] - face.positions[0];
     const Vec2f ua = face.uvs[1] - face.uvs[0], uc = face.uvs[2] - face.uvs[0];
@@ -96,7 +98,9 @@ void visit_displaced(const Mesh& mesh, const Displacement& map, const Affine& ob
                 const auto mix = [&](const auto& c) {
                     return (c[0] * (1 - u) + c[1] * u) * (1 - v) + (c[3] * (1 - u) + c[2] * u) * v;
                 };
-                visit(mix(face.positions) + displace(map, mix(face.uvs), face, object_from_world));
+                Vec3f offset{};
+                if (face.has_uvs) offset = displace(map, mix(face.uvs), face, object_from_world);
+                visit(mix(face.positions) + offset);
             }
         }
         first += size;

@@ -117,6 +117,21 @@ void check_texel_range(const DisplacementMap& map, const Polygons& polygons, uin
                  "unwrap the mesh again"});
 }
 
+/// For each face, whether its face of the mesh has no uvs; empty where all have.
+std::vector<uint8_t> mark_faces_without_uvs(const Mesh& mesh, const Polygons& polygons) {
+    std::vector<uint8_t> of_mesh, result;
+    size_t corner = 0;
+    bool is_any = false;
+    for (const uint32_t size : mesh.face_sizes) {
+        of_mesh.push_back(mesh.uv_indices[corner] == kNoIndex);
+        is_any = is_any || of_mesh.back() != 0;
+        corner += size;
+    }
+    if (!is_any) return result;
+    for (const uint32_t source : polygons.source_faces) result.push_back(of_mesh[source]);
+    return result;
+}
+
 /// What corners bring to their vertices beside uvs.
 void add_frame_attributes(const Polygons& polygons, uint32_t corner, VertexSplitter::Attributes& attributes) {
     if (!polygons.normals.empty()) attributes.normal = polygons.normals[corner];
@@ -152,29 +167,44 @@ void store_patches(std::vector<Quad>& quads, VertexSplitter& vertices, Surface& 
     surface.copies.shrink_to_fit();
 }
 
-/// Patches and split vertices.
-VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim) {
+/// Finds or adds the vertices of a face, whose map is cut into tiles where `is_udim`.
+Quad split_face(Surface& surface, const Polygons& polygons, uint32_t face, bool is_udim, bool has_uvs,
+                VertexSplitter& vertices) {
+    const uint32_t start = polygons.starts[face];
+    std::array<Vec2f, 4> uvs;
+    for (uint32_t k = 0; k < 4; ++k) {
+        uvs[k] = {polygons.uvs[start + k].x + 0.0f, polygons.uvs[start + k].y + 0.0f};
+        check_texel_range(surface.map, polygons, face, uvs[k]);
+    }
+    TileChoice tile;
+    if (!has_uvs)
+        tile.index = Surface::kNoTile;
+    else if (is_udim)
+        tile = choose_tile(surface.map, uvs);
+    VertexSplitter::Attributes attributes;
+    attributes.tile = tile.index;
+    attributes.handedness = compute_uv_area(uvs) < 0 ? -1.0f : 1.0f;
+    Quad quad;
+    for (uint32_t k = 0; k < 4; ++k) {
+        attributes.uv = {uvs[k].x - tile.offset.x, uvs[k].y - tile.offset.y};
+        add_frame_attributes(polygons, start + k, attributes);
+        quad.vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
+    }
+    return quad;
+}
+
+/// Patches and split vertices. `lacks_uvs`: marks of faces, or empty. Vertices of marked faces come first and
+/// are dominant, so that no corner of such a face is displaced.
+VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim,
+                              const std::vector<uint8_t>& lacks_uvs) {
     VertexSplitter vertices(polygons.positions.size());
     std::vector<Quad> quads(polygons.face_count());
-    for (uint32_t face = 0; face < polygons.face_count(); ++face) {
-        const uint32_t start = polygons.starts[face];
-        std::array<Vec2f, 4> uvs;
-        for (uint32_t k = 0; k < 4; ++k) {
-            uvs[k] = {polygons.uvs[start + k].x + 0.0f, polygons.uvs[start + k].y + 0.0f};
-            check_texel_range(surface.map, polygons, face, uvs[k]);
-        }
-        const TileChoice tile = is_udim ? choose_tile(surface.map, uvs) : TileChoice{};
-        VertexSplitter::Attributes attributes;
-        attributes.tile = tile.index;
-        attributes.handedness = compute_uv_area(uvs) < 0 ? -1.0f : 1.0f;
-        for (uint32_t k = 0; k < 4; ++k) {
-            attributes.uv = {uvs[k].x - tile.offset.x, uvs[k].y - tile.offset.y};
-            add_frame_attributes(polygons, start + k, attributes);
-            quads[face].vertex[k] = vertices.find_or_add(polygons.points[start + k], attributes);
-        }
-    }
+    for (const bool is_marked : {true, false})
+        for (uint32_t face = 0; face < polygons.face_count(); ++face)
+            if ((!lacks_uvs.empty() && lacks_uvs[face] != 0) == is_marked)
+                quads[face] = split_face(surface, polygons, face, is_udim, !is_marked, vertices);
     store_patches(quads, vertices, surface);
-    if (is_udim)
+    if (is_udim || !lacks_uvs.empty())
         for (uint32_t v = 0; v < vertices.count(); ++v)
             surface.vertex_tiles.push_back(vertices.attributes(v).tile);
     copy_positions(surface, polygons, vertices, vertices.count() - uint32_t(surface.copies.size()));
@@ -182,8 +212,9 @@ VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool i
     return list_sources(polygons, vertices);
 }
 
-/// Where patch edges between the same two points have different vertices, all take those of the lowest.
-void find_overrides(Surface& surface) {
+/// Where patch edges between the same two points have different vertices, all take those of the lowest patch
+/// that is marked in `lacks_uvs`, or else of the lowest: a face without uvs is not displaced at its edges.
+void find_overrides(Surface& surface, const std::vector<uint8_t>& lacks_uvs) {
     if (surface.copies.empty()) return;
     struct Edge {
         uint64_t key;
@@ -204,6 +235,10 @@ void find_overrides(Surface& surface) {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return a.key != b.key ? a.key < b.key : a.patch_edge < b.patch_edge;
     });
+    if (!lacks_uvs.empty())
+        std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+            return a.key != b.key ? a.key < b.key : lacks_uvs[a.patch_edge / 4] > lacks_uvs[b.patch_edge / 4];
+        });
     for (size_t first = 0, end = 0; first < edges.size(); first = end) {
         bool is_seam = false;
         const size_t begin = overrides.size();
@@ -244,8 +279,9 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     surface.name = mesh.name;
     surface.has_displacement = true;
     surface.map = make_displacement_map(displacement, object_from_world, pyramids);
-    VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim);
-    find_overrides(surface);
+    const std::vector<uint8_t> lacks_uvs = mark_faces_without_uvs(mesh, framed.base.polygons);
+    VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim, lacks_uvs);
+    find_overrides(surface, lacks_uvs);
     surface.controls = std::move(framed.base.controls);
     sources.point_normals = std::move(framed.point_normals);
     // A height moves along the normal alone.

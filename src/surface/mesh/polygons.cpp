@@ -74,7 +74,7 @@ void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t 
         if (!is_in_range(mesh.positions[point], kLargestCoordinate))
             throw_bad_face(where, face, fmt::format("position {} is not finite or above 1e18", point),
                            "write the mesh again");
-        if (!mesh.uv_indices.empty()) {
+        if (!mesh.uv_indices.empty() && mesh.uv_indices[start] != kNoIndex) {
             const uint32_t index = mesh.uv_indices[corner];
             check_index("uv", index, mesh.uvs.size());
             const Vec2f& uv = mesh.uvs[index];
@@ -179,7 +179,10 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
             // A face whose corners all coincide loses them all and has no area.
             if (result.positions[point] == result.positions[previous]) continue;
             result.points.push_back(representatives.empty() ? point : representatives[point]);
-            if (!mesh.uv_indices.empty()) result.uvs.push_back(mesh.uvs[mesh.uv_indices[start + k]]);
+            if (!mesh.uv_indices.empty()) {
+                const bool has_uv = mesh.uv_indices[start] != kNoIndex;
+                result.uvs.push_back(has_uv ? mesh.uvs[mesh.uv_indices[start + k]] : Vec2f{});
+            }
             if (!mesh.normal_indices.empty())
                 result.normals.push_back(mesh.normals[mesh.normal_indices[start + k]]);
             if (!mesh.tangents.empty()) result.tangents.push_back(mesh.tangents[start + k]);

@@ -16,13 +16,13 @@ struct Polygons {
     std::vector<Vec3f> positions;
     std::vector<uint32_t> starts; ///< first corner of each face, and the end of the last one
     std::vector<uint32_t> points; ///< index into positions, one a corner
-    std::vector<Vec2f> uvs;       ///< one a corner, or empty
+    std::vector<Vec2f> uvs;       ///< one a corner, or empty; (0, 0) where the face has none
     std::vector<Vec3f> normals;   ///< one a corner, or empty
     /// One a corner, or empty: direction of growing u (x, y, z), and the sign of the bitangent, as Mesh has
     /// it.
     std::vector<std::array<float, 4>> tangents;
     std::vector<Vec3f> bitangents; ///< one a corner, or empty; with them, `tangents` are dP/du, they dP/dv
-    std::vector<uint32_t> source_faces; ///< face of the mesh, for messages
+    std::vector<uint32_t> source_faces; ///< face of the mesh
     std::vector<Crease> creases;        ///< of the mesh, between these points
 
     uint32_t face_count() const { return uint32_t(source_faces.size()); }

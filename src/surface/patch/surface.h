@@ -90,6 +90,8 @@ struct Surface {
     EdgeOverrides overrides;    ///< edges whose samples come from the other side of a uv seam
     DisplacementMap map;        ///< no tiles: undisplaced
     bool has_displacement = false;
+    /// Uvs of polygons are bilinear, as in the patches that they were cut from; else linear on each triangle.
+    bool has_bilinear_uvs = false;
 
     static constexpr uint8_t kNoTile = 255;
     static_assert(kMaxMapTiles < kNoTile);

@@ -32,6 +32,7 @@ struct SurfaceData {
     uint first_control;       ///< of positions, in vertices: twelve per patch; kNone: bilinear patches
     uint first_mip;        ///< of override_bits: one word per patch (mips.h); kNone: mip level 0 everywhere
     uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
+    uint has_bilinear_uvs; ///< of polygons; else linear on each triangle
 };
 
 /// d = matrix (texel - midlevel).

@@ -17,8 +17,9 @@ struct Appearance {
 
 vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
     if (s.first_uv == kNone) return vec2(0.0);
-    return s.map != kNone ? blend_patch_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at)
-                          : blend_polygon_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at);
+    bool is_bilinear = s.map != kNone || s.has_bilinear_uvs != 0u;
+    return is_bilinear ? blend_patch_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at)
+                       : blend_polygon_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at);
 }
 
 void apply_material(MaterialData material, inout Appearance appearance) {
