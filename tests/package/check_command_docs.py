@@ -49,7 +49,7 @@ with tempfile.TemporaryDirectory() as folder:
     # Bash itself: what it offers after `relief render --bo`.
     script = (f"source {folder}/relief; COMP_WORDS=(relief render --bo); COMP_CWORD=2; _relief; echo ${{COMPREPLY[@]}}")
     offered = subprocess.run(["bash", "-c", script], capture_output=True, text=True).stdout.split()
-    if sorted(offered) != ["--bottom", "--bottom-cache", "--bounces"]:
+    if sorted(offered) != ["--bottom", "--bottom-cache", "--bounce-levels", "--bounces"]:
         faults.append(f"bash offers {offered} for `relief render --bo`")
 for fault in faults:
     print(fault)
