@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test quick dev asan tsan fuzz coverage format clean packages peers release asan-slice fuzz-slice gpu-bundle
+.PHONY: help render test quick dev asan tsan fuzz docs coverage format clean packages peers release asan-slice fuzz-slice gpu-bundle
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -20,6 +20,7 @@ help:
 	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers; then FUZZ_FILES (2000) mutated files'
 	@echo 'make coverage  line coverage of the tests: build/coverage/report.txt'
 	@echo 'make gpu-bundle  tests and measurements for a bare GPU machine: out/relief-gpu-bundle'
+	@echo 'make docs        the documentation as a site: build/docs'
 	@echo 'make format    clang-format over all sources'
 	@echo 'make clean     remove build/ (pictures in out/ stay)'
 	@echo 'make packages  install the Debian packages of tools/packages.txt that are missing'
@@ -84,6 +85,9 @@ fuzz: packages
 	tools/run_fuzzers.sh build/fuzz $(FUZZ_SECONDS)
 	$(call configure_and_build,release,relief)
 	fuzz/command/fuzz_command.py $(RELIEF) --count $(FUZZ_FILES) --keep build/fuzz/command
+
+docs: packages
+	tools/make_docs.sh
 
 coverage: packages
 	$(call configure_and_build,coverage)
