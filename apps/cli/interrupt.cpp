@@ -16,8 +16,10 @@ namespace {
 std::atomic<int> caught_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch lock-free atomics only");
 
+std::atomic<bool> is_polled{false};
+
 std::atomic<int64_t> caught_at{0}; ///< steady clock, milliseconds; 0: no signal yet
-static_assert(std::atomic<int64_t>::is_always_lock_free);
+static_assert(std::atomic<int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 int64_t get_milliseconds() {
     timespec now{};
@@ -28,6 +30,11 @@ int64_t get_milliseconds() {
 /// A quick double stroke counts as one: the picture is written.
 extern "C" void note_signal(int signal) {
     constexpr int64_t kTogether = 500;
+    if (!is_polled) {
+        constexpr char kMessage[] = "\nrelief: interrupted before the first ray; no picture was written\n";
+        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+        _exit(kExitSignalBase + signal);
+    }
     const int64_t now = get_milliseconds();
     int64_t first = 0;
     if (caught_at.compare_exchange_strong(first, now))
@@ -39,10 +46,13 @@ extern "C" void note_signal(int signal) {
 } // namespace
 
 void catch_interrupts() {
+    is_polled = false;
     // Signals ignored by the parent, as for background jobs, stay ignored.
     for (const int signal : {SIGINT, SIGTERM})
         if (std::signal(signal, note_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
+
+void poll_interrupts() { is_polled = true; }
 
 int get_interrupt() { return caught_signal.load(); }
 

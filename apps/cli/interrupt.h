@@ -1,11 +1,16 @@
-// Ctrl-C and SIGTERM during a render: the first signal cancels, a second one terminates immediately unless it
-// follows within half a second.
+// Ctrl-C and SIGTERM during a render. While it loads and prepares, a signal ends the command; later the first
+// one cancels the render, and a second one ends the command unless it follows within half a second.
 #pragma once
 
 namespace relief::cli {
 
-/// From now on the first SIGINT or SIGTERM is only recorded. Call once there is something to save.
+/// From now on SIGINT and SIGTERM end the command at once, with a message and exit code 128 + signal, until
+/// poll_interrupts is called. Call before a scene is loaded or prepared.
 void catch_interrupts();
+
+/// From now on the first signal is only recorded: to be called by what asks for it again and again. Thread
+/// safe.
+void poll_interrupts();
 
 /// The caught signal, 0 for none. Thread safe.
 int get_interrupt();

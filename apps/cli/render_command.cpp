@@ -182,7 +182,6 @@ void check_edits(const std::string& path, const std::string& only_displacement, 
 
 /// The first picture, then one after each edit with an output.
 int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene, Waiting waiting) {
-    catch_interrupts();
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
     std::vector<std::string> files = list_files(scene);
@@ -222,6 +221,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
 }
 
 int render_input(const RenderOptions& options, double start) {
+    catch_interrupts();
     Scene scene = load_input(options);
     add_assumption_warnings(scene);
     const double load_s = get_seconds() - start;

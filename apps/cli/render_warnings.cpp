@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/option_names.h"
+#include "interrupt.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
 
@@ -58,6 +59,9 @@ void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
     if (is_refused_) fmt::print(stderr, "relief: nothing is rendered with warnings under --strict\n");
 }
 
-bool RenderWatcher::is_cancelled() const { return is_refused_ || ProgressPrinter::is_cancelled(); }
+bool RenderWatcher::is_cancelled() const {
+    poll_interrupts();
+    return is_refused_ || ProgressPrinter::is_cancelled();
+}
 
 } // namespace relief::cli

@@ -49,6 +49,21 @@ TEST_F(Interrupt, after_the_first_pass_writes_a_picture_that_is_whole) {
         for (int x = 0; x < 64; ++x) ASSERT_GE(image.at(x, y, samples), 1);
 }
 
+/// A level that takes seconds to prepare: the signal comes long before the first ray.
+TEST_F(Interrupt, while_surfaces_are_prepared_ends_at_once) {
+    const pid_t process =
+        start({"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "8", "--vdm",
+               "bump.exr", "--preset", "cycles", "--size", "64x64", "--spp", "1048576", "-o", "no.png"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    kill(process, SIGTERM);
+    const CommandResult result = finish(process);
+    EXPECT_EQ(result.exit_code, 143) << result.errors;
+    EXPECT_NE(result.errors.find("interrupted before the first ray; no picture was written"),
+              std::string::npos)
+        << result.errors;
+    EXPECT_FALSE(exists("no.png"));
+}
+
 TEST_F(Interrupt, samples_go_beyond_the_scene_file_but_not_beyond_the_command_line) {
     write("scene.json", R"({"render": {"width": 8, "height": 8, "spp": 4}, "environment": {},
         "meshes": {"p": {"file": "plane.obj"}}, "objects": [{"mesh": "p"}]})");
