@@ -13,7 +13,6 @@
 #include "analysis/map_on_plane.h"
 #include "relief/error.h"
 #include "scene/faces_without_uvs.h"
-#include "surface/map/displacement_map.h"
 
 namespace relief {
 

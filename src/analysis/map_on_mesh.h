@@ -2,7 +2,6 @@
 // it fold?
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

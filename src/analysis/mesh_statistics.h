@@ -1,7 +1,6 @@
 // What the faces, edges and uvs of a mesh are, for inspection.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>

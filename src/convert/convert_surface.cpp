@@ -1,5 +1,4 @@
 // make_displaced_mesh: the micro-quads of displaced surfaces as a plain mesh with shared vertices.
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <unordered_map>

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "convert/texel_frames.h"
-#include "relief/types.h"
 
 namespace relief {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "cpu/tracer.h"
-#include "formulas/bounce_lod.h"
 
 namespace relief::cpu {
 

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "math/box.h"
 
 namespace relief::cpu {
 

@@ -1,9 +1,7 @@
 // The one interface that both engines stand behind.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "film/film.h"
 #include "prepare/prepared_scene.h"

@@ -2,7 +2,6 @@
 // numbers, and where all comparisons are false, an empty slot of a node is entered like any other.
 #pragma once
 
-#include "math/vec.h"
 
 namespace relief {
 

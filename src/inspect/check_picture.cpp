@@ -11,7 +11,6 @@
 #include "math/affine.h"
 #include "prepare/camera_frame.h"
 #include "prepare/validate_settings.h"
-#include "relief/error.h"
 #include "relief/inspect.h"
 #include "surface/patch/patch_samples.h"
 

@@ -1,5 +1,4 @@
 // What a mesh is and what stands in the way of displacing it.
-#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>

@@ -9,8 +9,6 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-#include <iterator>
-#include <memory>
 #include <system_error>
 #include <vector>
 

@@ -11,8 +11,6 @@
 #include "lab/trees.h"
 #include "lab/trees/heap_tree.h"
 #include "lab/trees/sah_kdtree.h"
-#include "lab/walks/walks.h"
-#include "math/box.h"
 
 namespace relief {
 

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "math/box.h"
 #include "math/vec.h"
 
 namespace relief {

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "math/affine.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 #include "surface/map/gutter.h"

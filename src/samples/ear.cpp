@@ -2,7 +2,6 @@
 // inner ridge, a bowl with walls cut under, the flap before the canal.
 #include <cmath>
 
-#include "math/vec.h"
 #include "samples/bake.h"
 #include "samples/lathe_model.h"
 #include "samples/models.h"

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "math/affine.h"
 #include "samples/noise.h"
 #include "samples/stage.h"
 

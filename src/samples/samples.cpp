@@ -1,10 +1,8 @@
 #include "relief/samples.h"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
-#include "math/affine.h"
 #include "relief/error.h"
 #include "samples/noise.h"
 #include "samples/party.h"

@@ -1,5 +1,4 @@
 // A ring of scales: rows of overlapping plates, each with a keel, growth lines and a lip over the next row.
-#include <array>
 #include <cmath>
 
 #include "math/vec.h"

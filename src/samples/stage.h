@@ -1,7 +1,6 @@
 // What every sample scene stands on and is lit by.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

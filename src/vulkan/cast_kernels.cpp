@@ -2,10 +2,8 @@
 #include "formulas/patch_tree.h"
 #include "vulkan/layout/bindings.h"
 
-#include <algorithm>
 #include <bit>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 

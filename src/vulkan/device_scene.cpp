@@ -9,7 +9,6 @@
 #include "formulas/patch_tree.h"
 #include "prepare/scene_trees.h"
 #include "surface/map/mip_chain.h"
-#include "vulkan/device/shader_table.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_scene.h"
 #include "vulkan/texel_store.h"

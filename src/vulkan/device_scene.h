@@ -3,11 +3,8 @@
 #pragma once
 
 #include <map>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "bvh/bvh.h"
 #include "formulas/constants.h"
 #include "prepare/prepared_scene.h"
 #include "vulkan/device/buffer.h"

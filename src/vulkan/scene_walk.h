@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "math/vec.h"
 
 namespace relief::vulkan {
 

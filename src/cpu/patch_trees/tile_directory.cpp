@@ -1,4 +1,3 @@
-#include <limits>
 
 #include "cpu/patch_trees/patch_tree.h"
 

@@ -1,7 +1,6 @@
 // All that gives light, for next-event estimation and for the rays that find a light by themselves.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "relief/image.h"
-#include "relief/types.h"
 
 namespace relief::cpu {
 

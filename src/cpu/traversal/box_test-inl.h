@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bvh/wide_bvh.h"
-#include "cpu/patch_trees/polygon_tree.h"
 #include "cpu/traversal/ray-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 
 #include <fmt/format.h>

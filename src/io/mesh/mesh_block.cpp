@@ -4,7 +4,6 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
-#include <span>
 #include <system_error>
 #include <type_traits>
 #include <vector>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "relief/error.h"
 #include "relief/scene.h"

@@ -1,6 +1,5 @@
 #include "io/mesh/mesh_writer.h"
 
-#include <algorithm>
 #include <bit>
 #include <iterator>
 #include <vector>

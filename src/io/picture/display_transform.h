@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "relief/image.h"
-#include "relief/types.h"
 
 namespace relief {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "io/picture/image_output.h"
-#include "math/vec.h"
 #include "relief/image.h"
 
 namespace relief {

@@ -1,7 +1,6 @@
 // aim_scene and turn_camera.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include "io/scene/asset_cache.h"
 #include "relief/io.h"
 #include "relief/scene.h"
-#include "scene/displacement_conventions.h"
 
 namespace relief {
 

@@ -1,7 +1,5 @@
 // save_scene_copy: the scene that is rendered as a scene file that names the files it was read from.
 #include <array>
-#include <cctype>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -10,7 +8,6 @@
 #include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
 #include "io/scene/scene_values.h"
-#include "io/scene/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
 

@@ -5,10 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
 #include "io/picture/image_coders.h"
-#include "io/scene/displacement_reader.h"
 #include "io/scene/json_node.h"
 #include "io/scene/scene_values.h"
 #include "io/scene/subdivision_json.h"

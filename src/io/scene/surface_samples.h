@@ -2,9 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <span>
 
-#include "math/box.h"
 #include "relief/scene.h"
 
 namespace relief {

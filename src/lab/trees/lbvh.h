@@ -15,9 +15,7 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "bvh/bvh.h"
 #include "lab/trees/heap_tree.h"
 
 namespace relief {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "math/box.h"
 
 namespace relief {
 

@@ -1,7 +1,6 @@
 // A ray and the conservative slab test: a ray that meets anything inside a box never misses the box.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

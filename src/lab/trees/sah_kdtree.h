@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "formulas/tree.h"
-#include "math/box.h"
 
 namespace relief {
 

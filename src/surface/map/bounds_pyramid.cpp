@@ -1,7 +1,6 @@
 #include "surface/map/bounds_pyramid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "surface/map/displacement_map.h"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 

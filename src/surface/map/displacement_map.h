@@ -6,7 +6,6 @@
 #include <mutex>
 #include <string>
 
-#include "math/affine.h"
 #include "surface/patch/surface.h"
 
 namespace relief {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <utility>
 
 #include "surface/map/texels.h"
 #include "surface/mesh/uv_islands.h"

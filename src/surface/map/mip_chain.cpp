@@ -1,7 +1,6 @@
 #include "surface/map/mip_chain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 

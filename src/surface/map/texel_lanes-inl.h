@@ -7,7 +7,6 @@
 #endif
 
 #include "formulas/lanes-inl.h"
-#include "relief/scene.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {

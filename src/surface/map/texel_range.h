@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "relief/scene.h"
 
 namespace relief {
 

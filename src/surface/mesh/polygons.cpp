@@ -1,6 +1,5 @@
 #include "surface/mesh/polygons.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>

@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "math/vec.h"
 #include "surface/mesh/polygons.h"
 
 namespace relief {

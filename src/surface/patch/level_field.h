@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "math/affine.h"
 #include "surface/patch/surface.h"
 
 namespace relief {

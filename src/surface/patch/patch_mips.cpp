@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "formulas/mips.h"
 #include "surface/map/mip_chain.h"

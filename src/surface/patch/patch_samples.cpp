@@ -1,6 +1,5 @@
 #include "surface/patch/patch_samples.h"
 
-#include <cmath>
 
 #include "base/check.h"
 #include "formulas/displace.h"

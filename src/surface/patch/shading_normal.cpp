@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 
 #include "formulas/basis.h"
 #include "formulas/displace.h"

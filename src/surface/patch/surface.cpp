@@ -1,6 +1,5 @@
 #include "surface/patch/surface.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace relief {

@@ -9,13 +9,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "formulas/control_points.h"
 #include "formulas/levels.h"
-#include "math/affine.h"
 #include "math/box.h"
 #include "relief/scene.h"
 #include "surface/map/bounds_pyramid.h"

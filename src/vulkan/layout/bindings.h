@@ -2,7 +2,6 @@
 // device_rays.h and device_paths.h.
 #ifndef RELIEF_BINDINGS_H
 #define RELIEF_BINDINGS_H
-#include "formulas/constants.h"
 
 #include "formulas/begin.h"
 

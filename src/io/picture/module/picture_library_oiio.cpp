@@ -1,5 +1,4 @@
 // The module relief_pictures: pixels as stored, without any colour or alpha conversion.
-#include <algorithm>
 #include <fstream>
 #include <istream>
 #include <memory>
