@@ -9,7 +9,7 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 # relief_shader(NAME SOURCE FLAGS...) adds the SPIR-V file to the list `compiled` of the caller.
 function(relief_shader name source)
   add_custom_command(OUTPUT ${folder}/${name}.spv
-    COMMAND ${RELIEF_GLSLC} --target-env=vulkan1.3 -O -Werror -I ${PROJECT_SOURCE_DIR}/src ${ARGN}
+    COMMAND ${RELIEF_GLSLC} --target-env=vulkan1.3 -std=460 -O -Werror -I ${PROJECT_SOURCE_DIR}/src ${ARGN}
             -MD -MF ${folder}/${name}.d -MT ${folder}/${name}.spv -o ${folder}/${name}.spv ${source}
     DEPENDS ${source} DEPFILE ${folder}/${name}.d VERBATIM)
   set(compiled ${compiled} ${folder}/${name}.spv PARENT_SCOPE)

@@ -1,6 +1,4 @@
 // Emission of the environment, suns and point lights hit by camera and bounce rays.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"

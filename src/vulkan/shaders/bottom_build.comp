@@ -1,6 +1,4 @@
 // Split form, build kernel: patch trees of one bin, one or several per work group.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/bottom_build.glsl"
 

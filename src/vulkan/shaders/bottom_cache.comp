@@ -1,8 +1,6 @@
 // One job: looks up its tree in the pool; if it is missing, too coarse or about to be overwritten, allocates space. The
 // pool is a ring buffer; a tree lives until it is overwritten. A job without room in this wave keeps its needs and is
 // deferred to the next one.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

@@ -1,7 +1,5 @@
 // Fused form (Harada 2015, algorithm 1): persistent work groups take trees from a queue; each builds its tree with all
 // lanes, then traces one ray per lane.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/bottom_build.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"

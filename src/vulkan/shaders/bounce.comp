@@ -1,6 +1,4 @@
 // Samples the next ray of each path, up to where it sees a coarser surface, or terminates it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/surface_point.glsl"

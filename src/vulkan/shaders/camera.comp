@@ -1,6 +1,4 @@
 // Starts one path per pixel with a camera ray through a random point of the pixel.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 

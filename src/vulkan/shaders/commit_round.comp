@@ -1,7 +1,5 @@
 // End of a round for one ray: commits a nearer hit from the patch trees, advances the cursor beyond the offered
 // candidates, and keeps the ray active while there may be candidates in front of its hit.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

@@ -1,6 +1,4 @@
 // Far parts, on a coarser surface, of the bounce rays that met nothing in their near parts.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 

@@ -1,6 +1,4 @@
 // Adds the result of each path to the sums of its pixel.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 

@@ -1,7 +1,5 @@
 // Groups the sorted pairs into jobs: range of pairs per tree, and the needs of its rays, which are the finest level and
 // how much coarser edges are.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

@@ -1,6 +1,4 @@
 // Computes the patch (u, v) of a hit. Re-evaluates the micro-triangle, because its tree may have been overwritten.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/patch_evaluation.glsl"
 #include "vulkan/shaders/rays.glsl"

@@ -1,8 +1,6 @@
 // The framebuffer in squares, for fragments that act as the invocations of a kernel (GRAPP 2019, section 3.3, fragment
 // shaders): a point as large as a square replaces a work group. Not two triangles: helper invocations would run along
 // their shared edge, and lavapipe's loops wait for those.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"
 

@@ -1,6 +1,4 @@
 // Geometric normals of hits, oriented by the winding, for ray queries.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/surface_point.glsl"

@@ -1,7 +1,5 @@
 // Far parts of bounce rays that met the coarse surface from within, as they began between it and the fine one:
 // these go on along the fine one.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/surface_point.glsl"

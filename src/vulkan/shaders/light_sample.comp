@@ -1,6 +1,4 @@
 // Light at a vertex: emission of the surface, and next-event estimation, whose shadow ray is traced later.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"

@@ -1,7 +1,5 @@
 // Split form, traversal kernel: one invocation per pair. After the fused form it traces the excess pairs of trees with
 // very many.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"
 

@@ -1,6 +1,4 @@
 // Sizes of subsequent launches, as work groups and as full-screen draws, from counters on the device.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"

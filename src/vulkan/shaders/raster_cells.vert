@@ -1,6 +1,4 @@
 // A cell as the conservative rectangle of all pixels whose rays can hit it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
 #include "vulkan/shaders/extensions.glsl"
 #include "vulkan/shaders/raster.glsl"

@@ -1,7 +1,5 @@
 // Tests the ray of a pixel against the two triangles of a cell, with the tracer's own test. No loops: helper
 // invocations would use up the loop budget of their neighbours on lavapipe.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
 #include "vulkan/shaders/extensions.glsl"
 #include "vulkan/shaders/rays.glsl"

@@ -1,7 +1,5 @@
 // Commits the hit of a camera ray in a wave of items if it is nearer than those of previous waves; bit-identical to a
 // traced hit.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define READS_RASTER_VERTICES
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"

@@ -1,6 +1,4 @@
 // Clears the hits of camera rays before rasterisation.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "vulkan/shaders/raster.glsl"

@@ -1,6 +1,4 @@
 // Vertices of a wave of items: displaced vertices at the levels of camera rays, or polygon corners.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/patch_evaluation.glsl"
 #include "vulkan/shaders/raster.glsl"

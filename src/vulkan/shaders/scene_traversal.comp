@@ -1,8 +1,6 @@
 // Front-to-back traversal of the scene trees by one ray: polygons are intersected immediately; of the displaced
 // patches, the nearest few beyond the ray's cursor become candidates (Harada 2015, section 1.5.3, in rounds). Rays that
 // wait for tiles repeat the round, which is safe: it only changes hits, and those only get nearer.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 
 const bool kMayOfferTwice = false;

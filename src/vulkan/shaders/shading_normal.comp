@@ -1,6 +1,4 @@
 // Shading normal and textured material at hits. First hits are added to the layers.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/textures.glsl"

@@ -1,6 +1,4 @@
 // Adds the contribution of unoccluded shadow rays.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 

@@ -1,6 +1,4 @@
 // First step of a pass: counts each digit in each tile. histogram[digit * tiles + tile].
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 

@@ -1,7 +1,5 @@
 // Second step of a pass: exclusive prefix sum of the histogram, the start of each tile's pairs of each digit. One group
 // processes all of it, kSortGroupSize * kSortItemCount words at a time.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 

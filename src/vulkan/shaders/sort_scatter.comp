@@ -1,7 +1,5 @@
 // Third step of a pass: moves each pair to the start of its tile and digit, plus the number of equal digits before it
 // in the tile. Stable.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 

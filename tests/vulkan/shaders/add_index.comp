@@ -1,6 +1,4 @@
 // values[i] = values[i] * factor + i.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 layout(binding = kBindFilm) buffer Values { uint values[]; };
 layout(push_constant) uniform Push { uint count, factor; };

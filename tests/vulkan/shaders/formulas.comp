@@ -1,6 +1,4 @@
 // Runs every shared formula on the device.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "all_formulas.glsl"
 #include "formula_cases-inl.h"

@@ -1,6 +1,4 @@
 // Writes the fields of the crossing structs one by one, by name.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "all_formulas.glsl"
 #include "device_fields-inl.h"

@@ -1,6 +1,4 @@
 // Reads the texel buffer of each format, as the kernels see them, into words.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/layout/bindings.h"
 layout(local_size_x_id = 0) in;
 layout(binding = kBindNodes) uniform usamplerBuffer rgba32_uint;

@@ -1,6 +1,4 @@
 // Steps from entry i to the end of its list.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 layout(binding = kBindFilm) readonly buffer Next { uint next[]; };
 layout(binding = kBindPaths) writeonly buffer Steps { uint steps[]; };

@@ -1,6 +1,4 @@
 // Boxes of one level of a heap, from the level below.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

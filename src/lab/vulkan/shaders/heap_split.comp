@@ -1,7 +1,5 @@
 // The heap of Murguia et al. 2013, from the top: nodes of one level are cut, or stay leaves. Slots without a node are
 // written too, so that nothing of an earlier build is left.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

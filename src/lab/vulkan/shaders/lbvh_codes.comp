@@ -1,6 +1,4 @@
 // The Morton code of each box, beside the number of its primitive: what is sorted.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

@@ -1,6 +1,4 @@
 // Which entries begin the right child of some node, how many of them each tile has, and the order of primitives.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

@@ -1,7 +1,5 @@
 // One invocation a cut finds the node that is cut there and writes both its children: what they hold, and their
 // links (after Karras 2012). Boxes follow in lbvh_refit.comp.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

@@ -1,6 +1,4 @@
 // From flags of cuts to their numbers.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 #include "lab/vulkan/shaders/lbvh_scan.glsl"

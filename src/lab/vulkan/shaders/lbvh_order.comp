@@ -1,7 +1,5 @@
 // Codes of 63 bits are sorted by their low words, then by their high ones, which this brings; afterwards it lays the
 // whole codes out in their order.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

@@ -1,7 +1,5 @@
 // Boxes from the leaves upwards: whoever brings the second child of a pair goes on with their parent. No invocation
 // waits for another one.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

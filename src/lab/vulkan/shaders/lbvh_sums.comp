@@ -1,6 +1,4 @@
 // From the cuts of each tile to those before it: one group walks over all tiles.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 #include "lab/vulkan/shaders/lbvh_scan.glsl"

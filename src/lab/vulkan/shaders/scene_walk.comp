@@ -1,8 +1,6 @@
 // One ray through the two upper levels by a traversal chosen by name, compiled once for each (variants.cmake): what
 // scene_traversal.comp does with its stack. A leaf of the tree of instances puts the tree of a surface in the place of
 // the walk; at its end resume_walk() goes on with the next instance of that leaf, or brings the old walk back.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 
 #ifdef WALK_KD

@@ -1,6 +1,4 @@
 // Rays of a buffer through one tree; compiled once a traversal (variants.cmake).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/tree_walk.glsl"
 
