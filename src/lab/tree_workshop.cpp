@@ -64,7 +64,7 @@ void describe_form(const LinkedBvh& tree, TreeBuild& report) {
 }
 
 void describe_form(const DenseHeap& tree, TreeBuild& report) {
-    report.slots = tree.slots.size(), report.used = count_used_slots(tree);
+    report.slots = tree.nodes.size(), report.used = count_used_slots(tree);
     report.depth = compute_depth(tree);
 }
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "bvh/sah_bvh.h"
-#include "lab/trees/brute_force.h"
 #include "support/box_sets.h"
+#include "support/brute_force.h"
 #include "support/walk_plain.h"
 #include "support/walk_wide.h"
 

@@ -163,9 +163,9 @@ TEST(DenseHeap, has_each_node_in_the_slot_of_its_key) {
         const std::vector<uint8_t> axes = compute_axes(bvh);
         const DenseHeap heap = test::make_dense_heap(bvh, axes);
         EXPECT_EQ(count_used_slots(heap), bvh.nodes.size());
-        EXPECT_EQ(heap.slots[0].word, scalar::kEmptySlot);
+        EXPECT_EQ(heap.nodes[0].word, scalar::kEmptySlot);
         for (const KeyedNode& place : find_keys(bvh))
-            expect_same_node(heap.slots[place.key], bvh, axes, place.node);
+            expect_same_node(heap.nodes[place.key], bvh, axes, place.node);
     }
 }
 

@@ -9,9 +9,9 @@
 #include "formulas/tree.h"
 #include "lab/trees/lbvh.h"
 #include "lab/walks/trail.h"
-#include "lab/walks/walks.h"
 #include "support/dense_heap.h"
 #include "support/ray_cases.h"
+#include "support/walks.h"
 
 namespace relief {
 namespace {

@@ -54,7 +54,7 @@ struct Forest {
 
     uint add_heap(const DenseHeap& tree, uint first_entry, uint kind) {
         const uint base = uint(slots.size());
-        for (TreeNode node : tree.slots) {
+        for (TreeNode node : tree.nodes) {
             if (node.word != kEmptySlot && is_leaf_word(node.word)) {
                 node.first = enter(tree.primitive_ids, node.first, first_entry, kind);
                 node.word |= kind;

@@ -8,8 +8,8 @@
 
 #include "formulas/object_ray.h"
 #include "formulas/tree.h"
-#include "lab/walks/walks.h"
 #include "support/box_sets.h"
+#include "support/walks.h"
 
 namespace relief {
 namespace {

@@ -146,7 +146,7 @@ TEST(Lbvh, holds_every_primitive_once_and_children_inside_parents) {
 
 TEST(Lbvh, is_empty_without_primitives) {
     EXPECT_TRUE(LbvhBuilder::build({}, {}).bvh.nodes.empty());
-    EXPECT_TRUE(LbvhBuilder::build_heap({}, {}).slots.empty());
+    EXPECT_TRUE(LbvhBuilder::build_heap({}, {}).nodes.empty());
     EXPECT_TRUE(compute_morton_order({}, 30).ids.empty());
 }
 
@@ -161,7 +161,7 @@ TEST(Lbvh, is_the_same_for_any_number_of_threads) {
         EXPECT_EQ(serial.axes, parallel.axes);
         with_threads(1, [&] { serial_heap = LbvhBuilder::build_heap(boxes, {config.code_bits, 18}); });
         with_threads(2, [&] { parallel_heap = LbvhBuilder::build_heap(boxes, {config.code_bits, 18}); });
-        EXPECT_TRUE(test::is_same_bytes(serial_heap.slots, parallel_heap.slots));
+        EXPECT_TRUE(test::is_same_bytes(serial_heap.nodes, parallel_heap.nodes));
         EXPECT_EQ(serial_heap.primitive_ids, parallel_heap.primitive_ids);
     }
 }
@@ -180,7 +180,7 @@ TEST(Lbvh, of_finer_codes_costs_less_where_primitives_crowd) {
 void expect_same_tree(const DenseHeap& heap, const AxisBvh& tree, uint32_t key, uint32_t index,
                       size_t& used) {
     ++used;
-    const TreeNode& node = heap.slots[key];
+    const TreeNode& node = heap.nodes[key];
     const BvhNode& other = tree.bvh.nodes[index];
     ASSERT_EQ(node.lower, other.lower);
     ASSERT_EQ(node.upper, other.upper);
@@ -205,12 +205,12 @@ TEST(Lbvh, in_the_heap_of_the_paper_is_the_compact_tree) {
                 config.code_bits = code_bits;
                 config.max_leaf_size = scalar::kNodeCountMask;
                 const DenseHeap heap = LbvhBuilder::build_heap(set.boxes, {code_bits, levels});
-                EXPECT_EQ(heap.slots.size(), size_t(1) << levels);
+                EXPECT_EQ(heap.nodes.size(), size_t(1) << levels);
                 size_t used = 0;
                 expect_same_tree(heap, LbvhBuilder::build(set.boxes, config), 1, 0, used);
                 EXPECT_EQ(used, count_used_slots(heap));
                 std::vector<int> seen(set.boxes.size());
-                for (const TreeNode& node : heap.slots) {
+                for (const TreeNode& node : heap.nodes) {
                     if (node.word == scalar::kEmptySlot || !scalar::is_leaf_word(node.word)) continue;
                     for (uint32_t k = 0; k < scalar::get_word_count(node.word); ++k)
                         ++seen[heap.primitive_ids[node.first + k]];

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "lab/walks/trail.h"
-#include "lab/walks/walks.h"
 #include "support/dense_heap.h"
 #include "support/synthetic_trees.h"
+#include "support/walks.h"
 
 namespace relief {
 namespace {
@@ -39,7 +39,7 @@ class OrderCase {
             expect<TraversalKind::trail>(make_walk_view(succinct_), Order::axis);
             expect<TraversalKind::pair_trail>(make_walk_view(succinct_), Order::distance);
         }
-        if (!dense_.slots.empty()) {
+        if (!dense_.nodes.empty()) {
             expect<TraversalKind::trail>(make_walk_view(dense_), Order::axis);
             expect<TraversalKind::pair_trail>(make_walk_view(dense_), Order::distance);
         }

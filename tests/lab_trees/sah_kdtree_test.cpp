@@ -6,9 +6,9 @@
 
 #include "base/parallel.h"
 #include "formulas/tree.h"
-#include "lab/walks/walks.h"
 #include "support/ray_cases.h"
 #include "support/tree_checks.h"
+#include "support/walks.h"
 
 namespace relief {
 namespace {

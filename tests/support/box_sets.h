@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/trees/ray_box.h"
+#include "lab/walks/walks.h"
 #include "math/box.h"
 
 namespace relief::test {

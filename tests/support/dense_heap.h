@@ -18,7 +18,7 @@ inline DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) 
     heap.primitive_ids = bvh.primitive_ids;
     TreeNode none{};
     none.word = scalar::kEmptySlot;
-    heap.slots.assign(size_t(1) << heap.levels, none);
+    heap.nodes.assign(size_t(1) << heap.levels, none);
     struct KeyedNode {
         uint64_t key;
         uint32_t node;
@@ -28,7 +28,7 @@ inline DenseHeap make_dense_heap(const Bvh& bvh, std::span<const uint8_t> axes) 
         const KeyedNode place = pending.back();
         pending.pop_back();
         const BvhNode& node = bvh.nodes[place.node];
-        TreeNode& slot = heap.slots[place.key];
+        TreeNode& slot = heap.nodes[place.key];
         slot = std::bit_cast<TreeNode>(node);
         if (node.is_leaf()) continue;
         slot.first = 0, slot.word = scalar::make_inner_word(axes[place.node]);

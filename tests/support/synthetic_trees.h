@@ -11,7 +11,7 @@
 #include "formulas/object_ray.h"
 #include "formulas/tree.h"
 #include "lab/trees/heap_tree.h"
-#include "lab/trees/ray_box.h"
+#include "lab/walks/walks.h"
 
 namespace relief::test {
 

@@ -2,30 +2,39 @@
 #pragma once
 
 #include <bit>
+#include <cstdint>
+#include <vector>
 
-#include "lab/walks/walks.h"
+#include "support/walks.h"
 
 namespace relief {
 
 namespace test {
 
-struct PlainWalkView {
-    using Key = uint32_t;
-    const Bvh& tree;
+/// As the walks read a tree.
+struct PlainTree {
+    struct Nodes {
+        const Bvh& bvh;
+        bool empty() const { return bvh.nodes.empty(); }
+        TreeNode operator[](uint32_t node) const { return std::bit_cast<TreeNode>(bvh.nodes[node]); }
+    };
 
-    bool is_empty() const { return tree.nodes.empty(); }
-    TreeNode load_node(uint32_t node) const { return std::bit_cast<TreeNode>(tree.nodes[node]); }
-    const std::vector<uint32_t>& primitive_ids() const { return tree.primitive_ids; }
+    explicit PlainTree(const Bvh& bvh) : nodes{bvh}, primitive_ids(bvh.primitive_ids) {}
+
+    const Nodes nodes;
+    const std::vector<uint32_t>& primitive_ids;
 };
 
 } // namespace test
 
 template <class Leaf> void closest_hit(const Bvh& bvh, BoxRay& ray, Leaf&& leaf) {
-    closest_hit<TraversalKind::stack>(test::PlainWalkView{bvh}, ray, leaf);
+    const test::PlainTree tree(bvh);
+    closest_hit<TraversalKind::stack>(make_walk_view(tree), ray, leaf);
 }
 
 template <class Leaf> bool any_hit(const Bvh& bvh, const BoxRay& ray, Leaf&& leaf) {
-    return any_hit<TraversalKind::stack>(test::PlainWalkView{bvh}, ray, leaf);
+    const test::PlainTree tree(bvh);
+    return any_hit<TraversalKind::stack>(make_walk_view(tree), ray, leaf);
 }
 
 } // namespace relief

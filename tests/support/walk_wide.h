@@ -7,7 +7,7 @@
 
 #include "base/check.h"
 #include "bvh/wide_bvh.h"
-#include "lab/trees/ray_box.h"
+#include "support/slab_ray.h"
 
 namespace relief {
 

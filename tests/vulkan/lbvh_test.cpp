@@ -95,7 +95,7 @@ class DeviceLbvh : public GpuTest {
                                  std::to_string(config.levels) + " levels";
         const DenseHeap expected = LbvhBuilder::build_heap(set.boxes, config);
         const DeviceTree found = builder_.build_heap(upload_boxes(set.boxes), config);
-        expect_same_nodes(found, expected.slots, name);
+        expect_same_nodes(found, expected.nodes, name);
         expect_same_words(found.primitive_ids, expected.primitive_ids, name + ": ids");
         EXPECT_EQ(found.depth, compute_depth(expected)) << name;
     }
@@ -147,7 +147,7 @@ TEST_F(DeviceLbvh, of_a_mesh_is_that_of_its_triangles_boxes) {
     const DeviceMesh mesh = upload_mesh(device(), positions, indices);
     const AxisBvh lbvh = LbvhBuilder::build(set.boxes, {});
     expect_same_nodes(builder_.build(mesh, {}), make_linked_bvh(lbvh).nodes, "mesh");
-    expect_same_nodes(builder_.build_heap(mesh, {}), LbvhBuilder::build_heap(set.boxes, {}).slots, "heap");
+    expect_same_nodes(builder_.build_heap(mesh, {}), LbvhBuilder::build_heap(set.boxes, {}).nodes, "heap");
     EXPECT_THROW(upload_mesh(device(), positions, std::vector<uint32_t>{0, 1, 9000}), Error);
 }
 

@@ -454,7 +454,7 @@ TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
             EXPECT_EQ(noted.leaves[k].low, 1u);
             continue;
         }
-        const TreeNode& leaf = host.slots[noted.leaves[k].low];
+        const TreeNode& leaf = host.nodes[noted.leaves[k].low];
         ASSERT_TRUE(scalar::is_leaf_word(leaf.word));
         const auto begin = host.primitive_ids.begin() + leaf.first;
         EXPECT_EQ(std::count(begin, begin + scalar::get_word_count(leaf.word), noted.hits[k].primitive), 1);

@@ -155,7 +155,7 @@ SuccinctHeap make_succinct_heap(const AxisBvh& tree) {
 }
 
 bool contains_key(const DenseHeap& heap, uint64_t key) {
-    return key < heap.slots.size() && heap.slots[key].word != scalar::kEmptySlot;
+    return key < heap.nodes.size() && heap.nodes[key].word != scalar::kEmptySlot;
 }
 
 /// Its parent has to be an inner node: what find_succinct_slot takes for granted, bit by bit.
@@ -185,13 +185,13 @@ bool contains_key(const SuccinctHeap& heap, uint64_t key) {
 }
 
 int compute_depth(const DenseHeap& heap) {
-    size_t last = heap.slots.size();
-    while (last > 1 && heap.slots[last - 1].word == scalar::kEmptySlot) --last;
+    size_t last = heap.nodes.size();
+    while (last > 1 && heap.nodes[last - 1].word == scalar::kEmptySlot) --last;
     return last > 1 ? int(std::bit_width(last - 1)) - 1 : 0;
 }
 
 size_t count_used_slots(const DenseHeap& heap) {
-    return size_t(std::count_if(heap.slots.begin(), heap.slots.end(),
+    return size_t(std::count_if(heap.nodes.begin(), heap.nodes.end(),
                                 [](const TreeNode& node) { return node.word != scalar::kEmptySlot; }));
 }
 

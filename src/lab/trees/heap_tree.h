@@ -14,12 +14,12 @@ namespace relief {
 struct DenseHeap {
     static constexpr int kMaxLevels = 26; ///< 2 GiB
 
-    std::vector<TreeNode> slots; ///< 2^levels, none: no primitives
+    std::vector<TreeNode> nodes; ///< 2^levels slots, none: no primitives
     std::vector<uint32_t> primitive_ids;
     int levels = 0; ///< of the deepest node, counting from 1
 
     size_t byte_count() const {
-        return slots.size() * sizeof(TreeNode) + primitive_ids.size() * sizeof(uint32_t);
+        return nodes.size() * sizeof(TreeNode) + primitive_ids.size() * sizeof(uint32_t);
     }
 };
 

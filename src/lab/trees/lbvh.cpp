@@ -164,7 +164,7 @@ class HeapBuild {
     DenseHeap run() {
         TreeNode none{};
         none.word = scalar::kEmptySlot;
-        heap_.slots.assign(size_t(1) << levels_, none);
+        heap_.nodes.assign(size_t(1) << levels_, none);
         heap_.levels = levels_;
         build_node({0, uint32_t(boxes_.size())}, 1);
         heap_.primitive_ids = std::move(order_.ids);
@@ -173,7 +173,7 @@ class HeapBuild {
 
   private:
     Box build_node(const Range& range, uint32_t key) {
-        TreeNode& node = heap_.slots[key];
+        TreeNode& node = heap_.nodes[key];
         const bool is_last_level = int(std::bit_width(key)) == levels_;
         if (is_last_level || order_.codes[range.begin] == order_.codes[range.last()]) {
             const Box box = compute_range_box(boxes_, order_.ids, range);

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-
 namespace relief {
 
 /// Equal codes keep the order of their indices.

@@ -99,7 +99,7 @@ DeviceTree upload_tree(const Device& device, const LinkedBvh& tree) {
 }
 
 DeviceTree upload_tree(const Device& device, const DenseHeap& tree) {
-    DeviceTree result = upload_nodes(device, TreeForm::dense_heap, tree, tree.slots, {});
+    DeviceTree result = upload_nodes(device, TreeForm::dense_heap, tree, tree.nodes, {});
     result.depth = std::max(tree.levels - 1, 0);
     return result;
 }

@@ -1,4 +1,4 @@
-#include "lab/trees/ray_box.h"
+#include "support/slab_ray.h"
 
 #include <gtest/gtest.h>
 

@@ -1,20 +1,13 @@
-// A ray and the conservative slab test: a ray that meets anything inside a box never misses the box.
+// The conservative slab test: a ray that meets anything inside a box never misses the box.
 #pragma once
 
 #include <cmath>
 #include <limits>
 
+#include "lab/walks/walks.h"
 #include "math/box.h"
 
 namespace relief {
-
-/// Direction of any length but zero; t counts in its lengths. 0 <= t_min.
-struct BoxRay {
-    Vec3f origin{};
-    Vec3f direction{};
-    float t_min = 0;
-    float t_max = std::numeric_limits<float>::infinity();
-};
 
 /// What the slab test needs of a ray, made once. The interval is passed with each test, since hits shorten
 /// it.

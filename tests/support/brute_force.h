@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lab/trees/ray_box.h"
+#include "lab/walks/walks.h"
 
 namespace relief {
 
