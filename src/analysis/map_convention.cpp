@@ -73,10 +73,9 @@ void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, 
     result.is_order_clear = best.share > kAhead * other_share && best.area > next.area;
     if (!result.is_order_clear) return;
     result.axes.value = make_axes(normal, int(order[0]));
-    result.axes.reason +=
-        fmt::format("; laid like this it overhangs in {:.1f} % of the texels, {:.1f} x as "
-                    "much as in any other order",
-                    100 * best.share, other_share > 0 ? std::min(best.share / other_share, 99.0) : 99.0);
+    result.axes.reason += fmt::format(
+        "; laid like this it overhangs in {:.1f} % of the texels, {:.1f} x as much as in any other order",
+        100 * best.share, other_share > 0 ? std::min(best.share / other_share, 99.0) : 99.0);
 }
 
 /// The order that programs write for a channel along the normal.
@@ -91,8 +90,7 @@ void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics
     }
     result.axes.value = make_usual_axes(normal);
     result.axes.reason = fmt::format(
-        "{} is along the normal{}: its mean is {:.1f} x as far from the midlevel "
-        "as that of the next channel",
+        "{} is along the normal{}: its mean is {:.1f} x as far from the midlevel as that of the next channel",
         kChannelNames[normal.channel], normal.sign < 0 ? ", backwards" : "", std::min(normal.ratio, 99.0));
     if (!map.is_udim && statistics.bad_count == 0) guess_order_on_plane(map, normal, result);
 }
@@ -119,11 +117,10 @@ void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& 
     const double next = std::min(gaps[(channel + 1) % 3], gaps[(channel + 2) % 3]);
     if (!(kClearRatio * gaps[channel] < next)) return;
     if (result.axes.is_clear && result.axes.value.axis[channel] == 2) return; // told already, with its order
-    result.axes = {
-        best[channel], true,
-        fmt::format("{} is along the normal: so the uv seams close to {:.0f} % of the movement, with "
-                    "another channel to {:.0f} %",
-                    kChannelNames[channel], 100 * gaps[channel], 100 * next)};
+    result.axes = {best[channel], true,
+                   fmt::format("{} is along the normal: so the uv seams close to {:.0f} % of the movement, "
+                               "with another channel to {:.0f} %",
+                               kChannelNames[channel], 100 * gaps[channel], 100 * next)};
     result.is_order_clear = false;
 }
 
@@ -144,9 +141,9 @@ void guess_object_axes(const MapSamples& samples, MapConvention& result) {
     }
     result.axes.is_clear = result.is_order_clear = best >= kLeastRise && best > kClearRatio * next;
     if (result.axes.is_clear) {
-        result.axes.reason = fmt::format("so the surface moves along its normals ({:.2f} of all movement, "
-                                         "{:.2f} in the next best order)",
-                                         best, next);
+        result.axes.reason = fmt::format(
+            "so the surface moves along its normals ({:.2f} of all movement, {:.2f} in the next best order)",
+            best, next);
         return;
     }
     result.axes.value = AxisMap{};
@@ -168,17 +165,15 @@ void guess_space_by_normals(const MapSamples& samples, const MapStatistics& stat
     for (const ChannelStatistics& channel : statistics.channels)
         tangent = std::max(tangent, std::fabs(channel.one_sided));
     if (object >= kLeast && object > kClearRatio * tangent)
-        result.space = {
-            DisplacementSpace::object, true,
-            fmt::format("values follow the mesh's normals in object space ({:.2f}), and no channel "
-                        "rises by itself ({:.2f})",
-                        object, tangent)};
+        result.space = {DisplacementSpace::object, true,
+                        fmt::format("values follow the mesh's normals in object space ({:.2f}), and no "
+                                    "channel rises by itself ({:.2f})",
+                                    object, tangent)};
     else if (tangent >= kLeast && tangent > kClearRatio * object)
-        result.space = {
-            DisplacementSpace::tangent, true,
-            fmt::format("one channel rises by itself ({:.2f}), and values do not follow the mesh's "
-                        "normals in object space ({:.2f})",
-                        tangent, object)};
+        result.space = {DisplacementSpace::tangent, true,
+                        fmt::format("one channel rises by itself ({:.2f}), and values do not follow the "
+                                    "mesh's normals in object space ({:.2f})",
+                                    tangent, object)};
 }
 
 /// Nothing where the mesh and the map do not go together; inspection of the mesh says why.
@@ -336,6 +331,14 @@ MapConvention guess_convention(const Displacement& map, const MapStatistics& sta
     }
     guess_tangent_axes(map, statistics, result);
     return result;
+}
+
+bool agrees_on_axes(const MapConvention& convention, const Displacement& map) {
+    const auto find_normal = [](const AxisMap& axes) {
+        return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
+    };
+    const AxisMap& axes = convention.axes.value;
+    return convention.is_order_clear ? axes == map.axes : find_normal(axes) == find_normal(map.axes);
 }
 
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams) {

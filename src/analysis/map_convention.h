@@ -27,6 +27,9 @@ struct MapConvention {
 /// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.
 MapConvention guess_convention(const Displacement& map, const MapStatistics& statistics, const Mesh* mesh);
 
+/// Whether the axes of `map` are those of a convention, as far as it is clear about them.
+bool agrees_on_axes(const MapConvention& convention, const Displacement& map);
+
 /// Which space the uv seams speak for; nothing where they do not tell.
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams);
 

@@ -1,7 +1,6 @@
 // A displacement map on a plane, without a mesh: where the surface folds over, by the order of its channels.
 #pragma once
 
-
 #include "relief/scene.h"
 
 namespace relief {

@@ -8,6 +8,7 @@
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
 #include "analysis/mesh_statistics.h"
+#include "inspect/facts.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
@@ -81,22 +82,17 @@ void add_convention(const Displacement& map, const MapConvention& convention,
     if (map.space != DisplacementSpace::tangent) return;
     const bool is_object = convention.space.is_clear && convention.space.value == DisplacementSpace::object;
     if (is_object && map.assumed.space && !convention.is_space_by_seams)
-        findings.push_back({Severity::warning, "I-SPACE",
-                            fmt::format("tangent space is assumed, but it looks like object space: {}; write "
-                                        "displacement.space = object",
-                                        convention.space.reason)});
+        add_warning(
+            findings, "I-SPACE",
+            "tangent space is assumed, but it looks like object space: {}; write displacement.space = object",
+            convention.space.reason);
     if (is_object || !map.assumed.axes || !convention.axes.is_clear) return;
-    const auto find_normal = [](const AxisMap& axes) {
-        return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
-    };
     const AxisMap& axes = convention.axes.value;
-    if (convention.is_order_clear ? axes == map.axes : find_normal(axes) == find_normal(map.axes)) return;
+    if (agrees_on_axes(convention, map)) return;
     const std::string presets = list_presets(axes);
-    findings.push_back(
-        {Severity::warning, "I-AXES",
-         fmt::format("axes {} are assumed, but {}; write displacement.axes = {}{}",
-                     format_map_axes(map.axes, map.space), convention.axes.reason,
-                     format_map_axes(axes, map.space), presets.empty() ? "" : ", as presets " + presets)});
+    add_warning(findings, "I-AXES", "axes {} are assumed, but {}; write displacement.axes = {}{}",
+                format_map_axes(map.axes, map.space), convention.axes.reason,
+                format_map_axes(axes, map.space), presets.empty() ? "" : ", as presets " + presets);
 }
 
 /// One image that does not repeat is stretched from its edge over uvs outside of it.
@@ -107,12 +103,10 @@ void add_range(const Displacement& map, const Mesh& mesh, std::vector<Finding>& 
         return std::min(uv.x, uv.y) < -kRounding || std::max(uv.x, uv.y) > 1 + kRounding;
     });
     if (is_outside)
-        findings.push_back(
-            {Severity::warning, "W-UVRANGE",
-             fmt::format(
-                 "the uvs of mesh '{}' leave the unit square, where one image ends: name all tiles as "
-                 "<UDIM>, or write displacement.wrap = repeat",
-                 mesh.name)});
+        add_warning(findings, "W-UVRANGE",
+                    "the uvs of mesh '{}' leave the unit square, where one image ends: name all tiles as "
+                    "<UDIM>, or write displacement.wrap = repeat",
+                    mesh.name);
 }
 
 /// What one pass over the corners of a sound mesh tells; overlaps of uvs take longer than reading the mesh.
@@ -130,35 +124,28 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
         first += size;
     }
     if (triangles > mesh.face_sizes.size() / 2)
-        findings.push_back({Severity::warning, "W-TRI",
-                            fmt::format("{} of {} faces of mesh '{}' are triangles: probably a triangulated "
-                                        "export; export the quads that the map was baked on",
-                                        triangles, mesh.face_sizes.size(), mesh.name)});
+        add_warning(findings, "W-TRI",
+                    "{} of {} faces of mesh '{}' are triangles: probably a triangulated export; export the "
+                    "quads that the map was baked on",
+                    triangles, mesh.face_sizes.size(), mesh.name);
     const bool is_tangent =
         map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent && map.assumed.space;
     if (is_tangent && mirrored > 0)
-        findings.push_back(
-            {Severity::warning, "W-MIRROR",
-             fmt::format("tangent space is assumed, and the uvs of {} of {} faces of mesh '{}' "
-                         "are mirrored: the map is mirrored there; write displacement.space = "
-                         "tangent if it was baked so",
-                         mirrored, mesh.face_sizes.size(), mesh.name)});
+        add_warning(findings, "W-MIRROR",
+                    "tangent space is assumed, and the uvs of {} of {} faces of mesh '{}' are mirrored: the "
+                    "map is mirrored there; write displacement.space = tangent if it was baked so",
+                    mirrored, mesh.face_sizes.size(), mesh.name);
 }
 
 std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     std::vector<Finding> findings;
     const AssumedConvention& assumed = map.assumed;
-    const bool has_texels = std::all_of(map.tiles.begin(), map.tiles.end(), [](const MapTile& tile) {
-        return tile.texture && tile.texture->width > 0 && tile.texture->height > 0;
-    });
-    if (map.tiles.empty() || !has_texels) return findings;
+    if (!has_all_textures(map)) return findings;
     add_range(map, mesh, findings);
     add_mesh_doubts(map, mesh, findings);
     if (!assumed.space && !assumed.axes && !assumed.midlevel) return findings;
     const Displacement thin = thin_out(map);
-    std::optional<Vec3f> midlevel;
-    if (knows_midlevel(map, MapMeaning::declared)) midlevel = map.midlevel;
-    const MapStatistics statistics = measure_map(thin.tiles, midlevel);
+    const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));
     if (assumed.midlevel) add_mistakes(thin, statistics, findings);
     const bool is_vector = map.type == DisplacementType::vector;
     if (is_vector && (assumed.space || assumed.axes) && mesh.face_sizes.size() <= kMostFaces &&

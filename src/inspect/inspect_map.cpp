@@ -11,6 +11,7 @@
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 
@@ -18,52 +19,18 @@ namespace {
 
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 
-const char* get_type_name(SampleType type) {
-    switch (type) {
-    case SampleType::uint8:
-        return "8-bit integer";
-    case SampleType::uint16:
-        return "16-bit integer";
-    case SampleType::uint32:
-        return "32-bit integer";
-    case SampleType::float16:
-        return "16-bit float";
-    case SampleType::float32:
-        break;
-    }
-    return "32-bit float";
-}
+struct SampleTypeName {
+    const char* name;
+    double bits;
+};
 
-int get_bits(SampleType type) {
-    switch (type) {
-    case SampleType::uint8:
-        return 8;
-    case SampleType::uint16:
-    case SampleType::float16:
-        return 16;
-    case SampleType::uint32:
-    case SampleType::float32:
-        break;
-    }
-    return 32;
-}
-
-const char* get_space_name(DisplacementSpace space) {
-    switch (space) {
-    case DisplacementSpace::tangent:
-        return "tangent";
-    case DisplacementSpace::object:
-        return "object";
-    case DisplacementSpace::world:
-        break;
-    }
-    return "world";
-}
-
-/// What was said of the midlevel, if anything.
-std::optional<Vec3f> get_known_midlevel(const Displacement& map, MapMeaning meaning) {
-    if (knows_midlevel(map, meaning)) return map.midlevel;
-    return std::nullopt;
+SampleTypeName describe_type(SampleType type) {
+    constexpr SampleTypeName kTypes[] = {{"8-bit integer", 8},
+                                         {"16-bit integer", 16},
+                                         {"32-bit integer", 32},
+                                         {"16-bit float", 16},
+                                         {"32-bit float", 32}};
+    return kTypes[size_t(type)];
 }
 
 void describe_files(const Displacement& map, const MapStatistics& statistics, std::vector<Fact>& facts) {
@@ -85,8 +52,8 @@ void describe_files(const Displacement& map, const MapStatistics& statistics, st
         facts.push_back({"tiles", tiles, {{"", double(map.tiles.size()), "count"}}});
     }
     facts.push_back(make_count("channels", statistics.channel_count));
-    facts.push_back(
-        {"type", get_type_name(statistics.type), {{"", double(get_bits(statistics.type)), "bits"}}});
+    const SampleTypeName type = describe_type(statistics.type);
+    facts.push_back({"type", type.name, {{"", type.bits, "bits"}}});
     facts.push_back({"memory", fmt::format("{} bytes", bytes), {{"", double(bytes), "bytes"}}});
     for (size_t c = 0; c < std::min<size_t>(3, statistics.channel_count); ++c) {
         const ChannelStatistics& channel = statistics.channels[c];
@@ -100,7 +67,7 @@ void describe_files(const Displacement& map, const MapStatistics& statistics, st
 }
 
 std::string describe_zero(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics) {
-    if (const auto known = get_known_midlevel(map, meaning))
+    if (const auto known = find_known_midlevel(map, meaning))
         return known->x == known->y && known->y == known->z
                    ? fmt::format("{:g}, as was said", known->x)
                    : fmt::format("({:g}, {:g}, {:g}), as was said", known->x, known->y, known->z);
@@ -119,7 +86,7 @@ std::string describe_looks(const MapStatistics& statistics, const MapConvention&
         text =
             convention.space.is_clear ? "tangent space, axes not clear" : "not clear from the values alone";
     } else {
-        text = fmt::format("{} space, axes {}, midlevel {:g}", get_space_name(space),
+        text = fmt::format("{} space, axes {}, midlevel {:g}", get_name(space),
                            format_map_axes(convention.axes.value, space), statistics.midlevel[0]);
         if (space == DisplacementSpace::tangent) {
             const std::string presets = list_presets(convention.axes.value);
@@ -149,7 +116,7 @@ void describe_convention(const Displacement& map, MapMeaning meaning, const MapS
     }
     facts.push_back({"space",
                      fmt::format("{}: {}",
-                                 convention.space.is_clear ? get_space_name(convention.space.value)
+                                 convention.space.is_clear ? get_name(convention.space.value)
                                                            : "tangent, unless told otherwise",
                                  convention.space.reason),
                      {}});
@@ -172,7 +139,7 @@ struct Reading {
 
 Reading read_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh) {
     Reading reading;
-    reading.statistics = measure_map(map.tiles, get_known_midlevel(map, meaning));
+    reading.statistics = measure_map(map.tiles, find_known_midlevel(map, meaning));
     if (mesh && !mesh->uv_indices.empty() && find_mesh_faults(*mesh).is_sound()) reading.mesh = mesh;
     reading.convention = guess_convention(map, reading.statistics, reading.mesh);
     return reading;
@@ -197,10 +164,8 @@ void note_folds(const Displacement& map, MapMeaning meaning, const Reading& read
     const Displacement meant = meaning == MapMeaning::declared ? map : apply_guess(map, reading);
     const std::optional<double> share = measure_fold_share(meant, reading.mesh);
     if (share && *share > 0)
-        findings.push_back(
-            {Severity::note, "I-FOLD",
-             fmt::format("the surface folds over in {:.2f} % of the places looked at: overhangs",
-                         100 * *share)});
+        add_note(findings, "I-FOLD", "the surface folds over in {:.2f} % of the places looked at: overhangs",
+                 100 * *share);
 }
 
 } // namespace

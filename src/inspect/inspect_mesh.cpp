@@ -13,54 +13,49 @@ namespace relief {
 
 namespace {
 
-void add(std::vector<Finding>& findings, Severity severity, const char* code, std::string text) {
-    findings.push_back({severity, code, std::move(text)});
-}
-
 void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
     if (faults.has_bad_counts)
-        add(findings, Severity::error, "E-INDEX",
+        add_error(
+            findings, "E-INDEX",
             "faces with fewer than three corners, or lists of different lengths; export the mesh again");
     if (faults.bad_indices > 0)
-        add(findings, Severity::error, "E-INDEX",
-            fmt::format("{} indices are out of range; export the mesh again", faults.bad_indices));
+        add_error(findings, "E-INDEX", "{} indices are out of range; export the mesh again",
+                  faults.bad_indices);
     if (faults.bad_position)
-        add(findings, Severity::error, "E-NAN",
-            fmt::format("vertex {} is not finite; export the mesh again", *faults.bad_position));
+        add_error(findings, "E-NAN", "vertex {} is not finite; export the mesh again", *faults.bad_position);
     if (faults.bad_uv)
-        add(findings, Severity::error, "E-NAN",
-            fmt::format("uv {} is not finite; unwrap the mesh again", *faults.bad_uv));
+        add_error(findings, "E-NAN", "uv {} is not finite; unwrap the mesh again", *faults.bad_uv);
 }
 
 void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
     if (shape.triangles > shape.faces() / 2)
-        add(findings, Severity::warning, "W-TRI",
-            fmt::format("{} of {} faces are triangles: probably a triangulated export, whose diagonals a "
-                        "subdivision keeps; export quads (Blender: untick Triangulated Mesh)",
-                        shape.triangles, shape.faces()));
+        add_warning(findings, "W-TRI",
+                    "{} of {} faces are triangles: probably a triangulated export, whose diagonals a "
+                    "subdivision keeps; export quads (Blender: untick Triangulated Mesh)",
+                    shape.triangles, shape.faces());
     if (shape.others > 0)
-        add(findings, Severity::warning, "W-NGON",
-            fmt::format("{} of {} faces have more than four corners: displaced, they are split into quads, "
-                        "which a baker may have split otherwise; make them quads",
-                        shape.others, shape.faces()));
+        add_warning(findings, "W-NGON",
+                    "{} of {} faces have more than four corners: displaced, they are split into quads, which "
+                    "a baker may have split otherwise; make them quads",
+                    shape.others, shape.faces());
     if (shape.triangles + shape.others > 0)
-        add(findings, Severity::note, "I-REFINE",
-            fmt::format("{} of {} faces are not quads: displaced, the whole mesh is refined once to "
-                        "quads; plain, n-gons are cut into triangles",
-                        shape.triangles + shape.others, shape.faces()));
+        add_note(findings, "I-REFINE",
+                 "{} of {} faces are not quads: displaced, the whole mesh is refined once to quads; plain, "
+                 "n-gons are cut into triangles",
+                 shape.triangles + shape.others, shape.faces());
 }
 
 void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
     if (shape.crowded_edges > 0)
-        add(findings, Severity::warning, "W-NONMANIF",
-            fmt::format("{} edges have more than two faces (one is of face {}): the surface has no two sides "
-                        "there; remove inner or doubled faces",
-                        shape.crowded_edges, *shape.crowded_face));
+        add_warning(findings, "W-NONMANIF",
+                    "{} edges have more than two faces (one is of face {}): the surface has no two sides "
+                    "there; remove inner or doubled faces",
+                    shape.crowded_edges, *shape.crowded_face);
     if (shape.turned_edges > 0)
-        add(findings, Severity::warning, "W-NONMANIF",
-            fmt::format("{} edges are run the same way by both faces (one is face {}): normals point apart "
-                        "there; make normals consistent",
-                        shape.turned_edges, *shape.turned_face));
+        add_warning(findings, "W-NONMANIF",
+                    "{} edges are run the same way by both faces (one is face {}): normals point apart "
+                    "there; make normals consistent",
+                    shape.turned_edges, *shape.turned_face);
 }
 
 Fact describe_bounds(const Box& box) {
@@ -123,12 +118,12 @@ void add_frame(const Mesh& mesh, const Displacement& map, Inspection& result) {
     const bool uses_frames = map.type == DisplacementType::height || map.space == DisplacementSpace::tangent;
     if (map.frame != FrameKind::file || !uses_frames) return;
     if (mesh.normal_indices.empty())
-        add(result.findings, Severity::error, "E-NONORM",
-            "no normals, and the frame of its map is that of the file; export the mesh with normals, or say "
-            "frame mikk");
+        add_error(result.findings, "E-NONORM",
+                  "no normals, and the frame of its map is that of the file; export the mesh with normals, "
+                  "or say frame mikk");
     if (mesh.subdivision.scheme != SubdivisionScheme::none)
-        add(result.findings, Severity::error, "E-NONORM",
-            "subdivided, which leaves the normals of the file behind; say frame mikk, or scheme none");
+        add_error(result.findings, "E-NONORM",
+                  "subdivided, which leaves the normals of the file behind; say frame mikk, or scheme none");
 }
 
 /// Tiles in runs: "1001-1004, 1011".
@@ -174,10 +169,10 @@ void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector
     if (missing.empty()) return;
     std::set<int> found;
     for (const MapTile& tile : map.tiles) found.insert(tile.udim);
-    add(findings, Severity::error, "E-TILE",
-        fmt::format("no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export "
-                    "the missing ones, or look at their names",
-                    list_tiles(missing), list_tiles(found)));
+    add_error(findings, "E-TILE",
+              "no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export the "
+              "missing ones, or look at their names",
+              list_tiles(missing), list_tiles(found));
 }
 
 /// Uvs outside of the unit square need tiles or a map that repeats.
@@ -186,19 +181,18 @@ void find_range_mistakes(const MeshUvs& uvs, const Displacement* map, std::vecto
     const bool is_repeated = map && (map->wrap == WrapMode::repeat || map->wrap == WrapMode::mirror);
     const bool is_outside = uvs.low.x < 0 || uvs.low.y < 0 || uvs.high.x > 1 || uvs.high.y > 1;
     if (has_tiles && uvs.crossing_faces + uvs.outside_faces > 0)
-        add(findings, Severity::warning, "W-UVRANGE",
-            fmt::format(
-                "{} faces lie across two tiles and {} outside of all tiles (u in [0, 10), v >= 0): each "
-                "face takes the tile of its middle; move its uvs into one tile",
-                uvs.crossing_faces, uvs.outside_faces));
+        add_warning(findings, "W-UVRANGE",
+                    "{} faces lie across two tiles and {} outside of all tiles (u in [0, 10), v >= 0): each "
+                    "face takes the tile of its middle; move its uvs into one tile",
+                    uvs.crossing_faces, uvs.outside_faces);
     if (has_tiles || is_repeated || !is_outside) return;
     if (!map && uvs.crossing_faces == 0 && uvs.outside_faces == 0) {
-        add(findings, Severity::note, "I-UDIM",
-            fmt::format("uvs fill the tiles {}: name the map with <UDIM>", list_tiles(uvs.tiles)));
+        add_note(findings, "I-UDIM", "uvs fill the tiles {}: name the map with <UDIM>",
+                 list_tiles(uvs.tiles));
         return;
     }
-    add(findings, Severity::warning, "W-UVRANGE",
-        "uvs leave the unit square: the map needs <UDIM> tiles or wrap repeat");
+    add_warning(findings, "W-UVRANGE",
+                "uvs leave the unit square: the map needs <UDIM> tiles or wrap repeat");
 }
 
 void find_uv_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
@@ -206,21 +200,21 @@ void find_uv_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<F
     find_range_mistakes(uvs, map, findings);
     if (map && map->is_udim) find_missing_tiles(uvs, *map, findings);
     if (uvs.overlap > kOverlap)
-        add(findings, Severity::warning, "W-UVOVER",
-            fmt::format("faces share {:.1f} % of the uv area: what is sculpted on one shows on the others; "
-                        "lay the islands apart unless this is meant",
-                        100 * uvs.overlap));
+        add_warning(findings, "W-UVOVER",
+                    "faces share {:.1f} % of the uv area: what is sculpted on one shows on the others; lay "
+                    "the islands apart unless this is meant",
+                    100 * uvs.overlap);
     const bool uses_frames =
         !map || map->type == DisplacementType::height || map->space == DisplacementSpace::tangent;
     if (uvs.mirrored_islands > 0 && uses_frames)
-        add(findings, Severity::warning, "W-MIRROR",
-            fmt::format("{} of {} uv islands are mirrored ({} faces): their bitangent is turned, so that a "
-                        "tangent-space map is mirrored there; bake and render with the same tangents, or use "
-                        "object space",
-                        uvs.mirrored_islands, uvs.islands, uvs.mirrored_faces));
+        add_warning(
+            findings, "W-MIRROR",
+            "{} of {} uv islands are mirrored ({} faces): their bitangent is turned, so that a tangent-space "
+            "map is mirrored there; bake and render with the same tangents, or use object space",
+            uvs.mirrored_islands, uvs.islands, uvs.mirrored_faces);
     if (uvs.flat_faces > 0)
-        add(findings, Severity::note, "I-UVFLAT",
-            fmt::format("{} faces have no area in uv: one texel displaces all of each", uvs.flat_faces));
+        add_note(findings, "I-UVFLAT", "{} faces have no area in uv: one texel displaces all of each",
+                 uvs.flat_faces);
 }
 
 } // namespace
@@ -239,18 +233,18 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     if (displacement) add_frame(mesh, *displacement, result);
     if (mesh.uv_indices.empty()) {
         if (displacement)
-            add(result.findings, Severity::error, "E-NOUV",
-                "no uvs, which its map needs; unwrap the mesh, or export it with uvs (many exporters leave "
-                "them out unless told)");
+            add_error(result.findings, "E-NOUV",
+                      "no uvs, which its map needs; unwrap the mesh, or export it with uvs (many exporters "
+                      "leave them out unless told)");
         else
-            add(result.findings, Severity::warning, "W-NOUV",
-                "no uvs: the mesh cannot be displaced by a map; export it with uvs");
+            add_warning(result.findings, "W-NOUV",
+                        "no uvs: the mesh cannot be displaced by a map; export it with uvs");
     } else {
         if (const FacesWithoutUvs missing = find_faces_without_uvs(mesh); missing.count > 0)
-            add(result.findings, Severity::warning, "W-NOUV",
-                fmt::format("{} of {} faces have no uvs and are not displaced, the first is face {}: unwrap "
-                            "them too, or export them with uvs",
-                            missing.count, mesh.face_sizes.size(), missing.first));
+            add_warning(result.findings, "W-NOUV",
+                        "{} of {} faces have no uvs and are not displaced, the first is face {}: unwrap them "
+                        "too, or export them with uvs",
+                        missing.count, mesh.face_sizes.size(), missing.first);
         const MeshUvs uvs = measure_uvs(mesh);
         describe_uvs(uvs, displacement, result);
         find_uv_mistakes(uvs, displacement, result.findings);

@@ -16,6 +16,7 @@
 #include "cpu/path_tracer.h"
 #include "film/film.h"
 #include "inspect/facts.h"
+#include "inspect/map_mistakes.h"
 #include "prepare/prepared_scene.h"
 #include "prepare/tessellate.h"
 #include "prepare/validate_settings.h"
@@ -34,12 +35,6 @@ std::set<Pair> list_displaced(const Scene& scene) {
     for (const Object& object : scene.objects)
         if (object.displacement != kNoIndex) pairs.insert({object.displacement, object.mesh});
     return pairs;
-}
-
-bool has_all_textures(const Displacement& map) {
-    return !map.tiles.empty() && std::all_of(map.tiles.begin(), map.tiles.end(), [](const MapTile& tile) {
-        return tile.texture && tile.texture->width > 0 && tile.texture->height > 0;
-    });
 }
 
 /// Maps, each with the first mesh that it is used on.
@@ -245,7 +240,7 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     add_bytes("tessellated", estimate_tessellation(*prepared).peak_bytes, " at the levels of this view");
     result.facts.push_back(estimate_time(prepared, prepare_s, settings));
     for (size_t k = scene.warnings.size(); k < prepared->warnings.size(); ++k)
-        result.findings.push_back({Severity::warning, "W-SCENE", prepared->warnings[k]});
+        add_warning(result.findings, "W-SCENE", "{}", prepared->warnings[k]);
 }
 
 } // namespace
@@ -271,8 +266,7 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
          fmt::format("{}{}", scene.lights.size(), scene.environment ? " and an environment" : ""),
          {{"", double(scene.lights.size()), "count"},
           {"environments", scene.environment ? 1.0 : 0.0, "count"}}}};
-    for (const std::string& warning : scene.warnings)
-        result.findings.push_back({Severity::warning, "W-READ", warning});
+    for (const std::string& warning : scene.warnings) add_warning(result.findings, "W-READ", "{}", warning);
     try {
         validate_scene(scene);
         const std::set<Pair> pairs = list_displaced(scene);
@@ -281,7 +275,7 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
         describe_cost(scene, settings, result);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::bad_input) throw;
-        result.findings.push_back({Severity::error, "E-SCENE", error.what()});
+        add_error(result.findings, "E-SCENE", "{}", error.what());
     }
     return result;
 }

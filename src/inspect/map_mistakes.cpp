@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "inspect/facts.h"
 #include "math/box.h"
 #include "math/vec.h"
 
@@ -26,11 +27,10 @@ bool is_height(const Displacement& map, MapMeaning meaning) {
 void find_bad_texels(const Displacement& map, const MapStatistics& statistics,
                      std::vector<Finding>& findings) {
     if (!statistics.bad) return;
-    findings.push_back(
-        {Severity::error, "E-NAN",
-         fmt::format("NaN or infinity in {} texel(s), the first at {}; paint over it or bake the "
-                     "map again: a render refuses it",
-                     statistics.bad_count, describe_place(*statistics.bad, map))});
+    add_error(findings, "E-NAN",
+              "NaN or infinity in {} texel(s), the first at {}; paint over it or bake the map again: a "
+              "render refuses it",
+              statistics.bad_count, describe_place(*statistics.bad, map));
 }
 
 double find_low(const MapStatistics& statistics) {
@@ -55,45 +55,37 @@ void find_unsigned(const Displacement& map, MapMeaning meaning, const MapStatist
     const std::string means = fmt::format("({:.3f}, {:.3f}, {:.3f})", statistics.channels[0].mean,
                                           statistics.channels[1].mean, statistics.channels[2].mean);
     if (is_known)
-        findings.push_back(
-            {Severity::note, "I-NONEG",
-             fmt::format(
-                 "floats, none negative, around {}, which move the whole surface with the midlevel of 0 "
-                 "that was said; if 0.5 stands for zero, say encoding signed, or midlevel 0.5",
-                 means)});
+        add_note(findings, "I-NONEG",
+                 "floats, none negative, around {}, which move the whole surface with the midlevel of 0 that "
+                 "was said; if 0.5 stands for zero, say encoding signed, or midlevel 0.5",
+                 means);
     else
-        findings.push_back(
-            {Severity::error, "E-NONEG",
-             fmt::format(
-                 "floats, none negative, around {}: 0.5 probably stands for zero here, and read as they "
-                 "are they would move the whole surface by that; say encoding signed, or midlevel 0.5 "
-                 "(midlevel 0 if they are meant as they are)",
-                 means)});
+        add_error(findings, "E-NONEG",
+                  "floats, none negative, around {}: 0.5 probably stands for zero here, and read as they are "
+                  "they would move the whole surface by that; say encoding signed, or midlevel 0.5 (midlevel "
+                  "0 if they are meant as they are)",
+                  means);
 }
 
 void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                         std::vector<Finding>& findings) {
     if (statistics.type == SampleType::uint8)
-        findings.push_back(
-            {Severity::warning, "W-8BIT",
-             fmt::format("8-bit map: one step is {:.3g} scene units at scale {:g}, which shows as "
-                         "stairs; export 16 or 32 bit float EXR",
-                         get_largest_scale(map) / 255, get_largest_scale(map))});
+        add_warning(findings, "W-8BIT",
+                    "8-bit map: one step is {:.3g} scene units at scale {:g}, which shows as stairs; export "
+                    "16 or 32 bit float EXR",
+                    get_largest_scale(map) / 255, get_largest_scale(map));
     const bool is_wide = statistics.type == SampleType::uint16 || statistics.type == SampleType::uint32;
     if (is_wide && !knows_midlevel(map, meaning))
-        findings.push_back(
-            {Severity::warning, "W-INT16",
-             fmt::format("integer map without a midlevel, which cannot hold negative values: 0.5 "
-                         "is assumed, values are in [{:.4g}, {:.4g}]; say midlevel and scale, or "
-                         "export float",
-                         find_low(statistics), find_high(statistics))});
+        add_warning(findings, "W-INT16",
+                    "integer map without a midlevel, which cannot hold negative values: 0.5 is assumed, "
+                    "values are in [{:.4g}, {:.4g}]; say midlevel and scale, or export float",
+                    find_low(statistics), find_high(statistics));
     find_unsigned(map, meaning, statistics, findings);
     if (!statistics.colour_tag.empty())
-        findings.push_back({Severity::warning, "W-SRGB",
-                            fmt::format("the file calls its values colours ({}); they are read raw, but the "
-                                        "program that wrote it may have converted them: export as data "
-                                        "(Non-Color, Raw, linear)",
-                                        statistics.colour_tag)});
+        add_warning(findings, "W-SRGB",
+                    "the file calls its values colours ({}); they are read raw, but the program that wrote "
+                    "it may have converted them: export as data (Non-Color, Raw, linear)",
+                    statistics.colour_tag);
 }
 
 void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
@@ -102,39 +94,33 @@ void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const Ma
     const auto is_flat = [](const ChannelStatistics& channel) { return channel.low == channel.high; };
     const auto* first = statistics.channels.data();
     if (statistics.bad_count == 0 && std::all_of(first, first + statistics.used_channels(), is_flat)) {
-        findings.push_back(
-            {Severity::warning, "W-EMPTY",
-             fmt::format(
-                 "every texel holds the same value ({:g} in R): the map has no detail; bake or export "
-                 "it again",
-                 statistics.channels[0].mean)});
+        add_warning(
+            findings, "W-EMPTY",
+            "every texel holds the same value ({:g} in R): the map has no detail; bake or export it again",
+            statistics.channels[0].mean);
         return;
     }
     if (is_height(map, meaning)) return;
     if (statistics.channel_count < 3)
-        findings.push_back({Severity::warning, "W-1CH",
-                            fmt::format("{} channel(s): a height map, not vectors; use type height",
-                                        statistics.channel_count)});
+        add_warning(findings, "W-1CH", "{} channel(s): a height map, not vectors; use type height",
+                    statistics.channel_count);
     else if (statistics.is_gray && statistics.bad_count < statistics.texel_count)
-        findings.push_back(
-            {Severity::warning, "W-GRAY",
-             "R = G = B everywhere: a height map saved as colours, not vectors; use type height "
-             "(as vectors it would move along (1, 1, 1))"});
+        add_warning(findings, "W-GRAY",
+                    "R = G = B everywhere: a height map saved as colours, not vectors; use type height (as "
+                    "vectors it would move along (1, 1, 1))");
     else if (statistics.normal_share > kNormalShare && statistics.channels[2].mean > 0.5)
-        findings.push_back(
-            {Severity::warning, "W-NORMALMAP",
-             "unit vectors with B up: a normal map, not displacement; bake vector displacement"});
+        add_warning(findings, "W-NORMALMAP",
+                    "unit vectors with B up: a normal map, not displacement; bake vector displacement");
 }
 
 void find_outlier(const Displacement& map, const MapStatistics& statistics, std::vector<Finding>& findings) {
     constexpr double kFarOut = 4;
     if (!(statistics.usual_largest > 0) || statistics.largest <= kFarOut * statistics.usual_largest) return;
-    findings.push_back(
-        {Severity::warning, "W-OUTLIER",
-         fmt::format("the texel at {} is {:.3g} long, {:.1f} x as long as all but a few others: "
-                     "probably a fault of the baker; paint over it",
-                     describe_place(statistics.largest_place, map), statistics.largest,
-                     statistics.largest / statistics.usual_largest)});
+    add_warning(findings, "W-OUTLIER",
+                "the texel at {} is {:.3g} long, {:.1f} x as long as all but a few others: probably a fault "
+                "of the baker; paint over it",
+                describe_place(statistics.largest_place, map), statistics.largest,
+                statistics.largest / statistics.usual_largest);
 }
 
 void find_background(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
@@ -158,13 +144,11 @@ void find_background(const Displacement& map, MapMeaning meaning, const MapStati
     if (offset <= std::max(kTolerance * statistics.largest, step)) return;
     const auto most = std::max_element(offsets.begin(), offsets.end(),
                                        [](double a, double b) { return std::fabs(a) < std::fabs(b); });
-    findings.push_back(
-        {Severity::warning, "W-BORDER",
-         fmt::format(
-             "constant offset: the edges of the map hold ({:.4g}, {:.4g}, {:.4g}) in place of {:g}, most "
-             "in {}; say this as midlevel, or clear the background in the sculpting tool",
-             statistics.background[0], statistics.background[1], statistics.background[2],
-             statistics.midlevel[0], kChannelNames[size_t(most - offsets.begin())])});
+    add_warning(findings, "W-BORDER",
+                "constant offset: the edges of the map hold ({:.4g}, {:.4g}, {:.4g}) in place of {:g}, most "
+                "in {}; say this as midlevel, or clear the background in the sculpting tool",
+                statistics.background[0], statistics.background[1], statistics.background[2],
+                statistics.midlevel[0], kChannelNames[size_t(most - offsets.begin())]);
 }
 
 /// Median number of texels that a face has, of the first tile's size; 0 without uvs.
@@ -192,14 +176,20 @@ double measure_texels_a_face(const Displacement& map, const Mesh& mesh) {
     return *middle * double(texture.width) * double(texture.height);
 }
 
-ptrdiff_t find_normal_channel(const AxisMap& axes) {
-    return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
-}
-
 } // namespace
+
+bool has_all_textures(const Displacement& map) {
+    return !map.tiles.empty() && std::all_of(map.tiles.begin(), map.tiles.end(), [](const MapTile& tile) {
+        return tile.texture && tile.texture->width > 0 && tile.texture->height > 0;
+    });
+}
 
 bool knows_midlevel(const Displacement& map, MapMeaning meaning) {
     return meaning == MapMeaning::declared && (map.has_midlevel || map.midlevel != Vec3f{});
+}
+
+std::optional<Vec3f> find_known_midlevel(const Displacement& map, MapMeaning meaning) {
+    return knows_midlevel(map, meaning) ? std::optional(map.midlevel) : std::nullopt;
 }
 
 std::string describe_place(const TexelPlace& place, const Displacement& map) {
@@ -227,25 +217,22 @@ void find_misfits(const Displacement& map, const MapStatistics& statistics, cons
                              map.space == DisplacementSpace::tangent;
     if (!is_relative && diagonal > 0 && longest > 0 &&
         (longest > kTooLong * diagonal || longest < kTooShort * diagonal))
-        findings.push_back(
-            {Severity::warning, "W-SCALE",
-             fmt::format("the longest displacement is {:.3g} scene units, {:.3g} x the diagonal of "
-                         "the mesh ({:.3g}): probably another unit (cm, m) or a factor of the "
-                         "sculpting program; set displacement.scale",
-                         longest, longest / diagonal, diagonal)});
+        add_warning(
+            findings, "W-SCALE",
+            "the longest displacement is {:.3g} scene units, {:.3g} x the diagonal of the mesh ({:.3g}): "
+            "probably another unit (cm, m) or a factor of the sculpting program; set displacement.scale",
+            longest, longest / diagonal, diagonal);
     const double texels = measure_texels_a_face(map, mesh);
     if (texels > 0 && texels < 1)
-        findings.push_back(
-            {Severity::warning, "W-LEVEL",
-             fmt::format("a face of the mesh has {:.2g} texels: the mesh is finer than its map; "
-                         "use the level that the map was baked against, or a larger map",
-                         texels)});
+        add_warning(findings, "W-LEVEL",
+                    "a face of the mesh has {:.2g} texels: the mesh is finer than its map; use the level "
+                    "that the map was baked against, or a larger map",
+                    texels);
     if (texels > kFinestSide * kFinestSide)
-        findings.push_back(
-            {Severity::warning, "W-LEVEL",
-             fmt::format("a face of the mesh has {:.3g} texels, more than the finest level can "
-                         "show ({} a side); subdivide the mesh or use a smaller map",
-                         texels, kFinestSide)});
+        add_warning(findings, "W-LEVEL",
+                    "a face of the mesh has {:.3g} texels, more than the finest level can show ({} a side); "
+                    "subdivide the mesh or use a smaller map",
+                    texels, kFinestSide);
 }
 
 void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,
@@ -254,19 +241,13 @@ void note_convention(const Displacement& map, MapMeaning meaning, const MapConve
     const bool is_other_space = convention.space.is_clear && convention.space.value != map.space &&
                                 map.space != DisplacementSpace::world;
     if (is_other_space)
-        findings.push_back({Severity::note, "I-SPACE",
-                            fmt::format("declared as {} space, but looks like {} space: {}",
-                                        map.space == DisplacementSpace::tangent ? "tangent" : "object",
-                                        map.space == DisplacementSpace::tangent ? "object" : "tangent",
-                                        convention.space.reason)});
+        add_note(findings, "I-SPACE", "declared as {} space, but looks like {} space: {}",
+                 map.space == DisplacementSpace::tangent ? "tangent" : "object",
+                 map.space == DisplacementSpace::tangent ? "object" : "tangent", convention.space.reason);
     if (is_other_space || !convention.axes.is_clear || map.space == DisplacementSpace::world) return;
-    const bool is_other = convention.is_order_clear
-                              ? convention.axes.value != map.axes
-                              : find_normal_channel(convention.axes.value) != find_normal_channel(map.axes);
-    if (is_other)
-        findings.push_back(
-            {Severity::note, "I-AXES",
-             fmt::format("the declared axes are not what the values look like: {}", convention.axes.reason)});
+    if (!agrees_on_axes(convention, map))
+        add_note(findings, "I-AXES", "the declared axes are not what the values look like: {}",
+                 convention.axes.reason);
 }
 
 } // namespace relief

@@ -1,6 +1,7 @@
 // The usual mistakes in displacement maps, each with its remedy. docs/inspect.md lists the codes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,13 @@ namespace relief {
 /// "column 5, row 3", and the tile where a map has several.
 std::string describe_place(const TexelPlace& place, const Displacement& map);
 
+/// Whether the map has tiles, and each of them texels.
+bool has_all_textures(const Displacement& map);
+
 /// Whether the midlevel of the map is somebody's word: 0 may be a mere default.
 bool knows_midlevel(const Displacement& map, MapMeaning meaning);
+/// The midlevel that was said, if any was.
+std::optional<Vec3f> find_known_midlevel(const Displacement& map, MapMeaning meaning);
 
 /// What the texels alone show. With MapMeaning::declared midlevel, scale and type of `map` are taken at their
 /// word; otherwise the midlevel of the statistics counts.
