@@ -18,14 +18,13 @@ namespace {
 enum class Instead { mesh, map, picture };
 
 struct Format {
-    std::string_view suffix, what, way; ///< `way`: the menu path of the program that writes such files
+    std::string_view suffixes, what, way; ///< `way`: the menu path of the program that writes such files
     Instead instead = Instead::mesh;
 };
 
 constexpr std::string_view kBlender = "Blender: File > Export > Wavefront (.obj)";
 constexpr std::string_view kMaya = "Maya: File > Export All, Files of type: OBJexport (plug-in objExport in "
-                                   "Windows > Settings/Preferences > "
-                                   "Plug-in Manager)";
+                                   "Windows > Settings/Preferences > Plug-in Manager)";
 constexpr std::string_view kZbrush = "ZBrush: Tool > Export, as .obj";
 constexpr std::string_view kHoudini = "Houdini: right-click the surface node > Save Geometry, as .obj";
 constexpr std::string_view kUsd =
@@ -33,11 +32,10 @@ constexpr std::string_view kUsd =
     "right-click the surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
 constexpr std::string_view kAlembic =
     "Blender: File > Import > Alembic (.abc), then File > Export > Wavefront (.obj); Houdini: right-click "
-    "the "
-    "surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
-constexpr std::string_view kCollada = "Blender 4: File > Import > Collada (.dae), then File > Export > "
-                                      "Wavefront (.obj); MeshLab: File > Import "
-                                      "Mesh, then File > Export Mesh As";
+    "the surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
+constexpr std::string_view kCollada =
+    "Blender 4: File > Import > Collada (.dae), then File > Export > Wavefront (.obj); MeshLab: File > "
+    "Import Mesh, then File > Export Mesh As";
 constexpr std::string_view kMeshlab =
     "MeshLab: File > Import Mesh, then File > Export Mesh As, as .obj or .ply";
 constexpr std::string_view k3dsMax = "3ds Max: File > Export > Export, Save as type: OBJ-Exporter";
@@ -45,29 +43,19 @@ constexpr std::string_view kPhotoshop =
     "Photoshop: Image > Mode > 32 Bits/Channel, then File > Save As > OpenEXR or TIFF";
 constexpr std::string_view kGimp = "GIMP: File > Export As, as .png, .tif or .exr";
 constexpr std::string_view kPtex = "Ptex holds a picture a face and Relief reads pictures over uvs: bake it "
-                                   "to a mesh with uvs (Mudbox: Maps > "
-                                   "Extract Texture Maps > New Operation)";
+                                   "to a mesh with uvs (Mudbox: Maps > Extract Texture Maps > New Operation)";
 
-constexpr std::array<Format, 43> kFormats{{
-    {".blend", "a Blender file", kBlender},
-    {".blend1", "a Blender file", kBlender},
-    {".usd", "a USD file", kUsd},
-    {".usda", "a USD file", kUsd},
-    {".usdc", "a USD file", kUsd},
-    {".usdz", "a USD file", kUsd},
+constexpr std::array<Format, 32> kFormats{{
+    {".blend .blend1", "a Blender file", kBlender},
+    {".usd .usda .usdc .usdz", "a USD file", kUsd},
     {".abc", "an Alembic file", kAlembic},
     {".stl", "an STL file, which has no uvs,", kMeshlab},
-    {".ma", "a Maya file", kMaya},
-    {".mb", "a Maya file", kMaya},
+    {".ma .mb", "a Maya file", kMaya},
     {".ztl", "a ZBrush tool", kZbrush},
     {".zpr", "a ZBrush project", kZbrush},
     {".mud", "a Mudbox file", "Mudbox: File > Export Selection, as .obj"},
-    {".hip", "a Houdini file", kHoudini},
-    {".hipnc", "a Houdini file", kHoudini},
-    {".hiplc", "a Houdini file", kHoudini},
-    {".geo", "a Houdini geometry file", kHoudini},
-    {".bgeo", "a Houdini geometry file", kHoudini},
-    {".bgeo.sc", "a Houdini geometry file", kHoudini},
+    {".hip .hipnc .hiplc", "a Houdini file", kHoudini},
+    {".geo .bgeo .bgeo.sc", "a Houdini geometry file", kHoudini},
     {".max", "a 3ds Max file", k3dsMax},
     {".3ds", "a 3D Studio file",
      "3ds Max: File > Import, then File > Export > Export, Save as type: OBJ-Exporter"},
@@ -78,10 +66,8 @@ constexpr std::array<Format, 43> kFormats{{
     {".off", "an OFF file", kMeshlab},
     {".x3d", "an X3D file", kMeshlab},
     {".wrl", "a VRML file", kMeshlab},
-    {".ptx", "a Ptex file", kPtex, Instead::map},
-    {".ptex", "a Ptex file", kPtex, Instead::map},
-    {".psd", "a Photoshop file", kPhotoshop, Instead::picture},
-    {".psb", "a Photoshop file", kPhotoshop, Instead::picture},
+    {".ptx .ptex", "a Ptex file", kPtex, Instead::map},
+    {".psd .psb", "a Photoshop file", kPhotoshop, Instead::picture},
     {".xcf", "a GIMP file", kGimp, Instead::picture},
     {".kra", "a Krita file", "Krita: File > Export, as .exr, .tif or .png", Instead::picture},
     {".rat", "a Houdini picture", "Houdini's command line: iconvert FILE.rat FILE.exr", Instead::picture},
@@ -108,28 +94,26 @@ constexpr std::array<GltfExtension, 3> kGltfExtensions{{
      "gltfpack without -c and -cc; or gltf-transform copy IN.glb OUT.glb"},
 }};
 
-std::string_view get_alternative(Instead instead) {
-    switch (instead) {
-    case Instead::mesh:
-        return "export OBJ, PLY or glTF";
-    case Instead::map:
-        return "export EXR, TIFF or PNG over the mesh's uvs";
-    case Instead::picture:
-        break;
-    }
-    return "export EXR, TIFF or PNG";
-}
+/// In the order of Instead.
+constexpr std::string_view kAlternatives[] = {
+    "export OBJ, PLY or glTF", "export EXR, TIFF or PNG over the mesh's uvs", "export EXR, TIFF or PNG"};
 
 } // namespace
 
 std::optional<ForeignFile> find_foreign_file(std::string_view name) {
     std::string lower(name);
     for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
-    const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& format) {
-        return lower.size() > format.suffix.size() && lower.ends_with(format.suffix);
-    });
+    const auto has_suffix = [&](const Format& format) {
+        for (std::string_view rest = format.suffixes; !rest.empty();) {
+            const std::string_view suffix = rest.substr(0, rest.find(' '));
+            if (lower.size() > suffix.size() && lower.ends_with(suffix)) return true;
+            rest.remove_prefix(std::min(suffix.size() + 1, rest.size()));
+        }
+        return false;
+    };
+    const auto found = std::find_if(kFormats.begin(), kFormats.end(), has_suffix);
     if (found == kFormats.end()) return std::nullopt;
-    return ForeignFile{fmt::format("{} is not read: {}", found->what, get_alternative(found->instead)),
+    return ForeignFile{fmt::format("{} is not read: {}", found->what, kAlternatives[size_t(found->instead)]),
                        std::string(found->way)};
 }
 

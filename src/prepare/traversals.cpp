@@ -31,43 +31,15 @@ bool is_default_traversal(const RenderSettings& settings, EngineKind engine) {
 }
 
 const char* traversal_name(TraversalKind traversal) {
-    switch (traversal) {
-    case TraversalKind::automatic:
-        return "auto";
-    case TraversalKind::wide:
-        return "wide";
-    case TraversalKind::stack:
-        return "stack";
-    case TraversalKind::restart_trail:
-        return "restart-trail";
-    case TraversalKind::parent_link:
-        return "parent-link";
-    case TraversalKind::skip_link:
-        return "skip-link";
-    case TraversalKind::trail:
-        return "trail";
-    case TraversalKind::pair_trail:
-        return "pair-trail";
-    case TraversalKind::restart:
-        return "restart";
-    case TraversalKind::push_down:
-        return "push-down";
-    case TraversalKind::backtrack:
-        return "backtrack";
-    }
-    return "";
+    constexpr const char* kNames[] = {"auto",        "wide",      "stack",    "restart-trail",
+                                      "parent-link", "skip-link", "trail",    "pair-trail",
+                                      "restart",     "push-down", "backtrack"};
+    return kNames[size_t(traversal)];
 }
 
 const char* structure_name(StructureKind structure) {
-    switch (structure) {
-    case StructureKind::bvh:
-        return "bvh";
-    case StructureKind::lbvh:
-        return "lbvh";
-    case StructureKind::kdtree:
-        return "kdtree";
-    }
-    return "";
+    constexpr const char* kNames[] = {"bvh", "lbvh", "kdtree"};
+    return kNames[size_t(structure)];
 }
 
 } // namespace relief

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -19,28 +20,6 @@ static_assert(std::endian::native == std::endian::little, "values of glTF are co
 const char* const kDamagedHint = "the file is damaged or incomplete: export it again";
 constexpr int64_t kMostBytes = int64_t(1) << 48;
 
-enum class Component {
-    int8 = 5120,
-    uint8 = 5121,
-    int16 = 5122,
-    uint16 = 5123,
-    uint32 = 5125,
-    float32 = 5126
-};
-
-size_t get_byte_size(Component component) {
-    switch (component) {
-    case Component::int8:
-    case Component::uint8:
-        return 1;
-    case Component::int16:
-    case Component::uint16:
-        return 2;
-    default:
-        return 4;
-    }
-}
-
 template <class T> T load(const char* bytes) {
     T value;
     std::memcpy(&value, bytes, sizeof value);
@@ -48,9 +27,34 @@ template <class T> T load(const char* bytes) {
 }
 
 /// The integer, or its part of the greatest one (glTF 2.0 specification, 3.6.2.2).
-template <class T> float load_scaled(const char* bytes, bool is_normalized) {
+template <class T> float load_float(const char* bytes, bool is_normalized) {
     const float value = float(load<T>(bytes));
-    return is_normalized ? std::max(value / float(std::numeric_limits<T>::max()), -1.0f) : value;
+    if (std::is_floating_point_v<T> || !is_normalized) return value;
+    return std::max(value / float(std::numeric_limits<T>::max()), -1.0f);
+}
+
+template <class T> uint32_t load_index(const char* bytes) { return load<T>(bytes); }
+
+struct Component {
+    size_t bytes;
+    float (*load_float)(const char* bytes, bool is_normalized);
+    uint32_t (*load_index)(const char* bytes); ///< null: of a type that indices must not have
+};
+
+/// By componentType, from 5120 on; glTF knows no 5124.
+constexpr int64_t kFirstComponent = 5120, kNoComponent = 5124, kLastComponent = 5126;
+constexpr std::array<Component, 7> kComponents = {{{1, load_float<int8_t>, nullptr},
+                                                   {1, load_float<uint8_t>, load_index<uint8_t>},
+                                                   {2, load_float<int16_t>, nullptr},
+                                                   {2, load_float<uint16_t>, load_index<uint16_t>},
+                                                   {},
+                                                   {4, load_float<uint32_t>, load_index<uint32_t>},
+                                                   {4, load_float<float>, nullptr}}};
+
+/// Of an optional key; 0 where it is missing.
+size_t read_offset(const JsonNode& node) {
+    const auto offset = node.find("byteOffset");
+    return size_t(offset ? offset->as_integer(0, kMostBytes) : 0);
 }
 
 std::string_view get_type_name(size_t width) {
@@ -64,27 +68,8 @@ std::string_view get_type_name(size_t width) {
 struct GltfFile::Values {
     const char* begin = nullptr;
     size_t count = 0, stride = 0, width = 0;
-    Component component = Component::float32;
+    const Component* component = nullptr;
     bool is_normalized = false;
-
-    float read_float(size_t i, size_t k) const {
-        const char* at = begin + i * stride + k * get_byte_size(component);
-        switch (component) {
-        case Component::int8:
-            return load_scaled<int8_t>(at, is_normalized);
-        case Component::uint8:
-            return load_scaled<uint8_t>(at, is_normalized);
-        case Component::int16:
-            return load_scaled<int16_t>(at, is_normalized);
-        case Component::uint16:
-            return load_scaled<uint16_t>(at, is_normalized);
-        case Component::uint32:
-            return load_scaled<uint32_t>(at, is_normalized);
-        case Component::float32:
-            return load<float>(at);
-        }
-        return 0;
-    }
 };
 
 GltfFile::GltfFile(std::string_view bytes, const std::string& name, ReadBeside read_beside)
@@ -167,8 +152,7 @@ std::string_view GltfFile::find_buffer(const JsonNode& index) {
 
 std::string_view GltfFile::find_view(const JsonNode& view) {
     const std::string_view buffer = find_buffer(view.get("buffer"));
-    const auto offset_node = view.find("byteOffset");
-    const auto offset = size_t(offset_node ? offset_node->as_integer(0, kMostBytes) : 0);
+    const size_t offset = read_offset(view);
     const auto size = size_t(view.get("byteLength").as_integer(0, kMostBytes));
     if (offset > buffer.size() || size > buffer.size() - offset)
         view.fail(fmt::format("goes to byte {} of a buffer of {} bytes", offset + size, buffer.size()),
@@ -185,21 +169,21 @@ GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
         accessor.fail(fmt::format("is of type {}, not {}", type, get_type_name(width)), kDamagedHint);
     Values values;
     values.width = width;
-    const int64_t component = accessor.get("componentType").as_integer(5120, 5126);
-    if (component == 5124) accessor.fail("has componentType 5124, which glTF does not know", kDamagedHint);
-    values.component = Component(component);
+    const int64_t component = accessor.get("componentType").as_integer(kFirstComponent, kLastComponent);
+    if (component == kNoComponent)
+        accessor.fail("has componentType 5124, which glTF does not know", kDamagedHint);
+    values.component = &kComponents[size_t(component - kFirstComponent)];
     if (const auto normalized = accessor.find("normalized")) values.is_normalized = normalized->as_bool();
     const JsonNode& view = resolve(*view_index, views_, "bufferView");
     const std::string_view bytes = find_view(view);
-    const size_t element_bytes = width * get_byte_size(values.component);
+    const size_t element_bytes = width * values.component->bytes;
     constexpr int64_t kLongestStride = 252; // specification, 5.11.4
     const auto stride = view.find("byteStride");
     values.stride =
         stride ? size_t(stride->as_integer(int64_t(element_bytes), kLongestStride)) : element_bytes;
     constexpr int64_t kMostValues = int64_t(std::numeric_limits<uint32_t>::max()) - 1;
     values.count = size_t(accessor.get("count").as_integer(0, kMostValues));
-    const auto offset_node = accessor.find("byteOffset");
-    const auto offset = size_t(offset_node ? offset_node->as_integer(0, kMostBytes) : 0);
+    const size_t offset = read_offset(accessor);
     const size_t end = values.count == 0 ? 0 : offset + (values.count - 1) * values.stride + element_bytes;
     if (end > bytes.size())
         accessor.fail(fmt::format("goes to byte {} of a bufferView of {} bytes", end, bytes.size()),
@@ -215,30 +199,20 @@ std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, siz
     if (!is_new) return found->second;
     found->second.reserve(values.count * width);
     for (size_t i = 0; i < values.count; ++i)
-        for (size_t k = 0; k < width; ++k) found->second.push_back(values.read_float(i, k));
+        for (size_t k = 0; k < width; ++k)
+            found->second.push_back(values.component->load_float(
+                values.begin + i * values.stride + k * values.component->bytes, values.is_normalized));
     return found->second;
 }
 
 std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
     const Values values = find_values(resolve(accessor_index, accessors_, "accessor"), 1);
+    if (!values.component->load_index && values.count > 0)
+        accessor_index.fail("indices must be unsigned integers", kDamagedHint);
     std::vector<uint32_t> result;
     result.reserve(values.count);
-    for (size_t i = 0; i < values.count; ++i) {
-        const char* at = values.begin + i * values.stride;
-        switch (values.component) {
-        case Component::uint8:
-            result.push_back(load<uint8_t>(at));
-            break;
-        case Component::uint16:
-            result.push_back(load<uint16_t>(at));
-            break;
-        case Component::uint32:
-            result.push_back(load<uint32_t>(at));
-            break;
-        default:
-            accessor_index.fail("indices must be unsigned integers", kDamagedHint);
-        }
-    }
+    for (size_t i = 0; i < values.count; ++i)
+        result.push_back(values.component->load_index(values.begin + i * values.stride));
     return result;
 }
 

@@ -59,7 +59,7 @@ double PlyCursor::read_word() {
     return value;
 }
 
-template <class T> T PlyCursor::take() {
+template <class T> double PlyCursor::take() {
     if (bytes_.size() - at_ < sizeof(T)) fail("the file ends early");
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
@@ -67,29 +67,15 @@ template <class T> T PlyCursor::take() {
     const bool is_native =
         (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
     if (!is_native) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<T>(raw);
+    return double(std::bit_cast<T>(raw));
 }
 
 double PlyCursor::read_bytes(PlyType type) {
-    switch (type) {
-    case PlyType::int8:
-        return double(take<int8_t>());
-    case PlyType::uint8:
-        return double(take<uint8_t>());
-    case PlyType::int16:
-        return double(take<int16_t>());
-    case PlyType::uint16:
-        return double(take<uint16_t>());
-    case PlyType::int32:
-        return double(take<int32_t>());
-    case PlyType::uint32:
-        return double(take<uint32_t>());
-    case PlyType::float32:
-        return double(take<float>());
-    case PlyType::float64:
-        return take<double>();
-    }
-    return 0;
+    using Cursor = PlyCursor;
+    constexpr double (PlyCursor::*kTake[])() = {
+        &Cursor::take<int8_t>,  &Cursor::take<uint8_t>,  &Cursor::take<int16_t>, &Cursor::take<uint16_t>,
+        &Cursor::take<int32_t>, &Cursor::take<uint32_t>, &Cursor::take<float>,   &Cursor::take<double>};
+    return (this->*kTake[size_t(type)])();
 }
 
 } // namespace relief

@@ -37,7 +37,7 @@ class PlyCursor {
   private:
     double read_word();
     double read_bytes(PlyType type);
-    template <class T> T take();
+    template <class T> double take();
 
     std::string_view bytes_;
     const std::string& name_;

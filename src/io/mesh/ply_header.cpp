@@ -14,25 +14,20 @@ namespace relief {
 
 namespace {
 
-/// Both spellings that are in use, the one by size and the one of the first PLY files.
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
-    {"char", PlyType::int8},
-    {"int8", PlyType::int8},
-    {"uchar", PlyType::uint8},
-    {"uint8", PlyType::uint8},
-    {"short", PlyType::int16},
-    {"int16", PlyType::int16},
-    {"ushort", PlyType::uint16},
-    {"uint16", PlyType::uint16},
-    {"int", PlyType::int32},
-    {"int32", PlyType::int32},
-    {"uint", PlyType::uint32},
-    {"uint32", PlyType::uint32},
-    {"float", PlyType::float32},
-    {"float32", PlyType::float32},
-    {"double", PlyType::float64},
-    {"float64", PlyType::float64},
-}};
+struct TypeNames {
+    std::string_view first, by_size; ///< both are in use
+    size_t bytes;
+};
+
+/// In the order of PlyType.
+constexpr std::array<TypeNames, 8> kTypes = {{{"char", "int8", 1},
+                                              {"uchar", "uint8", 1},
+                                              {"short", "int16", 2},
+                                              {"ushort", "uint16", 2},
+                                              {"int", "int32", 4},
+                                              {"uint", "uint32", 4},
+                                              {"float", "float32", 4},
+                                              {"double", "float64", 8}}};
 
 std::vector<std::string_view> split_words(std::string_view line) {
     constexpr std::string_view kSpaces = " \t";
@@ -127,11 +122,9 @@ class HeaderParser {
     }
 
     PlyType find_type(std::string_view word) const {
-        const auto found = std::find_if(kTypes.begin(), kTypes.end(),
-                                        [word](const auto& type) { return type.first == word; });
-        if (found == kTypes.end())
-            fail(fmt::format("unknown type '{}'", word), "the types are char to double and int8 to float64");
-        return found->second;
+        for (size_t k = 0; k < kTypes.size(); ++k)
+            if (word == kTypes[k].first || word == kTypes[k].by_size) return PlyType(k);
+        fail(fmt::format("unknown type '{}'", word), "the types are char to double and int8 to float64");
     }
 
     std::string_view bytes_;
@@ -147,19 +140,6 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
     return HeaderParser(bytes, name).parse();
 }
 
-size_t get_byte_size(PlyType type) {
-    switch (type) {
-    case PlyType::int8:
-    case PlyType::uint8:
-        return 1;
-    case PlyType::int16:
-    case PlyType::uint16:
-        return 2;
-    case PlyType::float64:
-        return 8;
-    default:
-        return 4;
-    }
-}
+size_t get_byte_size(PlyType type) { return kTypes[size_t(type)].bytes; }
 
 } // namespace relief

@@ -14,26 +14,17 @@ namespace {
 /// Minimum buffer size: one texel of the widest format.
 constexpr uint64_t kLeastBytes = 16;
 
-vk::Format to_vulkan(TexelFormat format) {
-    switch (format) {
-    case TexelFormat::none:
-        return vk::Format::eUndefined;
-    case TexelFormat::r32_float:
-        return vk::Format::eR32Sfloat;
-    case TexelFormat::rg32_float:
-        return vk::Format::eR32G32Sfloat;
-    case TexelFormat::rgba32_float:
-        return vk::Format::eR32G32B32A32Sfloat;
-    case TexelFormat::rgba16_float:
-        return vk::Format::eR16G16B16A16Sfloat;
-    case TexelFormat::r32_uint:
-        return vk::Format::eR32Uint;
-    case TexelFormat::rg32_uint:
-        return vk::Format::eR32G32Uint;
-    case TexelFormat::rgba32_uint:
-        return vk::Format::eR32G32B32A32Uint;
-    }
-    return vk::Format::eUndefined;
+struct Texel {
+    vk::Format format;
+    uint32_t bytes;
+};
+
+Texel find_texel(TexelFormat format) {
+    constexpr Texel kTexels[] = {{vk::Format::eUndefined, 0},          {vk::Format::eR32Sfloat, 4},
+                                 {vk::Format::eR32G32Sfloat, 8},       {vk::Format::eR32G32B32A32Sfloat, 16},
+                                 {vk::Format::eR16G16B16A16Sfloat, 8}, {vk::Format::eR32Uint, 4},
+                                 {vk::Format::eR32G32Uint, 8},         {vk::Format::eR32G32B32A32Uint, 16}};
+    return kTexels[size_t(format)];
 }
 
 uint64_t round_up(uint64_t bytes) {
@@ -70,23 +61,7 @@ bool is_direct(const Buffer::Implementation& buffer) {
 
 } // namespace
 
-uint32_t texel_bytes(TexelFormat format) {
-    switch (format) {
-    case TexelFormat::none:
-        return 0;
-    case TexelFormat::r32_float:
-    case TexelFormat::r32_uint:
-        return 4;
-    case TexelFormat::rg32_float:
-    case TexelFormat::rgba16_float:
-    case TexelFormat::rg32_uint:
-        return 8;
-    case TexelFormat::rgba32_float:
-    case TexelFormat::rgba32_uint:
-        return 16;
-    }
-    return 0;
-}
+uint32_t texel_bytes(TexelFormat format) { return find_texel(format).bytes; }
 
 Buffer::Implementation::Implementation(Device::Implementation& owner, const BufferConfig& wanted)
     : device(owner), config(wanted) {
@@ -103,7 +78,7 @@ Buffer::Implementation::Implementation(Device::Implementation& owner, const Buff
         buffer.bindMemory(*memory.block->memory, memory.offset);
         if (config.format != TexelFormat::none) {
             texels = vk::raii::BufferView(device.device,
-                                          {{}, *buffer, to_vulkan(config.format), 0, VK_WHOLE_SIZE});
+                                          {{}, *buffer, find_texel(config.format).format, 0, VK_WHOLE_SIZE});
             device.set_name(texels, config.name + " (texels)");
         }
     } catch (const vk::SystemError& error) {

@@ -12,6 +12,7 @@
 
 namespace relief::vulkan {
 
+/// find_texel of buffer.cpp keeps this order.
 enum class TexelFormat {
     none,
     r32_float,
