@@ -68,39 +68,10 @@ size_t channel_count(const LayerKind& kind) {
         std::count_if(kind.suffixes.begin(), kind.suffixes.end(), [](const char* s) { return *s != 0; }));
 }
 
-void add_to(double* sums, const Vec3f& v) {
+template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
     sums[0] += v.x;
     sums[1] += v.y;
     sums[2] += v.z;
-}
-
-void add_layer(double* sums, Source source, const FilmSample& film_sample, bool is_hit) {
-    if (is_mean_of_hits(source) && !is_hit) return;
-    switch (source) {
-    case Source::shading_normal:
-        return add_to(sums, film_sample.shading_normal);
-    case Source::geometric_normal:
-        return add_to(sums, film_sample.geometric_normal);
-    case Source::albedo:
-        return add_to(sums, film_sample.albedo);
-    case Source::position:
-        return add_to(sums, film_sample.position);
-    case Source::uv:
-        sums[0] += film_sample.uv.x, sums[1] += film_sample.uv.y;
-        return;
-    case Source::variance:
-        sums[0] += double(film_sample.radiance.x) * film_sample.radiance.x;
-        sums[1] += double(film_sample.radiance.y) * film_sample.radiance.y;
-        sums[2] += double(film_sample.radiance.z) * film_sample.radiance.z;
-        return;
-    case Source::cost:
-        sums[0] += film_sample.cost;
-        return;
-    case Source::depth:
-    case Source::id:
-    case Source::samples:
-        return;
-    }
 }
 
 void add_layer_sums(double* sums, Source source, const FilmSums& added) {
@@ -188,23 +159,26 @@ size_t Film::pixel_index(int x, int y) const {
 }
 
 void Film::add_sample(int x, int y, const FilmSample& sample) {
-    const size_t index = pixel_index(x, y);
-    double* sums = sums_.data() + index * stride_;
-    add_to(sums, sample.radiance);
-    sums[3] += sample.alpha;
-    ++counts_[index];
+    FilmSums sums;
+    const auto square = [](float v) { return double(v) * v; };
     const bool is_hit = sample.id != 0;
-    if (!hit_counts_.empty() && is_hit) ++hit_counts_[index];
-    if (is_hit) add_nearest(index, sample.depth, sample.id);
-    for (const Layer& layer : layers_)
-        add_layer(sums + layer.sum_offset, kLayerKinds[layer.kind].source, sample, is_hit);
+    sums.count = 1, sums.hit_count = is_hit ? 1 : 0;
+    sums.radiance = sample.radiance, sums.cost = sample.cost;
+    sums.squares = {square(sample.radiance.x), square(sample.radiance.y), square(sample.radiance.z)};
+    sums.shading_normal = sample.shading_normal, sums.geometric_normal = sample.geometric_normal;
+    sums.albedo = sample.albedo;
+    if (is_hit) sums.position = sample.position, sums.uv = sample.uv;
+    sums.depth = sample.depth, sums.id = sample.id;
+    add(x, y, sums, sample.alpha);
 }
 
-void Film::add_sums(int x, int y, const FilmSums& added) {
+void Film::add_sums(int x, int y, const FilmSums& added) { add(x, y, added, float(added.hit_count)); }
+
+void Film::add(int x, int y, const FilmSums& added, float alpha) {
     const size_t index = pixel_index(x, y);
     double* sums = sums_.data() + index * stride_;
     add_to(sums, added.radiance);
-    sums[3] += added.hit_count;
+    sums[3] += alpha;
     counts_[index] += added.count;
     if (!hit_counts_.empty()) hit_counts_[index] += added.hit_count;
     if (added.id != 0) add_nearest(index, added.depth, added.id);

@@ -25,7 +25,8 @@ struct FilmSample {
 struct FilmSums {
     uint32_t count = 0;     ///< samples
     uint32_t hit_count = 0; ///< of them, those whose camera ray hit a surface
-    Vec3f radiance{}, squares{};
+    Vec3f radiance{};
+    Vec3<double> squares{}; ///< of radiance
     float cost = 0;
     Vec3f shading_normal{}, geometric_normal{}, position{}, albedo{};
     Vec2f uv{};
@@ -62,6 +63,7 @@ class Film {
 
   private:
     size_t pixel_index(int x, int y) const;
+    void add(int x, int y, const FilmSums& added, float alpha);
     void add_nearest(size_t pixel, float depth, uint32_t id);
 
     int full_width_, full_height_;

@@ -41,7 +41,8 @@ FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
     FilmSums sums;
     sums.count = uint32_t(sample_count);
     sums.hit_count = uint32_t(data.hit_count);
-    sums.radiance = data.radiance, sums.squares = data.squares;
+    sums.radiance = data.radiance;
+    sums.squares = {data.squares.x, data.squares.y, data.squares.z};
     sums.cost = data.cost;
     sums.shading_normal = data.shading_normal, sums.geometric_normal = data.geometric_normal;
     sums.position = data.position, sums.albedo = data.albedo;

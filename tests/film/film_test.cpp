@@ -111,6 +111,8 @@ TEST(Film, keeps_small_contributions_beside_large_sums) {
     EXPECT_FLOAT_EQ(value(film.resolve(), 0, 0, "R"), float((1e8 + 1000) / 1001));
 }
 
+Vec3<double> square(const Vec3f& v) { return {double(v.x) * v.x, double(v.y) * v.y, double(v.z) * v.z}; }
+
 TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     Film one_by_one(2, 1, {}, kAllLayers), summed(2, 1, {}, kAllLayers);
     const FilmSample hits[3] = {make_hit(1, 10, 7), make_hit(3, 4, 9), make_hit(4, 4, 8)};
@@ -118,7 +120,7 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     for (const FilmSample& hit : hits) {
         one_by_one.add_sample(1, 0, hit);
         ++sums.count, ++sums.hit_count;
-        sums.radiance += hit.radiance, sums.squares += hit.radiance * hit.radiance;
+        sums.radiance += hit.radiance, sums.squares += square(hit.radiance);
         sums.cost += hit.cost;
         sums.shading_normal += hit.shading_normal, sums.geometric_normal += hit.geometric_normal;
         sums.position += hit.position, sums.albedo += hit.albedo;
@@ -131,7 +133,7 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     summed.add_sums(1, 0, sums);
     FilmSums missed;
     missed.count = 1;
-    missed.radiance = miss.radiance, missed.squares = miss.radiance * miss.radiance, missed.cost = miss.cost;
+    missed.radiance = miss.radiance, missed.squares = square(miss.radiance), missed.cost = miss.cost;
     summed.add_sums(1, 0, missed);
     EXPECT_EQ(summed.resolve().pixels, one_by_one.resolve().pixels);
 }
