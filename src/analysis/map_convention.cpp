@@ -108,8 +108,7 @@ void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& 
             normal.sign = statistics.channels[channel].one_sided < -kOneSided ? -1 : 1;
             const AxisMap axes = make_axes(normal, choice);
             const double gap = measure_tangent_gap(seams, axes);
-            // Turned by quarters, t and b close as well: the usual order stays unless another is clearly
-            // better.
+            // Turned by quarters, t and b close as well: the usual order stays unless another clearly wins.
             if (gap * (choice == 0 ? 1 : kClearRatio) < gaps[channel])
                 gaps[channel] = gap, best[channel] = axes;
         }
@@ -202,9 +201,8 @@ int find_tile_number(const Texture& texture) {
     return found;
 }
 
-/// Tiles of a body whose texels nearly all move to one side along two channels, alike: a movement of the
-/// body, as in object space. In tangent space the axes turn from island to island, and only the channel along
-/// the normal has a side.
+/// A map of a body whose texels nearly all move to one side along two channels: the whole body moves, in
+/// object space. Tangent axes turn from island to island, so only the channel along the normal has a side.
 std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement& map,
                                                              const MapStatistics& statistics) {
     constexpr double kAllOneSided = 0.9;

@@ -1,5 +1,4 @@
-// A displacement map on its mesh: does it fit as tangent or as object space, along which axes, and where does
-// it fold?
+// A displacement map on its mesh: does it fit tangent or object space, along which axes, does it fold?
 #pragma once
 
 #include <cstdint>
@@ -47,8 +46,7 @@ Vec3f turn_by_axes(const Vec3f& value, const AxisMap& axes);
 double measure_object_gap(const std::vector<SeamSample>& seams);
 double measure_tangent_gap(const std::vector<SeamSample>& seams, const AxisMap& axes);
 
-/// Mean of the displacement along the mesh's normals over the mean length, in [-1, 1], with the values taken
-/// as object space.
+/// Mean displacement along the mesh's normals over the mean length, in [-1, 1], in object space.
 double measure_object_rise(const std::vector<MapSample>& places, const AxisMap& axes);
 
 /// Share of the cells of a displaced surface that face away from its base; of up to 65536 cells.

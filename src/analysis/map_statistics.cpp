@@ -125,8 +125,7 @@ double compute_distance(const Texel& a, const Texel& b) {
     return std::fabs(double(a[0]) - b[0]) + std::fabs(double(a[1]) - b[1]) + std::fabs(double(a[2]) - b[2]);
 }
 
-/// Whether the step from the last column to the first, and from the last row to the first, is like the steps
-/// beside it.
+/// Whether the steps from the last column and row to the first are like the steps beside them.
 bool continues_across_edges(const Texture& texture) {
     constexpr double kLikeness = 2;
     if (texture.width < 8 || texture.height < 8) return false;

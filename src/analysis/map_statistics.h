@@ -45,8 +45,7 @@ struct MapStatistics {
 
 bool is_integer_type(SampleType type);
 
-/// One pass over the texels and one over their lengths. `midlevel`: what means no displacement; none:
-/// guessed.
+/// One pass over the texels and one over their lengths. `midlevel`: what means no displacement, or guessed.
 MapStatistics measure_map(const std::vector<MapTile>& tiles, const std::optional<Vec3f>& midlevel);
 
 } // namespace relief

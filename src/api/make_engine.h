@@ -1,5 +1,4 @@
-// Creates the engine selected by the settings. The only place that depends on both engines and on the
-// laboratory's traversals.
+// Creates the engine that the settings select. Only this depends on both engines and on the laboratory.
 #pragma once
 
 #include <memory>

@@ -13,8 +13,7 @@ std::string processor_name();
 /// Peak resident size of this process, bytes; 0 if unknown.
 uint64_t peak_resident_bytes();
 
-/// Bytes that can be allocated without swapping, within the limit of the control group; UINT64_MAX if
-/// unknown.
+/// Bytes that can be allocated without swapping, within the control group's limit; UINT64_MAX if unknown.
 uint64_t available_memory_bytes();
 
 } // namespace relief

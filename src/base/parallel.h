@@ -6,9 +6,8 @@
 
 namespace relief {
 
-/// Runs `body(begin, end)` over [0, count) cut into ranges of `grain`, the last of which may be shorter, on
-/// the threads of the enclosing with_threads (or all cores). The first exception thrown by a body is rethrown
-/// here.
+/// Runs `body(begin, end)` over [0, count) cut into ranges of at most `grain`, on the threads of the
+/// enclosing with_threads (or all cores). Rethrows the first exception of a body.
 void parallel_for(const char* name, size_t count, size_t grain,
                   const std::function<void(size_t, size_t)>& body);
 

@@ -1,5 +1,4 @@
-// The flat tree that every builder makes and every traversal reads. Boxes and ids only: it never knows a
-// primitive.
+// The flat tree that every builder makes and every traversal reads: boxes and ids, no primitives.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +8,7 @@
 
 namespace relief {
 
-/// Edges on the longest way from the root of a Bvh to a leaf: every builder keeps to it, so stacks have a
-/// fixed size.
+/// Edges on the longest way from the root of a Bvh to a leaf, for all builders: stacks have a fixed size.
 inline constexpr int kMaxBvhDepth = 96;
 
 /// 32 bytes. Children of an inner node are adjacent: `first` and `first + 1`.

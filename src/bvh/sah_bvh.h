@@ -22,8 +22,7 @@ class SahBvhBuilder {
         int max_depth = kMaxBvhDepth;
     };
 
-    /// Every box must be finite and not empty. The tree is the same for any number of threads. No boxes: an
-    /// empty tree.
+    /// Boxes must be finite and not empty. The tree does not depend on the threads. No boxes: an empty tree.
     static Bvh build(std::span<const Box> boxes, const Config& config);
 };
 

@@ -56,8 +56,7 @@ struct SweepScratch {
     std::span<NumberedBox> members;
 };
 
-/// Tries every cut between neighbours in the order of centroids (MacDonald and Booth 1990). Invalid when all
-/// centroids coincide.
+/// Tries all cuts in the order of centroids (MacDonald and Booth 1990). Invalid when all centroids coincide.
 SahSplit find_sweep_split(const SplitInput& input, const SweepScratch& scratch);
 SplitSets apply_sweep_split(const SplitInput& input, const SahSplit& split, const SweepScratch& scratch);
 

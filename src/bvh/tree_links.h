@@ -1,5 +1,4 @@
-// What walks without a stack need of a tree besides its nodes: an axis for each inner node, parents, skip
-// links.
+// What walks without a stack need of a tree besides its nodes: axes of inner nodes, parents, skip links.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +43,7 @@ LinkedBvh make_linked_bvh(const AxisBvh& tree);
 /// Edges on the longest way from the root to a leaf, in parallel; 0 without nodes.
 int compute_depth(const Bvh& bvh);
 
-/// Every node on level `max_depth` >= 0 becomes a leaf of all primitives below it. In trees of this folder
-/// these stand next to each other.
+/// Nodes on level `max_depth` >= 0 become leaves of all primitives below, which stand next to each other.
 Bvh limit_depth(const Bvh& bvh, int max_depth);
 
 /// With axes of its own, and its depth.

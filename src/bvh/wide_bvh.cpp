@@ -30,13 +30,11 @@ uint8_t encode_upper(float value, float origin, float scale) {
     return uint8_t(result);
 }
 
-/// Smallest exponent whose code 255 reaches `upper` and lies strictly above `origin`, so that an unused slot
-/// is empty after rounding too.
+/// Smallest exponent whose code 255 reaches `upper` and lies above `origin`, so that unused slots stay empty.
 int find_exponent(float origin, float upper) {
     const double step = (double(upper) - origin) / 255;
     int exponent = step > 0 ? std::clamp(std::ilogb(step), -126, 127) : -126;
-    // 255 steps of 2^-33 times the origin are below half a unit in its last place: no need to try smaller
-    // ones.
+    // 255 steps of 2^-33 times the origin are below half a unit in its last place: smaller ones do nothing.
     if (origin != 0) exponent = std::max(exponent, std::ilogb(origin) - 33);
     const auto reach = [&] { return WideNode::decode(origin, WideNode::decode_scale(exponent), 255); };
     while (exponent < 127 && !(reach() >= upper && reach() > origin)) ++exponent;

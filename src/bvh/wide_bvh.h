@@ -1,5 +1,4 @@
-// Eight-wide BVH with 8-bit boxes, made from a binary one: what the CPU engine walks (after Ylitie, Karras,
-// Laine 2017).
+// Eight-wide BVH with 8-bit boxes, made from a binary one, for the CPU engine (after Ylitie et al. 2017).
 #pragma once
 
 #include <bit>
@@ -13,11 +12,10 @@
 
 namespace relief {
 
-/// 96 bytes. Child boxes are origin + code * 2^exponent, so that the product is exact and every decoder
-/// agrees. Codes are rounded outward and checked with the decoder itself. Children fill the slots from 0.
-/// Unused slots have lower code 255 and upper code 0 in x and decode to lower > upper there; a slab test that
-/// widens its interval may still enter them where the box is tiny next to its distance, so walkers must mask
-/// by child_count.
+/// 96 bytes. Child boxes are origin + code * 2^exponent: the product is exact and every decoder agrees. Codes
+/// are rounded outward and checked with the decoder. Children fill the slots from 0. Unused slots have lower
+/// code 255 and upper code 0 in x, so lower > upper; a slab test that widens its interval may still enter
+/// them where the box is tiny next to its distance, so walkers must mask by child_count.
 struct WideNode : WideChild {
     static constexpr int kMaxChildCount = kMaxWideChildCount;
 
@@ -35,8 +33,7 @@ struct WideNode : WideChild {
 };
 static_assert(sizeof(WideNode) == 96);
 
-/// `leaf first` indexes primitive_ids, or is the primitive itself when primitive_ids is empty (every leaf
-/// holds one).
+/// `leaf first` indexes primitive_ids, or is the primitive itself when primitive_ids is empty.
 struct WideBvh {
     std::vector<WideNode> nodes; ///< node 0 is the root; empty: no primitives
     std::vector<uint32_t> primitive_ids;

@@ -17,8 +17,7 @@ using Matrix = std::array<Column, 3>; ///< columns
 
 double dot(const Column& a, const Column& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Eigenvalues on the diagonal of `symmetric`, eigenvectors as columns, by rotations (Jacobi 1846, Über ein
-/// leichtes Verfahren).
+/// Eigenvalues on the diagonal of `symmetric`, eigenvectors as columns (Jacobi 1846).
 Matrix diagonalize(Matrix& symmetric) {
     constexpr int kSweeps = 8;
     Matrix vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -49,8 +48,7 @@ Matrix make_unit_columns(const TexelFrame& frame) {
     return columns;
 }
 
-/// By the circles of Gershgorin, which hold the eigenvalues: true for most frames, without a way to find
-/// them.
+/// Gershgorin's circles hold the eigenvalues: this is true for most frames and needs no eigenvalues.
 bool is_surely_sound(const Matrix& squares) {
     for (size_t r = 0; r < 3; ++r) {
         const double others = std::fabs(squares[r][(r + 1) % 3]) + std::fabs(squares[r][(r + 2) % 3]);

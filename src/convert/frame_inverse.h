@@ -1,6 +1,5 @@
-// The way back through frames, also through those that have nearly collapsed: frames are blended between
-// corners, and where tangents of opposite directions meet, a blend loses directions that no (t, b, n) of
-// sensible size reaches.
+// The way back through frames, also nearly collapsed ones: frames are blended between corners, and where
+// opposite tangents meet, no (t, b, n) of sensible size reaches some directions.
 #pragma once
 
 #include "convert/texel_frames.h"

@@ -9,8 +9,7 @@
 
 namespace relief {
 
-/// Columns t, b, n, as the surface is displaced through them: blended between the corners, not of unit
-/// length.
+/// Columns t, b, n as the surface uses them: blended between corners, not of unit length.
 using FrameMatrix = std::array<Vec3f, 3>;
 
 struct TexelFrame {

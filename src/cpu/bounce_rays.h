@@ -18,9 +18,8 @@ struct BounceScratch {
 };
 
 /// As Tracer::closest_hits at `depth`, where ray k sees M_(lod_bias) up to coarse_from[k] and M_(kBounceBias)
-/// beyond; both are closed. Where the far part begins between the two, inside the coarse surface, it would
-/// meet that from within: such rays see the fine surface all the way. Rays come back with the LOD bias of
-/// what they met. Thread safe.
+/// beyond. Where the far part begins between the two surfaces it would meet the coarse one from within: such
+/// rays see the fine one all the way. Rays come back with the LOD bias of what they met. Thread safe.
 void closest_bounce_hits(const Tracer& tracer, std::span<TraceRay> rays, std::span<const float> coarse_from,
                          std::span<TraceHit> hits, int depth, BounceScratch& scratch, PointScratch& points);
 

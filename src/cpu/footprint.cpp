@@ -34,8 +34,7 @@ VoxelGrid::VoxelGrid(const Box& bounds, size_t most_voxels) : bounds_(bounds) {
         extent[axis] = double(get_component(bounds.upper, axis)) - origin_[axis];
         largest = std::max(largest, extent[axis]);
     }
-    // Flat boxes have fewer voxels than cubes of their length: ever smaller ones, until there is no more
-    // room.
+    // Flat boxes have fewer voxels than cubes of their length: ever smaller ones while there is room.
     for (double voxel = largest; voxel > 0; voxel *= 0.9) {
         std::array<int, 3> size;
         for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(1, int(extent[axis] / voxel));

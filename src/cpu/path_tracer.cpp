@@ -52,9 +52,8 @@ struct ShadowRay {
     Vec3f contribution;
 };
 
-/// The wavefront of one tile: all paths of one sample advance together, so that their rays go to the tracer
-/// in packets and their hits to the kernels of shading. Entry k of the wave's arrays belongs to the path
-/// active_[k].
+/// The wavefront of one tile: all paths of a sample advance together, so that rays and hits reach the SIMD
+/// kernels in packets. Entry k of the wave's arrays belongs to the path active_[k].
 class TileTracer {
   public:
     TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report);
@@ -227,8 +226,7 @@ void TileTracer::add_backgrounds() {
         paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
 }
 
-/// What misses looks at places of the image far apart, hits at none; both meet analytic lights, which few
-/// scenes have.
+/// Misses look up the image at places far apart, hits do not; both meet analytic lights, which are rare.
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];
@@ -363,8 +361,7 @@ void TileTracer::add_emission(size_t k, const Vec3f& emission) {
     path.result.radiance += path.throughput * emission * weight;
 }
 
-/// Next-event estimation. The last vertex has no bounce ray that could find the light as well: full weight
-/// there.
+/// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
     const bool is_last = depth_ == settings_.image.bounces;

@@ -1,5 +1,4 @@
-// Path tracing of one tile: light that reaches the camera along paths with next-event estimation at every
-// vertex.
+// Path tracing of one tile, with next-event estimation at every vertex.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-// Where the rays of each block of the picture have been: after an edit the blocks whose rays came nowhere
-// near what has changed are kept.
+// Where the rays of each block of the picture have been: an edit keeps blocks whose rays came nowhere near.
 #pragma once
 
 #include <memory>
@@ -16,20 +15,17 @@ class PictureFootprints {
     /// Edge of a block, pixels; blocks lie at absolute multiples of it.
     static constexpr int kBlockEdge = 8;
 
-    /// Of a picture's window and what can change in it; all blocks are stale. `bounds` is finite and not
-    /// empty.
+    /// Of a picture's window and what can change in it; all blocks are stale. `bounds`: finite, not empty.
     PictureFootprints(const Window& window, const Box& bounds);
 
-    /// The footprint of the block of a pixel. Blocks may be used from several threads, each from one at a
-    /// time.
+    /// The footprint of a pixel's block, for one thread at a time; different blocks at once.
     Footprint& at(int x, int y) { return footprints_[find_block(x, y)]; }
 
     /// What is in these boxes, or was, has changed: blocks with rays that have been there are stale. False
     /// where a box lies outside of what is kept track of: any block may be, and nothing can be kept any more.
     bool mark_stale(std::span<const Box> places);
 
-    /// Stale pixels as windows of at most `edge` a side, a multiple of kBlockEdge; their footprints are made
-    /// empty.
+    /// Stale pixels as windows of at most `edge` a side, a multiple of kBlockEdge; empties their footprints.
     std::vector<Window> start_stale_windows(int edge);
     /// The stale windows have been traced.
     void finish();

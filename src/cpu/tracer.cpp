@@ -22,8 +22,7 @@ namespace relief::cpu {
 
 namespace {
 
-/// One batch of a kind in so many measures how much of its time goes into patches; the clock would cost too
-/// much in all of them.
+/// One batch of a kind in so many is timed inside of patches; the clock would cost too much in all.
 constexpr uint64_t kTimedBatchInterval = 32;
 
 /// With fewer rays, or less room for trees, the order of rays is not worth its time.

@@ -71,8 +71,7 @@ class Tracer {
            std::unique_ptr<const SceneWalk> walk);
     ~Tracer();
 
-    /// As Engine::apply_changes. Boxes of what has changed, before and after, are added to `places`, world
-    /// space.
+    /// As Engine::apply_changes. Adds boxes of what changed, before and after, world space, to `places`.
     bool apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.

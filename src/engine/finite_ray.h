@@ -5,8 +5,7 @@
 
 namespace relief {
 
-/// `Ray`: origin, t_min, direction, t_max. False where origin or direction is infinite or NaN, or where
-/// the interval is empty.
+/// False for a ray whose origin or direction is infinite or NaN, or whose interval is empty.
 template <class Ray> bool can_hit(const Ray& ray) {
     const Vec3f sum = ray.origin + ray.direction;
     const float all = sum.x + sum.y + sum.z;

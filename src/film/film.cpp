@@ -117,8 +117,7 @@ void write_means(const double* sums, size_t count, uint32_t n, Source source, fl
     for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
 }
 
-/// The system grants more than it has and ends the process later, so what a picture needs is requested
-/// beforehand.
+/// Checked beforehand, since the system grants more memory than it has and ends the process later.
 void require_memory(double pixels, size_t bytes_per_pixel) {
     const double needed = pixels * double(bytes_per_pixel), available = double(available_memory_bytes());
     if (needed <= available) return;

@@ -10,8 +10,7 @@ struct Basis {
     Vec3 t, b, n;
 };
 
-/// Frame about a unit vector without a singularity (Duff et al. 2017, Building an Orthonormal Basis,
-/// Revisited).
+/// Frame about a unit vector without a singularity (Duff et al. 2017, Building an Orthonormal Basis).
 FN Basis make_basis(Vec3 n) {
     Float sign = select(n.z < Float(0.0f), Float(-1.0f), Float(1.0f));
     Float a = Float(-1.0f) / (sign + n.z);

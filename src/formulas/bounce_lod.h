@@ -18,9 +18,8 @@ struct BounceLod {
     float cell_angle; ///< width of a cell at distance 1; 0: all parts of all rays see one surface
 };
 
-/// Distance at which the cone of a bounce ray is as wide as the cells of M_(kBounceBias) around its origin:
-/// from there on it sees that surface. Infinity: nowhere. `lod_bias`: of the surface that it leaves; `pdf`:
-/// of its direction, per steradian.
+/// Distance at which the cone of a bounce ray is as wide as the cells of M_(kBounceBias) around its origin,
+/// which it sees from there on. Infinity: nowhere. `lod_bias`: of its surface; `pdf`: per steradian.
 FN float find_coarse_distance(BounceLod lod, Vec3 origin, uint lod_bias, float pdf) {
     if (!(lod.cell_angle > 0.0f) || lod_bias != 0u || !(pdf > 0.0f)) return make_infinity();
     float cell = lod.cell_angle * length(origin - lod.camera) * float(1u << kBounceBias);

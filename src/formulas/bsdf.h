@@ -192,8 +192,7 @@ FN BsdfValue evaluate_general_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     return result;
 }
 
-/// Value and density of `wi` for light that leaves along `wo`; zero when either is below the surface. Unit
-/// vectors.
+/// Value and density of `wi` for light leaving along `wo`; zero when either is below. Unit vectors.
 FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     Float zero = Float(0.0f);
     Bool is_above = wo.z > zero && wi.z > zero;

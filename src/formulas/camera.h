@@ -1,5 +1,4 @@
-// Pinhole and thin-lens camera (Kolb et al. 1995 call it the thin-lens model). Pixel (0, 0) is top left, y
-// downwards.
+// Pinhole and thin-lens camera (Kolb et al. 1995). Pixel (0, 0) is top left, y downwards.
 #ifndef RELIEF_CAMERA_H
 #define RELIEF_CAMERA_H
 #include "formulas/picture_plane.h"
@@ -25,8 +24,7 @@ struct CameraProjection {
     Float x, y, distance;
 };
 
-/// `up` need not be perpendicular to the view axis but must not be parallel to it; `fov` is vertical,
-/// radians.
+/// `up` must not be parallel to the view axis but may be oblique; `fov` is vertical, radians.
 FN CameraFrame make_camera_frame(Vec3 from, Vec3 to, Vec3 up, Float fov, Vec2 size) {
     Vec3 forward = normalize(to - from);
     Vec3 right = normalize(cross(forward, up));
@@ -47,8 +45,7 @@ FN CameraRay make_pinhole_ray(CameraFrame camera, Vec2 pixel) {
     return result;
 }
 
-/// Ray through the point `pixel` of the picture (pixel centres at .5); `lens` in [0, 1)^2 chooses the point
-/// of the lens.
+/// Ray through `pixel` of the picture (centres at .5); `lens` in [0, 1)^2 is the point of the lens.
 FN CameraRay make_camera_ray(CameraFrame camera, Vec2 pixel, Vec2 lens) {
     Vec3 toward = find_picture_point(camera.corner, camera.step_x, camera.step_y, pixel);
     Vec2 disk = square_to_disk(lens);

@@ -1,6 +1,5 @@
-// Environment light: a latitude-longitude image, importance-sampled by a piecewise constant density over
-// cells of latitude and longitude (Pharr, Jakob and Humphreys 2023, Physically Based Rendering, section
-// 12.5.2).
+// Environment light: a latitude-longitude image, importance-sampled by a piecewise constant density (Pharr,
+// Jakob and Humphreys 2023, Physically Based Rendering, section 12.5.2).
 #if !defined(RELIEF_ENVIRONMENT_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_ENVIRONMENT_H
@@ -50,15 +49,13 @@ FN Vec2 locate_latlong(Vec2 position, Vec2 size) {
     return result;
 }
 
-/// Cell of `count` along one axis that holds a position in [0, 1], as an integer-valued float; the first one
-/// for NaN.
+/// Cell of `count` along an axis that holds a position in [0, 1], integer-valued; the first for NaN.
 FN Float locate_environment_cell(Float position, Float count) {
     Float cell = floor(position * count);
     return select(cell > Float(0.0f), min(cell, count - Float(1.0f)), Float(0.0f));
 }
 
-/// Density per solid angle of a direction in a cell of the given probability; 0 at the poles, where the solid
-/// angle vanishes.
+/// Density per solid angle in a cell of the given probability; 0 at the poles, whose solid angle vanishes.
 FN Float environment_cell_density(EnvironmentData e, Float probability, Vec3 direction) {
     Float sine = sqrt(direction.x * direction.x + direction.z * direction.z);
     Bool is_pole = sine == Float(0.0f);

@@ -1,7 +1,6 @@
-// Sixteen (or eight, or four) floats as one value on every instruction set: one register with AVX-512, two
-// with AVX2, four with SSE4 and NEON, emulated without SIMD. Compiled once per target by Highway; use inside
-// HWY_NAMESPACE only. Every operation rounds once and nothing is fused, so results are bit-identical on all
-// targets.
+// Sixteen (or eight, or four) floats as one value: one register with AVX-512, two with AVX2, four with SSE4
+// and NEON, emulated without SIMD. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
+// Nothing is fused, so results are bit-identical on all targets.
 #if defined(RELIEF_MATH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_LANES_INL_H
 #undef RELIEF_MATH_LANES_INL_H
@@ -96,8 +95,7 @@ template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
     return r;
 }
 
-/// Converts mask and number through one word: mixing byte stores with a word load, or the reverse, defeats
-/// store-to-load forwarding.
+/// Converts mask and number through one word: mixed byte and word accesses defeat store-to-load forwarding.
 static_assert(std::endian::native == std::endian::little);
 template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     alignas(8) uint8_t bytes[8] = {};
@@ -107,8 +105,7 @@ template <class D, class M> HWY_INLINE LaneMask to_bits(D d, M mask) {
     return bits;
 }
 
-/// Compress store of the lanes in `mask`. Whole registers are written: memory behind the stored lanes is
-/// undefined.
+/// Compress store of the lanes in `mask`. Writes whole registers: memory behind is undefined.
 template <class D> HWY_INLINE void store_compressed(D d, hn::Vec<D> v, LaneMask mask, hn::TFromD<D>* target) {
     const uint64_t bits = mask;
     hn::StoreU(hn::CompressBits(v, reinterpret_cast<const uint8_t*>(&bits)), d, target);
@@ -156,8 +153,7 @@ template <size_t W> HWY_INLINE float reduce_sum(const Lanes<W>& a) {
     return hn::GetLane(hn::SumOfLanes(typename Lanes<W>::D(), sum));
 }
 
-/// Lanes inside [0, +inf) in all three, or inside (-inf, 0] in all three: the sign test of a watertight
-/// triangle.
+/// Lanes in [0, +inf) or in (-inf, 0] in all three: the sign test of a watertight triangle.
 template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {
     const Lanes<W> zero(0.0f);
     return less_equal(zero, min(min(u, v), w)) | less_equal(max(max(u, v), w), zero);

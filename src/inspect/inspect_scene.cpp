@@ -94,8 +94,7 @@ class FirstPass final : public RenderObserver {
     bool is_done_ = false;
 };
 
-/// Times all passes over parts of a picture: the first sample, and those after it, which find most trees made
-/// and share them within a tile.
+/// Times all passes over parts of a picture: the first sample builds most trees, those after it share them.
 class TrialRender {
   public:
     TrialRender(const std::shared_ptr<const PreparedScene>& prepared, const RenderSettings& settings)

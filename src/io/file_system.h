@@ -9,8 +9,7 @@ namespace relief {
 /// Lower-case extension with its dot: ".exr".
 std::string get_extension(const std::filesystem::path& file);
 
-/// Throws bad_input unless the path names a regular file; the hint names a similar file of the folder if
-/// there is one.
+/// Throws bad_input unless the path names a regular file; the hint names a similar file of the folder.
 void require_file(const std::filesystem::path& file);
 
 /// Whole content. Throws bad_input with the name.
@@ -19,8 +18,7 @@ std::string read_file_bytes(const std::filesystem::path& file);
 /// A temporary name beside `target` that becomes the target on commit and is removed otherwise.
 class AtomicFile {
   public:
-    /// Throws Error{failed} where the folder does not exist, or the target is there and no regular file or a
-    /// link that leads back to itself.
+    /// Throws Error{failed} where the folder does not exist, or the target is no regular file or a link loop.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

@@ -1,5 +1,4 @@
-// Traversals of the scene that are chosen by name (ExperimentSettings::structure and traversal), for both
-// engines.
+// Scene traversals chosen by name (ExperimentSettings::structure and traversal), for both engines.
 #pragma once
 
 #include <memory>

@@ -15,8 +15,7 @@
 
 namespace relief {
 
-/// Whether neighbours that go the same way may be traced as one packet. Single rays are for surfaces without
-/// displacement alone.
+/// Whether neighbouring rays may be traced as a packet. `single` is for surfaces without displacement alone.
 enum class RayGrouping { single, packets };
 
 /// Where a ray met the surface: all that is needed to go on from there.
@@ -62,8 +61,7 @@ struct ProbeCounts {
     uint64_t cache_bytes = 0; ///< the most that the cache has held, its table included
 };
 
-/// One thread at a time; the calls that trace use all of `settings.device.threads`. evaluate_patch is thread
-/// safe.
+/// One thread at a time, but evaluate_patch is thread safe; tracing uses all of `settings.device.threads`.
 class TracerProbe {
   public:
     /// Prepares the scene, by the clock. Throws Error as render() does.

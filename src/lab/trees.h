@@ -1,5 +1,4 @@
-// Trees over one triangle mesh, built and walked for themselves: what measurements of structures and
-// traversals compare.
+// Trees over one triangle mesh, built and walked for themselves, to compare structures and traversals.
 #pragma once
 
 #include <cstdint>
@@ -52,8 +51,7 @@ struct TreeBuild {
     int depth = 0;                ///< edges on the longest way down
     bool is_on_device = false;    ///< else the host built it
     std::vector<TreeBuildPart> parts; ///< of a build on a device
-    /// Of the rate that the least memory traffic of such a build allows (docs/structures/lbvh.md); 0: not
-    /// built on a device.
+    /// Of the rate that memory traffic alone allows (docs/structures/lbvh.md); 0: not built on a device.
     double bound_share = 0;
 };
 
@@ -72,9 +70,8 @@ struct TreeHit {
     uint32_t primitive = kNoIndex;                    ///< triangle, faces cut into fans in their order
 };
 
-/// Spans of equal length. `keys`, for the trails over heaps: where each ray starts (kRootKey or what an
-/// earlier cast left there); becomes the leaf of its hit, if there is one. May be empty: all start at the
-/// root.
+/// Spans of equal length. `keys`, for trails over heaps: where each ray starts (kRootKey or a key of an
+/// earlier cast); becomes the leaf of its hit, if there is one. May be empty: all start at the root.
 struct TreeCastData {
     std::span<const Ray> rays;
     std::span<TreeHit> hits;

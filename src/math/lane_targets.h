@@ -1,6 +1,5 @@
 // Instruction sets that a source is compiled for; include before Highway's foreach_target. With RELIEF_TARGET
-// only that one, else every target that the compiler supports, including the one without SIMD; targets close
-// to another one are left out.
+// that one alone, else every target of the compiler, and none close to another.
 #pragma once
 
 #define HWY_COMPILE_ALL_ATTAINABLE

@@ -1,5 +1,4 @@
-// A prepared scene with write access, for prepare_scene() and SceneEditor alone: everybody else gets it
-// const.
+// A prepared scene with write access, for prepare_scene() and SceneEditor alone: others get it const.
 #pragma once
 
 #include <memory>

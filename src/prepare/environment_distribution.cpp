@@ -23,9 +23,8 @@ Vec3f read_color(const Texture& texture, uint32_t x, uint32_t y) {
     return scalar::make_texture_color(texture.channel_count, {channels[0], channels[1], channels[2]});
 }
 
-/// Turns weights that start at values[1] into cumulative probabilities; returns their sum. What is dim beside
-/// a bright one gets a share that floats can still tell from nothing: in the shadow of the brightest it is
-/// all the light there is.
+/// Turns weights from values[1] on into cumulative probabilities; returns their sum. Dim cells beside a
+/// bright one keep a share that floats can tell from 0: in a shadow they are all the light there is.
 double accumulate(std::span<float> values) {
     constexpr double kLeastShare = 0.01; // of the mean weight
     double sum = 0;
@@ -44,8 +43,7 @@ double accumulate(std::span<float> values) {
     return sum;
 }
 
-/// Integral of the bilinearly filtered luminance over each texel of a row, in texels: so it is positive
-/// wherever the filtered radiance is.
+/// Integral of the filtered luminance over each texel of a row: positive wherever filtered radiance is.
 std::vector<double> integrate_row(const Texture& texture, uint32_t row, const Vec3f& scale) {
     const uint32_t above = row > 0 ? row - 1 : 0, below = std::min(row + 1, texture.height - 1);
     std::vector<double> filtered(texture.width), result(texture.width);
@@ -63,8 +61,7 @@ std::vector<double> integrate_row(const Texture& texture, uint32_t row, const Ve
     return result;
 }
 
-/// Part of texel `texel` of `texels` that lies in cell `cell` of `cells` along one axis; cells are not
-/// narrower than texels.
+/// Part of `texel` of `texels` that lies in `cell` of `cells` along an axis; cells are at least as wide.
 double compute_overlap(uint64_t texel, uint64_t texels, uint64_t cell, uint64_t cells) {
     const uint64_t low = std::max(texel * cells, cell * texels);
     const uint64_t high = std::min((texel + 1) * cells, (cell + 1) * texels);

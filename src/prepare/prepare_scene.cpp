@@ -72,8 +72,7 @@ std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) 
     return list;
 }
 
-/// Lists the maps and their smaller copies, gutters filled: in copies, since the scene's textures may be
-/// shared with whoever made it.
+/// Lists the maps and their smaller copies, dilated: in copies, since textures of the scene may be shared.
 void prepare_maps(Scene& scene, EditableScene& prepared) {
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         Displacement& displacement = scene.displacements[k];
@@ -130,8 +129,7 @@ void release_mesh(Scene& scene, uint32_t mesh) {
     scene.meshes[mesh] = std::move(empty);
 }
 
-/// One surface a key, in the order of the first object that needs it; mesh by mesh, so that polygons can be
-/// freed.
+/// One surface a key, in the order of first use, mesh by mesh, so that polygons can be freed.
 void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
                    const std::vector<uint32_t>& first_object, std::vector<Surface>& surfaces) {
     std::vector<std::vector<uint32_t>> surfaces_of_mesh(scene.meshes.size());

@@ -1,6 +1,5 @@
-// What a displaced surface shows of its map's space, once it is there: tangent space is what a map is taken
-// for where nothing is said, and one in object space then looks torn and swollen, which says nothing of the
-// cause.
+// What a displaced surface shows of its map's space: a map without a stated space counts as tangent, and one
+// in object space then looks torn and swollen.
 #pragma once
 
 #include <string>
@@ -10,8 +9,7 @@
 
 namespace relief {
 
-/// Of surfaces in tangent space whose uv seams speak for object space. Takes well below a millisecond a
-/// surface: few seams are looked at.
+/// Of surfaces in tangent space whose uv seams speak for object space. Takes under a millisecond a surface.
 std::vector<std::string> find_space_warnings(const PreparedScene& scene);
 
 } // namespace relief

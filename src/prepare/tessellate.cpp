@@ -14,8 +14,7 @@ namespace {
 constexpr uint64_t kBytesPerVertex = sizeof(Vec3f) + sizeof(PackedFrame) + sizeof(Vec2f);
 /// Of the finished trees, corners of triangles included: 120 to 123 over micro-quads of the sample scenes.
 constexpr double kTreeBytesPerQuad = 121, kTreeBytesPerTriangle = 61;
-/// Of a quad while its tree is built: box, two nodes of the binary tree, its number and its share of the wide
-/// tree.
+/// Of a quad while its tree is built: box, two binary nodes, number and its share of the wide tree.
 constexpr uint64_t kBuildBytesPerQuad =
     sizeof(Box) + 2 * 32 + sizeof(uint32_t) + uint64_t(kTreeBytesPerQuad) + 10;
 
@@ -39,8 +38,7 @@ bool have_equal_levels(const Surface& surface, const LevelField& a, const LevelF
     return true;
 }
 
-/// For each instance, the first one that has the same displaced surface at the same levels: itself or an
-/// earlier one.
+/// For each instance the first one with the same displaced surface at the same levels, maybe itself.
 std::vector<uint32_t> find_equals(const PreparedScene& scene) {
     std::vector<uint32_t> equals, firsts;
     for (uint32_t k = 0; k < scene.instances.size(); ++k) {

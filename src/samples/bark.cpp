@@ -1,5 +1,4 @@
-// Bark: tall plates with deep cracks between them; the edges of a plate curl over the crack, and flakes cover
-// its face.
+// Bark: tall plates with deep cracks between; edges curl over the cracks, and flakes cover the plates.
 #include <cmath>
 #include <numbers>
 
@@ -87,8 +86,7 @@ class BarkSculptor {
     }
 
     PlateField plates_{{16, 5, 0.9f, 0.0030f, 201}}, flakes_{{52, 14, 0.95f, 0.0011f, 202}};
-    // From the middle of a crack outwards: its floor, under the plate, up, over the curled edge, onto the
-    // plate.
+    // From the middle of a crack: its floor, under the plate, up, over the curled edge, onto the plate.
     MirroredCurve crack_{{0, 0},         {0.22f, 0.02f}, {0.42f, 0.10f}, {0.50f, 0.30f}, {0.40f, 0.55f},
                          {0.22f, 0.80f}, {0.20f, 1.02f}, {0.34f, 1.15f}, {0.60f, 1.08f}, {1, 1.0f}};
 };

@@ -94,8 +94,7 @@ class EarSculptor {
     ClosedOutline bowl_{{-0.22f, -0.05f}, {-0.17f, -0.20f}, {-0.05f, -0.25f},
                         {0.07f, -0.17f},  {0.135f, -0.03f}, {0.12f, 0.11f},
                         {0.02f, 0.19f},   {-0.12f, 0.18f},  {-0.21f, 0.09f}};
-    // From the head, under the rim, out and up to its edge, over it and down its inner roll to the hollow
-    // inside.
+    // From the head, under the rim, up to its edge, over it and down its inner roll to the hollow.
     FreeCurve rolled_{{-0.13f, 0},      {-0.03f, 0.0f},  {0.045f, 0.10f}, {0.045f, 0.42f}, {-0.005f, 0.70f},
                       {-0.045f, 0.92f}, {-0.03f, 1.12f}, {0.03f, 1.17f},  {0.085f, 1.06f}, {0.085f, 0.90f},
                       {0.065f, 0.76f},  {0.10f, 0.68f},  {0.15f, 0.70f},  {0.21f, 0.75f}};

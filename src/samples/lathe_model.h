@@ -19,8 +19,7 @@ struct Sculpture {
 Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
                        const std::function<Sculpture(const BodyPoint&)>& sculpt);
 
-/// A displacement with one map and a material with one colour texture, both called `name`.
-/// `sample`: as of bake_maps.
+/// A displacement and a material of that name with one map each. `sample`: as of bake_maps.
 Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap, Texels texels,
                  const std::function<MapSample(Vec2f uv)>& sample);
 

@@ -1,5 +1,4 @@
-// The displaced models of the sample scenes: one map each, and base meshes that may be bent from object to
-// object.
+// Displaced models of the sample scenes: one map each, and base meshes that may be bent.
 #pragma once
 
 #include <functional>

@@ -13,8 +13,7 @@ PlateField::PlateField(const Config& config) : config_(config) {
         for (int x = 0; x < config.columns; ++x) {
             const uint32_t seed = hash(x, y, 0, config.seed);
             const float jx = to_unit(seed * 0x9e3779b1u), jy = to_unit(seed * 0x85ebca77u);
-            // Every other column is moved by half a cell, as bricks are, so that cracks do not run straight
-            // across.
+            // Every other column is moved by half a cell, as bricks are, so that no crack runs straight.
             const float shift = x % 2 == 0 ? 0.0f : 0.5f;
             cells_.push_back(
                 {{0.5f + config.jitter * (jx - 0.5f), shift + 0.5f + config.jitter * (jy - 0.5f)}, seed});
@@ -54,8 +53,7 @@ PlateHit PlateField::find(const Vec2f& uv) const {
             weights += weight;
             inward = inward - stretched * (weight / stretch);
         }
-    // Borders that melt together lie a little outside of the true ones; at a crack's middle the distance is
-    // 0.
+    // Blended borders lie a little outside of the true ones; the middle of a crack has distance 0.
     hit.distance = std::max(0.0f, -config_.rounding * std::log(weights));
     hit.inward = inward * (1 / weights);
     return hit;

@@ -14,8 +14,7 @@ class ProfileCurve {
     /// How the curve goes on before its first and behind its last point.
     enum class Ends { free, mirrored };
 
-    /// At least two points. `mirrored`: x is odd about both ends and h even, so that copies side by side join
-    /// smoothly.
+    /// At least two points. `mirrored`: x is odd about both ends and h even, so that copies join smoothly.
     ProfileCurve(std::vector<Vec2f> points, Ends ends);
 
     /// Point at q, clamped to [0, 1].

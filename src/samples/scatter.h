@@ -29,8 +29,7 @@ class Scatter {
     /// Radius wanted at a place, or nothing where no feature may be.
     using RadiusRule = std::function<std::optional<float>(const BodyPoint&, Random&)>;
 
-    /// Throws `tries` darts at the body and keeps those that touch no earlier disc (dart throwing, Cook
-    /// 1986).
+    /// Throws `tries` darts at the body, keeps those that touch no earlier disc (Cook 1986).
     Scatter(const LatheBody& body, int tries, uint32_t seed, const RadiusRule& rule);
 
     /// The feature whose disc holds the point (at most one does).

@@ -25,13 +25,11 @@ struct TorusShape {
 /// Torus about the y axis: u runs along the ring, v around the tube.
 Mesh make_torus(const TorusShape& shape, const Deformation& deform);
 
-/// Sphere of triangles: an icosahedron whose faces are split `splits` times; without normals it shows its
-/// facets.
+/// Sphere of triangles: an icosahedron split `splits` times; without normals its facets show.
 enum class Shading { faceted, smooth };
 Mesh make_icosphere(int splits, Shading shading);
 
-/// A cut stone of triangles, about one unit wide, its point down: crown, girdle and pavilion of `sides`
-/// sides.
+/// A cut stone of triangles, about one unit wide, point down: crown, girdle and pavilion.
 Mesh make_gem(int sides);
 
 } // namespace relief::samples

@@ -22,8 +22,7 @@ class Stage {
     void add_displaced(uint32_t model, const std::string& name, const Affine& world_from_object,
                        const Deformation& deform);
 
-    /// The object added last takes the material of its model with its colours multiplied by `tint`, each in
-    /// [0, 1].
+    /// The last object takes its model's material with colours multiplied by `tint`, in [0, 1].
     void tint_last(uint32_t model, const std::string& name, const Vec3f& tint);
 
     /// A plain object with its mesh.

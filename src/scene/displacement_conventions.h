@@ -1,5 +1,4 @@
-// Names of what a displacement map means: types, spaces, frames, wrap modes, encodings, axis texts,
-// presets of programs.
+// Names of displacement conventions: types, spaces, frames, wraps, encodings, axes, presets of programs.
 #pragma once
 
 #include <optional>
@@ -11,8 +10,7 @@
 
 namespace relief {
 
-/// How stored values (integers scaled to [0, 1]) are to be read, before the midlevel: as they are, or
-/// 0..1 as -1..1.
+/// How stored values (integers scaled to [0, 1]) are read before the midlevel: as they are, or as -1..1.
 enum class MapEncoding { as_stored, from_unit };
 
 /// Axes as text and the letters they were written in.

@@ -15,8 +15,7 @@ struct FacesWithoutUvs {
 /// None of a mesh that has no uvs at all. Entries of uv_indices beyond its end count as missing.
 FacesWithoutUvs find_faces_without_uvs(const Mesh& mesh);
 
-/// The same mesh without these faces, for what looks at uvs; indices must be in range, and a face with uvs
-/// must be there.
+/// The same mesh without these faces; indices must be in range, and a face with uvs must be there.
 Mesh drop_faces_without_uvs(const Mesh& mesh);
 
 } // namespace relief

@@ -17,8 +17,7 @@ struct CastKernels {
     CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
                 const TracerConfig& config, uint32_t stack_size);
 
-    /// The fused form leaves excess pairs of large trees to `leftover`; only on devices that limit the loops
-    /// of an invocation.
+    /// The fused form leaves excess pairs of large trees to `leftover` on devices that limit loops.
     bool is_fused, has_leftover = false;
     uint32_t fused_group_count = 0, fused_jobs_per_group = 0;
     scalar::ArgumentsPush arguments_push; ///< for prepare_arguments

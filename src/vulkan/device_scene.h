@@ -1,5 +1,4 @@
-// The prepared scene in device memory: tables, geometry, scene trees and texels, in the layout of
-// vulkan/layout/device_scene.h.
+// The prepared scene in device memory, in the layout of vulkan/layout/device_scene.h.
 #pragma once
 
 #include <map>
@@ -25,8 +24,7 @@ class DeviceScene {
 
     /// Root of the tree of instances; scalar::kNone for an empty scene.
     uint32_t root() const { return root_; }
-    /// Index of the first patch of a surface among all patches; trees of tiles are numbered from
-    /// patch_count() on.
+    /// First patch of a surface among all patches; trees of tiles count from patch_count() on.
     uint32_t first_patch(uint32_t surface) const { return tables_.surfaces[surface].first_quad; }
     uint32_t patch_count() const { return patch_count_; }
     /// The scene traversal kernel, and the stack entries that it needs.

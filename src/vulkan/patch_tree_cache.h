@@ -1,6 +1,5 @@
-// The patch tree cache: a ring buffer. Addresses increase monotonically; trees more than the ring's size
-// behind the head are overwritten. Counterpart of cpu/patch_trees/patch_tree_cache.h; looked up by
-// shaders/bottom_cache.comp.
+// The patch tree cache: a ring buffer of growing addresses; trees further than its size behind the head are
+// overwritten. Counterpart of cpu/patch_trees/patch_tree_cache.h; looked up by shaders/bottom_cache.comp.
 #pragma once
 
 #include "vulkan/device/buffer.h"
@@ -13,9 +12,8 @@ namespace relief::vulkan {
 /// Not thread safe.
 class PatchTreeCache {
   public:
-    /// `cap_bytes` 0: trees live for one wave of jobs, and the pool is only working memory. Throws
-    /// Error{out_of_memory}. `last_head`: address, in units, after which addresses restart and all trees are
-    /// discarded.
+    /// `cap_bytes` 0: trees live for one wave of jobs. Throws Error{out_of_memory}. `last_head`: address, in
+    /// units, after which addresses restart and all trees are discarded.
     PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
 
     void bind(BindingTable& bindings) const;

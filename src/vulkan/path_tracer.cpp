@@ -167,8 +167,7 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
     commands.dispatch(film_, pixels.count, push);
 }
 
-/// Both parts of bounce rays; counterpart of cpu/bounce_rays.h. Lists for shadow rays and for the next depth
-/// are free until shade_depth.
+/// Both parts of bounce rays, as cpu/bounce_rays.h; shadow and next-depth lists are free until shade_depth.
 CastStatistics PathTracer::trace_bounces(scalar::PathPush push) {
     CastStatistics cast = tracer_.closest_hits(path_list_, push.count);
     if (push.bounce_lod.cell_angle == 0) return cast;

@@ -23,8 +23,7 @@ class RadixSort {
 
     /// Sorts the first counters[counter_word] pairs of kBindPairs, at most `capacity`, by the lowest
     /// `key_bits` (0 to 32) of their first word; higher bits must be 0. The result is in kBindPairs;
-    /// kBindSortedPairs, of the same size, and kBindHistogram are overwritten. `counter_word` is an index of
-    /// a word of kBindCounters.
+    /// overwrites kBindSortedPairs, of the same size, and kBindHistogram.
     void record(Commands& commands, uint64_t capacity, uint32_t key_bits, uint32_t counter_word) const;
 
   private:

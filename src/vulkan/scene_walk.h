@@ -1,5 +1,4 @@
-// A scene traversal that replaces the engine's own on a device. The laboratory (src/lab) provides those of
-// papers 2 and 3.
+// A scene traversal in place of the engine's own: src/lab has those of papers 2 and 3.
 #pragma once
 
 #include <cstdint>

@@ -32,9 +32,8 @@ template <class Worker> class SizedTracer {
     /// False when default constructed, and after run() has thrown for lack of memory.
     explicit operator bool() const { return worker_ != nullptr; }
 
-    /// Runs work(Worker&). If memory runs out on the way (patch trees, tiles), retries with a new tracer and
-    /// worker, which frees the memory accumulated so far; if no work has succeeded at this capacity, with
-    /// half of it.
+    /// Runs work(Worker&). Out of memory, retries with a new tracer and worker, which frees what has
+    /// accumulated; if nothing has succeeded at this capacity, with half of it.
     template <class Work> void run(const Work& work) {
         for (;;) {
             try {

@@ -30,8 +30,7 @@ using scalar::CounterData;
 
 constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(uint32_t);
 
-/// Bounces of a render may see coarser trees. A ray of a later round needs room for all candidates that it
-/// offers.
+/// Bounces may see coarser trees. A ray of a later round needs room for all its candidates.
 TracerConfig complete_config(TracerConfig config, const PreparedScene& scene,
                              const RenderSettings& settings) {
     config.may_see_coarser |= make_bounce_lod(scene, settings).cell_angle > 0;

@@ -12,8 +12,7 @@ namespace relief {
 
 namespace vulkan {
 
-/// `walk`, unless empty, replaces the engine's own scene traversal. Throws Error{out_of_memory} for a scene
-/// that the device cannot hold.
+/// `walk`, unless empty, replaces the engine's traversal. Throws Error{out_of_memory} for too large scenes.
 std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
                                        std::shared_ptr<const PreparedScene> scene,
                                        const RenderSettings& settings,

@@ -1,6 +1,5 @@
-// Boxes of displaced patches: from the bounds of their maps, found for all patches before the first ray, or
-// from the vertices themselves, with a quarter to a third less area, which takes as long as to build what is
-// inside them.
+// Boxes of displaced patches: from the bounds of their maps before the first ray, or from the vertices, with
+// a quarter to a third less area, which takes as long as building what is inside.
 #pragma once
 
 #include <cstdint>

@@ -60,8 +60,7 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
     }
 }
 
-/// Samples of one border of the tile that lies on patch edge `edge`. `samples`: the patch unpacked, once for
-/// all borders that need it.
+/// Samples of one border of the tile, on patch edge `edge`; `samples`: the patch, unpacked once.
 HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge,
                                 std::optional<PatchSamples>& samples, VertexGrid& grid) {
     const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];

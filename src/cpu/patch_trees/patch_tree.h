@@ -38,8 +38,7 @@ struct TreeKey {
     friend bool operator==(const TreeKey&, const TreeKey&) = default;
 };
 
-/// Common head of the two cached objects; `reused` is set by look-ups and cleared by the eviction's clock
-/// hand.
+/// Common head of the cached objects; `reused` is set by look-ups and cleared by the eviction's clock hand.
 struct alignas(64) CachedTree {
     TreeKey key;
     uint32_t byte_count = 0;

@@ -188,8 +188,7 @@ void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
     const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
     if (!has_room()) {
         free_retired(context);
-        // What is unlinked already becomes free when the other workers move on; more would only empty the
-        // table.
+        // Unlinked entries become free when other workers move on; more would only empty the table.
         if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_ && !grow())
             evict(context, bytes);
         if (!has_room()) return nullptr;
@@ -279,8 +278,7 @@ bool PatchTreeCache::grow() {
 }
 
 void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
-    // A little more than requested, so that the next builds find room without a search; and no endless
-    // search.
+    // A little more than requested, so that the next builds find room, and no endless search.
     const size_t target = std::max(bytes, cap_bytes_ / 64);
     const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
     size_t unlinked = 0;

@@ -60,8 +60,7 @@ struct RecentTrees {
     }
 };
 
-/// What one worker needs while it traces a batch. Taken with PatchTreeCache::acquire, given back with
-/// release.
+/// What one worker needs while it traces a batch, between PatchTreeCache::acquire and release.
 struct TraceContext {
     std::atomic<uint64_t> epoch{0}; ///< 0: holds no tree
     std::atomic<bool> is_taken{false};
@@ -138,8 +137,7 @@ class PatchTreeCache {
             context.epoch.store(now);
     }
 
-    /// The returned trees stay valid until the context's next refresh, release, or (without room) its next
-    /// call.
+    /// Trees stay valid until the context's next refresh, release, or (without room) its next call.
     const PatchTree& find_or_build_tree(TraceContext& context, const Surface& surface, const TreeKey& key) {
         return static_cast<const PatchTree&>(find_or_build(context, surface, key));
     }

@@ -13,8 +13,7 @@ namespace {
 
 constexpr size_t kMaxPolygonCount = size_t(1) << 28;
 
-/// A block is tested at once, however full it is, and no more expensive than a node: what fits one is not
-/// split.
+/// A block is tested at once and costs no more than a node: what fits one is not split.
 SahBvhBuilder::Config choose_config(const Surface& surface) {
     bool has_quads = false;
     for (const Quad quad : surface.quads) has_quads = has_quads || !quad.is_triangle();

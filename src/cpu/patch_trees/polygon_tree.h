@@ -19,8 +19,7 @@ struct alignas(64) PolygonNode : WideChild {
     uint32_t child[8];
 };
 
-/// Up to eight triangles: a triangle or quad of the surface each, or half of a quad. Empty lanes are NaN,
-/// which no ray meets.
+/// Up to eight triangles: each a triangle, a quad or half a quad of the surface. Empty lanes are NaN.
 struct alignas(64) TriangleBlock {
     float corner[3][3][8]; ///< [corner][axis]
     uint32_t triangle[8];  ///< 2 patch + is_upper
@@ -39,8 +38,7 @@ struct PolygonTree {
     }
 };
 
-/// `surface` has no displacement and fewer than 2^28 patches. The same for any number of threads. Throws
-/// Error for more polygons than that.
+/// `surface` has no displacement. The same for any number of threads. Throws Error for 2^28 patches or more.
 PolygonTree build_polygon_tree(const Surface& surface);
 
 } // namespace relief::cpu

@@ -19,8 +19,7 @@ struct Interval {
     float position; ///< within the interval, [0, 1)
 };
 
-/// Number of the interval of a cumulative distribution (0 ... 1) that u falls into, which lies in [first,
-/// last].
+/// Interval of a cumulative distribution (0 ... 1) that u falls into, in [first, last].
 uint32_t search_interval(std::span<const float> cumulative, float u, uint32_t first, uint32_t last) {
     const auto begin = cumulative.begin() + first + 1, end = cumulative.begin() + last + 1;
     return first + uint32_t(std::upper_bound(begin, end, u) - begin);

@@ -46,9 +46,8 @@ class LightSet {
     /// For many points; drawn[k] belongs to at[k].
     void draw(std::span<const Receiver> at, std::span<const RandomNumbers> random,
               std::span<LightSample> drawn) const;
-    /// Completes the weights of drawn[which[...]], before they are used: those from the environment lack its
-    /// radiance. Many directions lead into the surface, and the image, too large for a cache, need not be
-    /// read for them.
+    /// Completes the weights of drawn[which[...]] from the environment, which lack its radiance: the image,
+    /// too large for a cache, is not read for the many directions that lead into the surface.
     void complete_weight(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
 
     /// False: `u_emitter` is never looked at.
@@ -66,9 +65,8 @@ class LightSet {
         float distance; ///< infinity: out of the scene
         float bsdf_pdf; ///< the ray's own density
     };
-    /// Light of the environment, suns and point lights that a bounce ray meets, each weighted against its
-    /// chance of being drawn from the origin. `behind`: the environment along the ray, where the distance is
-    /// infinite.
+    /// Light of the environment, suns and point lights that a bounce ray meets, weighted against the density
+    /// of drawing it. `behind`: the environment along the ray, where the distance is infinite.
     Vec3f evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const;
 
     /// Density with which draw() from `origin` would have found a point of an emissive surface.

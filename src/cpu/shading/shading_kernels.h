@@ -1,5 +1,4 @@
-// The SIMD kernels of shading: one dispatch table for each instruction set that they were
-// compiled for.
+// SIMD kernels of shading: one dispatch table an instruction set that was compiled in.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +10,7 @@
 
 namespace relief::cpu {
 
-/// Hits on patches of one displaced surface whose first corners share a tile that has a map, or on polygons
-/// of one that is not displaced.
+/// Hits on patches of one displaced surface with a common tile that has a map, or on plain polygons of one.
 struct PointBatch {
     const PreparedScene& scene;
     PatchSamplesCache& patches;

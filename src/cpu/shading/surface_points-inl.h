@@ -50,8 +50,7 @@ struct CellVertex {
     scalar::GridSample at;
 };
 
-/// Place of one vertex of a cell; its position at once where it lies on a line or at a corner that belongs
-/// to another patch.
+/// Place of one vertex of a cell; its position at once on a line or at another patch's corner.
 inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& levels, const CellVertex& vertex,
                              size_t lane, HitLanes& lanes) {
     const auto& [number, at] = vertex;

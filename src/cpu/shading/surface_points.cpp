@@ -47,8 +47,7 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
                : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
 }
 
-/// Hits of one key are on polygons of one surface, or on patches of one that read the same image: they go to
-/// a SIMD kernel together.
+/// Hits of one key are on polygons of a surface, or on patches that read one image: one SIMD call.
 constexpr uint32_t kAlone = kNoIndex;
 constexpr size_t kFewPolygons = 4; ///< of less than these one after another is faster
 

@@ -8,12 +8,10 @@ namespace relief::cpu {
 /// First three channels of texel (x, y), inside the texture; a texture of one or two channels is grey.
 Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y);
 
-/// Bilinear value at uv, repeated in both directions; row 0 is v = 1. A uv that is not finite gives texel (0,
-/// 0).
+/// Bilinear value at uv, repeated both ways; row 0 is v = 1. Texel (0, 0) for a uv that is not finite.
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv);
 
-/// Bilinear value of a latitude-longitude image at a position in [0, 1]^2 from its top left corner: repeated
-/// in x, clamped in y.
+/// Bilinear value of a latitude-longitude image at [0, 1]^2 from the top left: repeated in x, clamped in y.
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position);
 
 } // namespace relief::cpu

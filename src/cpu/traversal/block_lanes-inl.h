@@ -41,8 +41,7 @@ HWY_INLINE Lanes16 hide_last(const Lanes16& vertex) {
     return r;
 }
 
-/// One corner of the eight quads of a block out of two registers: the first kFromFirst come from the first
-/// one.
+/// One corner of a block's eight quads out of two registers, the first kFromFirst from the first one.
 template <size_t kFromFirst, size_t W>
 HWY_INLINE auto pick_corner(const Lanes<W>& vertex, const int32_t (&number_in_register)[8]) {
     const Lanes8::D d;

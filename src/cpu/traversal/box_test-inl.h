@@ -36,8 +36,7 @@ HWY_INLINE float get_plane(const WideNode& node, int plane, int axis, uint32_t k
 }
 HWY_INLINE LaneMask mask_children(const WideNode& node) { return (1u << node.child_count) - 1; }
 
-/// Entry distances of the boxes of a node and the mask of those met in [t_min, t_max]. Which plane is near is
-/// known before it is loaded.
+/// Entry distances and mask of a node's boxes met in [t_min, t_max]; near planes are known before loading.
 template <class Node, size_t W>
 HWY_INLINE LaneMask test_node(const Node& node, const RayState& ray, Lanes<W>& entry) {
     Lanes<W> near[3], far[3];

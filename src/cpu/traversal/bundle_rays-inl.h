@@ -98,8 +98,7 @@ inline void load_beam(const cpu::TraceRay* world, size_t count, BundleRays& rays
     });
 }
 
-/// Aims the rays of a pinhole camera through up to kBundleSize positions in the picture, and writes them to
-/// `written` unless it is null.
+/// Aims pinhole rays through up to kBundleSize positions; writes them to `written` unless it is null.
 inline void load_frustum(const scalar::CameraFrame& camera, const Vec2f* positions, uint32_t count,
                          cpu::TraceRay* written, BundleRays& rays) {
     const WideCamera wide_camera(camera);

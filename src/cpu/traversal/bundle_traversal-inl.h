@@ -1,6 +1,5 @@
-// A bundle of rays (ray_bundle-inl.h) through the scene: what the projection of micro-polygons onto the
-// picture is in a rasteriser, with every box, patch and block visited once for all rays of a tile, nearest
-// first.
+// A bundle of rays (ray_bundle-inl.h) through the scene: as in a rasteriser of micro-polygons, every box,
+// patch and block is visited once for all rays of a tile, nearest first.
 #pragma once
 
 #include <cstddef>

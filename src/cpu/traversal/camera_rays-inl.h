@@ -18,8 +18,7 @@ struct WideCamera {
     HWY_INLINE explicit WideCamera(const scalar::CameraFrame& camera)
         : corner(spread(camera.corner)), step_x(spread(camera.step_x)), step_y(spread(camera.step_y)) {}
 
-    /// Directions of scalar::make_pinhole_ray for sixteen positions in the picture, the last one again where
-    /// there are fewer.
+    /// Directions of scalar::make_pinhole_ray for sixteen positions; the last one fills missing lanes.
     HWY_INLINE wide::Vec3 aim(const Vec2f* positions, size_t count) const {
         static_assert(sizeof(Vec2f) == 8);
         alignas(64) Vec2f padded[16];

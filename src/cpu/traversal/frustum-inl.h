@@ -82,8 +82,7 @@ template <size_t W> HWY_INLINE Projected<W> project(const Lanes<W> (&v)[3], cons
     return {dot_lanes(v, frustum.right) * inverse, dot_lanes(v, frustum.up) * inverse, depth};
 }
 
-/// Makes room for rounding in bounds of points. What is not in front of the rays, or far aside, may be seen
-/// anywhere.
+/// Widens bounds of points by rounding. What is not in front of the rays, or far aside, is unbounded.
 HWY_INLINE void widen_bounds(const RayFrustum&, ProjectedBounds& bounds) {
     const bool is_in_front = bounds.depth > 0 && bounds.lower_x > -kWidestBounds &&
                              bounds.upper_x < kWidestBounds && bounds.lower_y > -kWidestBounds &&

@@ -21,8 +21,7 @@ namespace {
 /// Of the angle between two rays of a packet: some 25 degrees.
 constexpr float kLeastSquaredCosine = 0.82f;
 
-/// Sixteen rays that can hit and have the LOD bias that was asked for, whose directions lie near the first
-/// one.
+/// Sixteen rays that can hit and have the requested LOD bias, with directions near the first one.
 bool is_coherent(const RayLanes& rays, const Vec3f& first) {
     const Lanes16(&d)[3] = rays.direction;
     const Lanes16 projection = dot_lanes(d, first), least(kLeastSquaredCosine * dot(first, first));
@@ -72,8 +71,7 @@ bool may_trace_bundles(const cpu::SceneView& scene) {
     return scene.lod == LodRule::field && scene.leaf == LeafKind::exact;
 }
 
-/// Hits of the rays at the front that leave one point together, or else go about the same way; returns how
-/// many that were.
+/// Hits of the rays at the front with one origin, or else of about one direction; returns how many.
 size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                    cpu::TraceHit* hits, size_t count) {
     if (count < kLeastBundle || !may_trace_bundles(scene)) return 0;

@@ -45,8 +45,7 @@ struct PatchEntry {
     uint32_t ray, instance, patch;
 };
 
-/// Cells [cell_x, cell_x + cell_count) x [cell_y, cell_y + cell_count) of a patch at its levels, at most
-/// 2^kTileLevel a side.
+/// Cells [cell_x, + cell_count) x [cell_y, + cell_count) of a patch, at most 2^kTileLevel a side.
 struct PatchCells {
     uint32_t patch;
     PatchLevels levels;
@@ -62,8 +61,7 @@ struct CameraPixels {
 
 struct Kernels {
     const char* name;
-    /// Nearest hits of `count` rays; neighbours in runs of 256 may be traced as a bundle, in runs of 16
-    /// as a packet.
+    /// Nearest hits of `count` rays, traced as bundles in runs of 256, as packets in runs of 16.
     void (*closest_hits)(const SceneView&, TraceContext&, const TraceRay*, TraceHit*, size_t count);
     /// The same of the rays that scalar::make_pinhole_ray aims through each position; neighbours in runs of
     /// 256. They are written to `rays` unless it is null.
@@ -75,8 +73,7 @@ struct Kernels {
     BuildTreeFunction build_tree;
     /// Holds a displaced patch at `level`, at most kTileLevel, and below, whatever the levels of its edges.
     Box (*find_box)(const Surface&, uint32_t patch, uint32_t level);
-    /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; a row starts `stride` after
-    /// the one before.
+    /// Writes the (cell_count + 1)^2 vertices of displaced cells, object space; rows are `stride` apart.
     void (*evaluate_cells)(const Surface&, const PatchCells& cells, Vec3f* vertices, size_t stride);
     PrimitiveKernels primitive; ///< for walks of any other tree
 };

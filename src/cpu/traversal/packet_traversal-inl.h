@@ -27,8 +27,7 @@ template <class Node> HWY_INLINE LaneMask test_children(const Node& node, const 
     return less_equal(entry, exit * Plane(kBoxSlack)) & mask_children(node);
 }
 
-/// Lanes of `mask` that enter child k, and the nearest entry among them (other lanes included: a bound from
-/// below).
+/// Lanes of `mask` that enter child k, and a lower bound of their nearest entry (of all lanes).
 template <class Node>
 HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask,
                                float& nearest) {
@@ -201,8 +200,7 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
     world.active &= ~(mask & ~local.active);
 }
 
-/// The whole scene for sixteen rays, whose lanes are `lanes`; `packet` is a new one. Returns the lanes with a
-/// hit (Query::any).
+/// The whole scene for sixteen rays, `lanes` in lanes. Returns the lanes with a hit (Query::any).
 template <Query kQuery>
 LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay* rays,
                       const RayLanes& lanes, Packet& packet) {

@@ -61,8 +61,7 @@ HWY_INLINE void place_origins(const Affine& object_from_world, ParallelBeam& bea
     beam.origin = first + beam.forward * (least - pad);
 }
 
-/// Sizes of two coordinates into the extent. False where one is NaN, or so large that places on the
-/// plane would be none.
+/// Sizes of two coordinates into the extent. False for NaN, and where places on the plane would be NaN.
 HWY_INLINE bool extend(const Lanes16& a, const Lanes16& b, Lanes16& extent) {
     const Lanes16 size_a = magnitude(a), size_b = magnitude(b);
     extent = max(extent, max(size_a, size_b));
@@ -93,8 +92,7 @@ struct PivotSums {
     }
 };
 
-/// Sixteen rays as lines, x and y still those of depth 0. False where they do not go forward, or along
-/// several major axes.
+/// Sixteen rays as lines, x and y at depth 0. False for several major axes or rays that go backward.
 HWY_INLINE bool enter_group(const Affine& object_from_world, uint32_t group, ParallelBeam& beam,
                             Lanes16& extent, PivotSums& sums) {
     const size_t at = group * kGroupSize;
@@ -154,8 +152,7 @@ HWY_INLINE bool enter_space(const Affine& object_from_world, ParallelBeam& beam)
     return true;
 }
 
-/// Makes room in bounds for rounding, and for how far rays move while they go from the middle of one to an
-/// end.
+/// Widens bounds by rounding, and by how far rays move from the middle of one to an end.
 template <class T> HWY_INLINE void widen(const ParallelBeam& beam, const T& margin, BoundsOf<T>& bounds) {
     const T half = T(0.5f) * (bounds.far - bounds.depth);
     const T x = margin + T(beam.steepest_x) * half, y = margin + T(beam.steepest_y) * half;

@@ -28,8 +28,7 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, cons
         scalar::choose_ray_level(longest, distance, visit.scene->pixel_angle, visit.level()));
 }
 
-/// Which triangle of the patch lane `lane` of a block is, and the place on the patch from the weights of its
-/// corners.
+/// The triangle of the patch in lane `lane` of a block, and the place on the patch by its weights.
 HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
                                 uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;

@@ -1,5 +1,4 @@
-// The one walk through what a patch keeps (patch_tree.h), whatever goes through it: one ray, a packet or a
-// bundle.
+// The one walk through what a patch keeps (patch_tree.h), for one ray, a packet or a bundle.
 #pragma once
 
 #include <concepts>
@@ -75,8 +74,7 @@ HWY_INLINE bool visit_nodes(const cpu::PatchTree& tree, Probe& probe, LaneMask r
     if constexpr (!Shape::kHasGroups) {
         return probe.visit_children(tree.node<kLevel>(0).bounds, rays, visit_leaf);
     } else if constexpr (Probe::kListsLeaves) {
-        // Boxes of all groups before the first block: their loads overlap, and one list is sorted instead of
-        // many.
+        // Boxes of all groups before the first block: their loads overlap, and one list is sorted.
         EntryList<16 * Shape::kWidth> leaves;
         probe.visit_any_order(tree.root().bounds, [&](uint32_t group) {
             probe.visit.count_node();
@@ -105,8 +103,7 @@ template <PatchProbe Probe> bool visit_patch_tree(const cpu::PatchTree& tree, Pr
     return false;
 }
 
-/// Node (x, y) of a step of a directory and everything below it. Nearest first for any-hit too: in any order
-/// the cache would thrash.
+/// Node (x, y) of a step of a directory and all below. Nearest first also for any-hit, for the cache's sake.
 template <PatchProbe Probe>
 bool visit_directory(const cpu::TileDirectory& directory, uint32_t step, uint32_t x, uint32_t y, Probe& probe,
                      LaneMask rays) {

@@ -118,8 +118,7 @@ struct PolygonRayWalker {
     }
 };
 
-/// The subtree of `root` (a child word; 0 is the whole tree), nearest first. Query::any: true at the first
-/// hit.
+/// The subtree of `root` (a child word; 0: the whole tree), nearest first. Query::any: true at a hit.
 template <Query kQuery> bool trace_polygons(const cpu::PolygonTree& tree, uint32_t root, RayState& ray) {
     const cpu::TriangleBlock* const blocks = tree.blocks.data();
     PolygonRayWalker walker(ray);

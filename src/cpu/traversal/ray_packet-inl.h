@@ -1,5 +1,4 @@
-// Sixteen rays that go about the same way, in the space of one object: in lanes for boxes, and each by itself
-// for blocks of triangles.
+// Sixteen rays of about one direction in an object's space: in lanes for boxes, singly for triangle blocks.
 #pragma once
 
 #include <bit>

@@ -67,8 +67,7 @@ template <int kValues> struct PairList {
     alignas(64) float value[kValues][kCapacity + 16];
     uint32_t count = 0;
 
-    /// A step with fewer pairs than lanes loads what lies behind them: any numbers, which its mask leaves
-    /// out.
+    /// A step with fewer pairs than lanes loads what lies behind; its mask leaves that out.
     PairList() {
         std::memset(code, 0, 16 * sizeof(uint32_t));
         for (float* v : value) std::memset(v, 0, 16 * sizeof(float));

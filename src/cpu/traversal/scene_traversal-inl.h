@@ -77,8 +77,7 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
         });
 }
 
-/// The whole scene along one ray, from the subtree of `root` of the instance tree. `best` carries t_max and
-/// the hit.
+/// The whole scene along one ray, from `root` of the instance tree. `best` carries t_max and the hit.
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {

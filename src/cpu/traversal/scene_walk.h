@@ -1,5 +1,4 @@
-// A traversal of the scene that takes the place of the engine's own. The laboratory (src/lab) has those of
-// papers 2 and 3.
+// A traversal of the scene in place of the engine's own: src/lab has those of papers 2 and 3.
 #pragma once
 
 #include <cstddef>

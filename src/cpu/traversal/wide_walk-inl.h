@@ -27,8 +27,7 @@ concept TreeWalker = requires(Walker& walker, const Node& node, typename Walker:
 
 enum EntryOrder { kNearestFirst, kFarthestFirst };
 
-/// Inserts into entries[0, count), which are in order of their entry distances and stay so, behind equal
-/// ones.
+/// Inserts into entries[0, count), sorted by entry distance, behind equal ones.
 template <EntryOrder kOrder, class Entry>
 HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& count) {
     const auto comes_before = [&](const Entry& other) {
@@ -39,8 +38,7 @@ HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& coun
     entries[slot] = entry;
 }
 
-/// Calls visit_leaf(entry) for the leaves below `first` that the walker enters, nearest first, until it is
-/// true. Adds the nodes to `visited`.
+/// Calls visit_leaf(entry) for leaves below `first` that the walker enters, nearest first, until it is true.
 template <class Nodes, class Walker, class VisitLeaf>
 HWY_INLINE bool walk_wide_tree(const Nodes& nodes, Walker& walker, const typename Walker::Entry& first,
                                uint32_t& visited, VisitLeaf visit_leaf) {

@@ -94,8 +94,7 @@ class Child {
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// The status of waitpid() once the process has ended; 0 where the program ignores SIGCHLD, so that the
-    /// system keeps none.
+    /// The status of waitpid() once the process has ended; 0 where the program ignores SIGCHLD.
     std::optional<int> find_status() {
         int status = 0;
         const pid_t ended = waitpid(process_, &status, WNOHANG);

@@ -1,5 +1,4 @@
-// Reads meshes by third-party libraries in a child process: a fault of theirs ends the child, not the
-// program.
+// Reads meshes by third-party libraries in a child process, so that a crash ends the child alone.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +18,7 @@ Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions
 /// The descriptor by which the child gets the shared memory.
 inline constexpr int kSharedMemory = 3;
 
-/// The first word after the child's name; file, uv set, bytes of memory, bytes of stack and the parent's
-/// process id follow.
+/// First word after the child's name, before file, uv set, bytes of memory and stack, and the parent's id.
 inline constexpr const char* kReadMeshWord = "--read-mesh";
 
 } // namespace relief

@@ -15,8 +15,7 @@ namespace relief {
 /// Returns the bytes of a file that lies in the folder of the glTF file or below, by its relative path.
 using ReadBeside = std::function<std::string(const std::string& path)>;
 
-/// All functions throw bad_input with file and place. Nothing outside of its buffers is read, whatever its
-/// numbers say.
+/// All functions throw bad_input with file and place. Nothing outside of its buffers is read.
 class GltfFile {
   public:
     /// `bytes` and `name`, which is for messages, must outlive it. Buffers are read when they are requested.

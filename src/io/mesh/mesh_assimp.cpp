@@ -59,8 +59,7 @@ class AssimpBuilder {
             const aiFace& face = mesh.mFaces[f];
             if (face.mNumIndices < 3) continue;
             for (unsigned k = 0; k < face.mNumIndices; ++k) {
-                // A mirror turns the winding round; the corners are walked backwards to keep the outside
-                // outside.
+                // A mirror turns the winding round: corners are walked backwards.
                 const unsigned corner = face.mIndices[is_mirrored ? face.mNumIndices - 1 - k : k];
                 if (corner >= mesh.mNumVertices)
                     fail(fmt::format("face {} has an index out of range: {} of {}", f + 1, corner,

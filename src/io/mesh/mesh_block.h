@@ -9,8 +9,7 @@
 
 namespace relief {
 
-/// Writes all but name, source and subdivision of the mesh. Throws std::system_error, with ENOSPC or EFBIG
-/// where the memory does not suffice.
+/// Writes all but name, source and subdivision. Throws std::system_error (ENOSPC, EFBIG) where memory ends.
 void write_mesh_block(int descriptor, const Mesh& mesh);
 
 /// Writes an error in place of a mesh. Throws std::system_error.

@@ -30,8 +30,7 @@ struct PlyHeader {
     size_t byte_count = 0;            ///< of the header; the values begin there
 };
 
-/// `name` is for messages. Throws bad_input with the line: not a PLY file, an unknown format or type, a line
-/// that is not understood, no end.
+/// `name` is for messages. Throws bad_input with the line for anything but a complete, known PLY header.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
 
 size_t get_byte_size(PlyType type);

@@ -24,12 +24,10 @@ struct DisplaySettings {
     std::optional<Vec3f> background; ///< as shown, sRGB values in [0, 1]
 };
 
-/// Reads the header entries; what is missing has its default, and so has what cannot be understood: files may
-/// come from elsewhere.
+/// Reads the header entries; what is missing or malformed has its default.
 DisplaySettings read_display_settings(const Image& image);
 
-/// sRGB values in [0, 1] of a linear colour. Negative and NaN components count as 0, infinite ones as the
-/// largest.
+/// sRGB values in [0, 1] of a linear colour. Negative and NaN components count as 0, infinite ones as 1.
 Vec3f show_colour(const Vec3f& linear, const DisplaySettings& settings);
 
 /// EV at which the geometric mean of the luminances, of pixels that hit something if there are any, becomes

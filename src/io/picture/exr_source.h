@@ -9,9 +9,8 @@
 
 namespace relief {
 
-/// Nothing where the stream is no EXR, or not a plain one: one part of flat pixels, all channels half or all
-/// float and at full resolution, named R G B A, X Y Z, or alone in their layer. Throws Error{bad_input} for a
-/// damaged header.
+/// Nothing where the stream is no plain EXR: one part of flat pixels, all channels half or all float, at full
+/// resolution, named R G B A, X Y Z, or alone in their layer. Throws Error{bad_input} for a damaged header.
 std::unique_ptr<PixelSource> open_plain_exr(std::unique_ptr<std::istream> stream, const std::string& name);
 
 } // namespace relief

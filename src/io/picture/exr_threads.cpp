@@ -7,8 +7,7 @@
 #include "base/parallel.h"
 #include "relief/io.h"
 
-// OpenEXR is not instrumented: the thread sanitizer takes what its pool orders for races. Then the caller's
-// thread does all.
+// OpenEXR's pool is not instrumented, so the thread sanitizer would report races: no threads there.
 #if defined(__SANITIZE_THREAD__)
 #define RELIEF_EXR_WITHOUT_POOL
 #elif defined(__has_feature)

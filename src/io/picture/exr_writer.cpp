@@ -13,8 +13,7 @@ namespace relief {
 
 namespace {
 
-/// Faults of the disk are the file's to remember, so that what OpenEXR writes in its destructors is checked
-/// as well.
+/// Keeps faults of the disk, so that what OpenEXR writes in its destructors is checked as well.
 class ExrStream final : public Imf::OStream {
   public:
     explicit ExrStream(CheckedFile& file) : OStream("picture"), file_(file) {}
@@ -33,8 +32,7 @@ Imf::Header make_header(const Image& image) {
     Imf::Header header(Imath::Box2i(Imath::V2i(0), Imath::V2i(full_width - 1, full_height - 1)),
                        Imath::Box2i(first, first + Imath::V2i(image.width - 1, image.height - 1)));
     for (const auto& [name, value] : image.metadata) {
-        // What the header already says of the pixels wins; OpenEXR refuses an empty name, and text for a
-        // value of another type.
+        // The pixels' own attributes win; OpenEXR refuses empty names and texts for values of other types.
         const std::string attribute = get_attribute_name(name);
         const bool is_free = attribute.c_str()[0] != '\0' && header.find(attribute) == header.end();
         if (is_free) header.insert(attribute, Imf::StringAttribute(value));

@@ -15,8 +15,7 @@ void encode_exr(const Image& image, CheckedFile& file);
 /// The texels as they are, ZIP; channels Y, R G, R G B or R G B A.
 void encode_exr(const Texture& texture, CheckedFile& file);
 
-/// Fills row y, which has the right size. Pictures are encoded row by row, without a second copy of the
-/// whole.
+/// Fills row y, which has the right size: pictures are encoded without a second copy of the whole.
 template <class Value> using FillRow = std::function<void(int y, std::vector<Value>& row)>;
 
 enum class PngColours { rgb, rgba };

@@ -45,8 +45,7 @@ void check_size(const PixelHeader& header, const std::string& name, uint64_t fil
              fmt::format("is too large: {} x {} with {} channels", header.width, header.height,
                          header.channels.size()),
              fmt::format("the limit is {} a side and 2^31 texels", kMaxSide));
-    // No supported compression packs constant pixels tighter than this; a longer claim would only exhaust
-    // memory.
+    // No supported compression packs constant pixels tighter than this: longer claims are damage.
     constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20;
     // A display window that surrounds the pixels is filled up with zeros, which takes memory as well.
     const uint64_t display_pixels =
@@ -65,8 +64,7 @@ void check_extension(const std::string& name) {
                                            suggest_word(extension, kExtensions)});
 }
 
-/// The library of pictures would offer other bytes to readers of every kind that it knows, some of which
-/// believe any size.
+/// The picture library would try all its readers on other bytes, some of which believe any size.
 void check_start(std::istream& stream, const std::string& name) {
     constexpr std::array<std::string_view, 6> kStarts = {"\x76\x2f\x31\x01", "II",       "MM",
                                                          "\x89PNG",          "\xff\xd8", "#?"};

@@ -25,8 +25,7 @@ Texture parse_texture(std::string_view bytes, const std::string& name);
 /// libraries' own guesses by the kind of file do not count.
 std::string find_colour_tag(std::istream& stream);
 
-/// True where the display window is at most four times as wide and high as the pixels: textures are filled up
-/// to it.
+/// True where the display window is at most four times as wide and high as the pixels, which textures fill.
 bool has_near_display(const PixelHeader& header);
 
 } // namespace relief

@@ -1,6 +1,5 @@
-// Loads relief_pictures: OpenImageIO, for the kinds of pictures that Relief has no reader of its own
-// for. It brings some 250 shared libraries, so it is a module that is loaded when the first such picture is
-// opened.
+// Loads relief_pictures: OpenImageIO, for formats without a reader of Relief's own. It brings some 250 shared
+// libraries, so this module is loaded when the first such picture is opened.
 #pragma once
 
 #include <memory>
@@ -17,8 +16,7 @@ class PictureLibrary {
     virtual ~PictureLibrary() = default;
     /// Throws Error{bad_input}.
     virtual std::unique_ptr<PixelSource> open_file(const std::string& file) const = 0;
-    /// The same for the bytes of a file, which must outlive the source; the extension of `name` tells the
-    /// kind.
+    /// The same for the bytes of a file, which must outlive the source; `name` has its extension.
     virtual std::unique_ptr<PixelSource> open_bytes(std::string_view bytes,
                                                     const std::string& name) const = 0;
 };
@@ -32,8 +30,7 @@ class PictureLibrary {
 /// missing or was built for another layout.
 const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);
 
-/// Loads relief_pictures when first called. It lies beside the program, or where the build put it. Throws as
-/// load_picture_library.
+/// Loads relief_pictures at first, from beside the program or the build. Throws as load_picture_library.
 const PictureLibrary& get_picture_library(const std::string& name);
 
 } // namespace relief

@@ -18,8 +18,7 @@ struct DisplacementRequest {
 /// Settles every value without looking at a file: what depends on its samples is as for floats.
 Displacement make_displacement_values(const MapOptions& options);
 
-/// Reads the tiles and settles every value; what it had to assume goes to the warnings of `assets`. Values
-/// that are not finite are kept.
+/// Reads the tiles and settles every value; assumptions become warnings of `assets`. NaN and infinity stay.
 Displacement read_displacement_map(const DisplacementRequest& request, AssetCache& assets);
 
 /// The same; throws bad_input with pixel and tile for a NaN or an infinity.

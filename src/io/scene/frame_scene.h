@@ -12,14 +12,12 @@ Box measure_scene(const Scene& scene);
 /// taken for an animal or a vehicle: its front is the end where its higher parts are; all others face +z.
 Vec3f choose_view(const Scene& scene, View view);
 
-/// What stays in the picture: the objects as they are seen, or through a whole turn about the camera's up
-/// axis.
+/// What stays in the picture: the objects as seen, or through a whole turn about the camera's up axis.
 enum class Framing { still, turn };
 
-/// `camera` looking along -`view`, near enough for the objects to take about 85 % of the height of the
-/// picture or of the width of its middle square; `aspect` is width / height. The displacement counts in
-/// coarse steps, so that the same relief in another encoding has the same camera. Position, target and focus
-/// distance are set.
+/// `camera` looking along -`view`, near enough for the objects to take about 85 % of the picture's height or
+/// of the width of its middle square; `aspect` is width / height. The displacement counts in coarse steps, so
+/// that one relief in two encodings has one camera. Sets position, target and focus distance.
 Camera frame_scene(const Scene& scene, Camera camera, const Vec3f& view, float aspect, Framing framing);
 
 } // namespace relief

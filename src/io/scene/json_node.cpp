@@ -37,8 +37,7 @@ std::string strip_parser_prefix(std::string message) {
 }
 
 /// Builds a document from the parser's events in linear time: the parser's own builder searches an object for
-/// each of its keys, and with a callback the parent for each of its objects. Remembers the first key that
-/// came twice.
+/// each of its keys. Remembers the first key that came twice.
 class DocumentBuilder {
   public:
     explicit DocumentBuilder(Json& document) : document_(document) {}

@@ -22,8 +22,7 @@ using Json = nlohmann::ordered_json;
 /// for a key that stands twice in one object.
 Json parse_json(std::string_view text, const std::string& file);
 
-/// Refers to a value and to the file name; both must outlive it. All getters throw bad_input with file and
-/// path.
+/// Refers to a value and a file name, which must outlive it. Getters throw bad_input with file and path.
 class JsonNode {
   public:
     JsonNode(const Json& value, std::string path, const std::string& file)

@@ -41,8 +41,7 @@ struct SkyCell {
     double light = 0; ///< luminance times solid angle, as a part of the sphere
 };
 
-/// The sky in cells, each with all the light of its texels, so that the time does not grow with every normal
-/// that is tried on a large picture.
+/// The sky in cells with the light of their texels: the time does not grow with normals times texels.
 std::vector<SkyCell> reduce_sky(const Texture& sky) {
     const uint32_t columns = std::min(std::max(sky.width, 128u), 256u);
     const uint32_t rows = std::min(std::max(sky.height, 64u), 128u);

@@ -1,5 +1,4 @@
-// The keys that each section of a scene file may hold. docs/scene.schema.json lists the same ones, and a test
-// compares the two.
+// Keys of each section of a scene file. docs/scene.schema.json has the same ones, as a test checks.
 #pragma once
 
 #include <array>

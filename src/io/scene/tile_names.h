@@ -8,8 +8,7 @@
 
 namespace relief {
 
-/// True for a file name with a token that stands for a tile: <UDIM> for 1001 ..., <UVTILE> for u1_v1 ...,
-/// <uvtile> for u0_v0 ...
+/// True for a name with a tile token: <UDIM> for 1001 ..., <UVTILE> for u1_v1 ..., <uvtile> for u0_v0 ...
 bool has_tile_token(const std::string& file);
 
 /// The files that a name with a token stands for, numbered as UDIM does (1001 + u + 10 v), by rising number.

@@ -52,9 +52,8 @@ class Mailbox {
     std::array<uint32_t, 64> ids_;
 };
 
-/// One ray. A leaf of the tree of instances puts the tree of a surface in the place of the walk, and
-/// resume_walk() brings the old walk back, or the next instance of that leaf. `Width`: uint or HeapKey, for
-/// trees of 30 or 62 levels.
+/// One ray. A leaf of the tree of instances replaces the walk by that of a surface; resume_walk() brings the
+/// old walk back, or the leaf's next instance. `Width`: uint or HeapKey, for trees of 30 or 62 levels.
 template <TraversalKind kTraversal, class Width> class RayWalk {
   public:
     using Key = Width;

@@ -29,8 +29,7 @@ constexpr int kChartWidth = kMapSize / kChartsAcross, kChartHeight = kMapSize / 
 constexpr int kSpanAcross = (kChartWidth - 1) / kCellsPerSide * kCellsPerSide;
 constexpr int kSpanDown = (kChartHeight - 1) / kCellsPerSide * kCellsPerSide;
 
-/// The point of the unit ball at (s, t), each in [0, 1], on a side of the cube; seen from outside s runs to
-/// the right and t up.
+/// Point of the unit ball at (s, t) in [0, 1]^2 of a cube's side; from outside s runs right and t up.
 Vec3f place_on_ball(int side, float s, float t) {
     const float a = std::tan((2 * s - 1) * std::numbers::pi_v<float> / 4);
     const float b = std::tan((2 * t - 1) * std::numbers::pi_v<float> / 4);

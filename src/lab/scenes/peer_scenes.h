@@ -9,8 +9,7 @@
 
 namespace relief {
 
-/// rock (600 patches, framed), rocks (ten of them, 6,000 patches, none instanced), rock_close (the first,
-/// filling the picture).
+/// rock (600 patches, framed), rocks (ten, 6,000 patches, none instanced), rock_close (fills the picture).
 std::vector<std::string> peer_scene_names();
 
 enum class PeerWorld { constant, sky };

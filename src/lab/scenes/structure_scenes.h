@@ -8,8 +8,7 @@
 
 namespace relief {
 
-/// full: about the counts below; reduced: a hundredth of them or less, for runs that only show that all
-/// works.
+/// full: about the counts below; reduced: at most a hundredth of them, to show that all works.
 enum class MeshDetail { full, reduced };
 
 /// body (70 thousand triangles, one closed bumpy body, as the Stanford bunny), hall (280 thousand, huge and

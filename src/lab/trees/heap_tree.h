@@ -1,5 +1,4 @@
-// Binary trees in heap order: the children of the node of key n have the keys 2n and 2n + 1
-// (formulas/tree.h).
+// Binary trees in heap order: children of key n have keys 2n and 2n + 1 (formulas/tree.h).
 #pragma once
 
 #include <cstdint>

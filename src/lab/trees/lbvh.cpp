@@ -102,8 +102,7 @@ class CompactBuild {
         const std::vector<uint64_t>& codes = order_.codes;
         const uint64_t code = codes[entry];
         if (codes[entry - 1] != code) return true;
-        // The node that cuts here has the entries of this code whose numbers agree above the lowest bit of
-        // `entry`.
+        // The node cut here holds entries of this code whose numbers agree above the lowest bit of `entry`.
         const uint32_t most = std::min(entry & (0u - entry), max_leaf_size_);
         uint32_t count = 0, right = 0;
         while (count < most && entry - count > 0 && codes[entry - count - 1] == code) ++count;

@@ -14,8 +14,7 @@ struct MortonOrder {
     Box scene; ///< union of all boxes: the codes are places in it
 };
 
-/// `code_bits`: 30 or 63 (formulas/morton.h). Every box must be finite and not empty. The same for any number
-/// of threads.
+/// `code_bits`: 30 or 63 (formulas/morton.h). Boxes must be finite and not empty. Independent of the threads.
 MortonOrder compute_morton_order(std::span<const Box> boxes, int code_bits);
 
 } // namespace relief

@@ -1,5 +1,4 @@
-// Kd-tree by an exact sweep of the surface-area heuristic in O(n log n) (Wald and Havran 2006), without
-// clipping.
+// Kd-tree by an exact O(n log n) sweep of the SAH (Wald and Havran 2006), without clipping.
 #pragma once
 
 #include <cstdint>

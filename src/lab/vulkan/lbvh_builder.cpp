@@ -20,9 +20,8 @@ using Part = BuildReport::Part;
 
 constexpr uint32_t kGroupSize = 256;
 
-/// Mesa's CPU device (22.3) runs a group as fibres of eight lanes and takes memory barriers for points where
-/// all fibres meet. In a loop that some leave earlier than others it loses the rest, unless there is one
-/// fibre.
+/// Mesa's CPU device (22.3) runs a group as fibres of eight lanes and joins all of them at memory barriers.
+/// In a loop that some fibres leave early the rest is lost, unless there is only one.
 uint32_t choose_refit_group_size(const Device& device) { return device.is_cpu() ? 8 : kGroupSize; }
 
 constexpr std::array<Stage, BuildReport::kPartCount> kStages = {

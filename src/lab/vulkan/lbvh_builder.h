@@ -31,8 +31,7 @@ struct BuildReport {
 /// for each slot 64: it is written on the way down and on the way up.
 double compute_least_build_bytes(const BuildReport& report);
 
-/// Share of the rate that memory traffic alone allows; `bandwidth` in bytes a second
-/// (measure_copy_bandwidth).
+/// Share of the rate that memory traffic allows; `bandwidth`: measure_copy_bandwidth.
 double compute_bound_share(const BuildReport& report, double bandwidth);
 
 /// Bytes read and written a second by copies within the device's memory: the best of some, `bytes` each way.

@@ -1,6 +1,5 @@
 // Trees of a traversal chosen by name in device memory: nodes among the nodes, all else as words among the
-// ids of primitives. Word 0 begins the records (WalkTreeData): that of the tree of instances, then one a
-// surface.
+// primitive ids. Word 0 begins the records (WalkTreeData): that of the instances, then one a surface.
 #include "lab/scene_walks.h"
 #include "formulas/tree.h"
 #include "vulkan/layout/device_scene.h"

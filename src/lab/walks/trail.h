@@ -1,6 +1,5 @@
-// The integer steps of traversals that keep their way in the bits of a key, in 32 bits (uint) and in 64
-// (HeapKey). Keys number a binary tree as a heap does: root 1, children 2n and 2n + 1, 0 no node. A trail has
-// one bit a level.
+// Integer steps of traversals that keep their way in the bits of a key of 32 bits (uint) or 64 (HeapKey).
+// Keys number a binary tree as a heap: root 1, children 2n and 2n + 1, 0 no node. A trail has a bit a level.
 #ifndef RELIEF_TRAIL_H
 #define RELIEF_TRAIL_H
 #include "formulas/begin.h"
@@ -103,9 +102,8 @@ FN HeapKey flip_lowest(HeapKey bits) {
 FN uint get_sibling_key(uint key) { return flip_lowest(key); }
 FN HeapKey get_sibling_key(HeapKey key) { return flip_lowest(key); }
 
-// Trail of finished siblings (Murguia et al. 2013): below a leading 1 one bit a level, 1: the child visited
-// second is under way or done. What to do after a node: its lowest levels that are 1 are finished, the next
-// sibling up is due.
+// Trail of finished siblings (Murguia et al. 2013): below a leading 1 a bit a level, 1: the second child is
+// under way or done. After a node: its lowest levels of 1 are finished, the next sibling up is due.
 
 /// To start at any node: nothing finished.
 FN uint make_trail(uint key) { return get_highest_bit(key); }
@@ -130,8 +128,7 @@ FN HeapKey find_next_key(HeapKey key, HeapKey trail) {
     return get_sibling_key(shift_right(key, finished));
 }
 
-// Trail of postponed siblings (Binder and Keller 2016): one bit a level, 1: the sibling is still to be
-// visited.
+// Trail of postponed siblings (Binder and Keller 2016): a bit a level, 1: the sibling is still due.
 
 /// To start at any node: every sibling on the way to the root postponed.
 FN uint make_postponed(uint key) { return key == 0u ? 0u : get_highest_bit(key) - 1u; }

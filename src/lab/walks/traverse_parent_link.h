@@ -1,6 +1,5 @@
-// Parent links (Hapala et al. 2011, Efficient Stack-less BVH Traversal): an automaton of three states. It has
-// to find out again on the way up which child came first, hence a fixed order, by the node's axis. Included
-// as tree.h says.
+// Parent links (Hapala et al. 2011, Efficient Stack-less BVH Traversal): an automaton of three states. On the
+// way up it has to know which child came first, hence an order by axis. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_PARENT_LINK_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_PARENT_LINK_H

@@ -45,8 +45,7 @@ void push_on_short_stack(uint node, float entry) {
     restart_walk.stack_count = min_uint(restart_walk.stack_count + 1u, kShortStackSize);
 }
 
-/// On to what is due after the node: the entry on top of the stack, if there is one, is the sibling on that
-/// level.
+/// Goes to what is due next: the entry on top of the stack, if any, is the sibling on that level.
 void leave_level() {
     restart_walk.trail = pop_level(restart_walk.trail, restart_walk.level);
     if (is_root_finished(restart_walk.trail)) {

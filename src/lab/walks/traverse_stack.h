@@ -1,5 +1,4 @@
-// Full stack, the nearer child first. The stack may hold several trees on top of each other: each ends where
-// it began. Included as tree.h says.
+// Full stack, nearer child first. It may hold several trees, each above its begin. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_STACK_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_STACK_H

@@ -1,5 +1,4 @@
-// Ear clipping (Meisters 1975, Polygons have ears) for faces that two triangles along corners 0 and 2 do not
-// cover.
+// Ear clipping (Meisters 1975, Polygons have ears) for all but triangles and convex quads.
 #include <array>
 #include <cmath>
 #include <utility>
@@ -54,8 +53,7 @@ bool is_ear(const std::vector<Vec2<double>>& polygon, const std::vector<uint32_t
     return true;
 }
 
-/// Triangles as corners of the polygon. A polygon that crosses itself may have no ear left: then any corner
-/// is taken.
+/// Triangles as corners. A polygon that crosses itself may have no ear left: then any corner is taken.
 std::vector<std::array<uint32_t, 3>> clip_ears(const std::vector<Vec2<double>>& polygon) {
     std::vector<uint32_t> rest(polygon.size());
     for (uint32_t k = 0; k < rest.size(); ++k) rest[k] = k;

@@ -20,9 +20,8 @@ bool has_area(std::span<const Vec3f> corners);
 /// Of a mesh whose indices are valid.
 DegenerateFaces find_degenerate_faces(const Mesh& mesh);
 
-/// Removes them. What was closed stays closed: where the corners lie on a line, the neighbour across the
-/// longest edge takes those in between into its own edge, with attributes interpolated along it. Throws
-/// bad_input where no face is left.
+/// Removes them. What was closed stays closed: where corners lie on a line, the neighbour across the longest
+/// edge takes those in between, with interpolated attributes. Throws bad_input where no face is left.
 void drop_degenerate_faces(Polygons& polygons);
 
 } // namespace relief

@@ -186,8 +186,7 @@ void cut_corner(QuadCutter& cutter, int depth, int point_depth) {
     cut_rings(cutter, x[1], point_depth - depth);
 }
 
-/// Strips end on the side x = 1 and must not reach the side y = 1: above them, quads that take the cuts of
-/// two halvings to none.
+/// Strips end on the side x = 1 but not on y = 1: quads above them take two halvings to none.
 void cut_end(QuadCutter& cutter, int depth, int point_depth) {
     double s = 1;
     for (int d = 0; d < depth; d += 2, s /= 4) {

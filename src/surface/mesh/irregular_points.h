@@ -1,5 +1,4 @@
-// Quads beside irregular points and semi-sharp creases cut smaller and smaller, where one bicubic patch would
-// be far from the limit surface.
+// Quads beside irregular points and semi-sharp creases, cut smaller where one bicubic patch would not fit.
 #pragma once
 
 #include "surface/mesh/subdivision_mesh.h"

@@ -27,8 +27,7 @@ class ReflexGrid {
     void add(const Point& p, uint32_t corner) { find_cell(p).push_back(corner), ++count_; }
     void remove(const Point& p, uint32_t corner) { std::erase(find_cell(p), corner), --count_; }
 
-    /// True where `test` holds for a corner of the cells that the triangle touches, row by row. Adds the
-    /// cells that it looked at to `work`.
+    /// True where `test` holds for a corner of the triangle's cells. Adds the cells looked at to `work`.
     template <class Test>
     bool any(const std::array<Point, 3>& triangle, size_t& work, const Test& test) const {
         if (count_ == 0) return false; // what is left is convex

@@ -75,8 +75,7 @@ Vec3d blend_curve(const Curve& c, double s) {
     return c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * w[3];
 }
 
-/// Moves the inner control points so that the curve runs by the targets, which are in order, wherever on it
-/// they come to lie.
+/// Moves the inner control points so that the curve passes the targets, in order, at any parameters.
 void fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets) {
     std::array<double, kFitCount> place;
     double way = 0;
@@ -114,8 +113,7 @@ struct FitSample {
     double u = 0, v = 0;
 };
 
-/// One quad of the refined mesh on the limit surface of its face; derivatives are in the quad's own
-/// parameters.
+/// One quad of the refined mesh on the limit surface of its face; derivatives are by the quad's parameters.
 class Cell {
   public:
     Cell(const LimitFace& face, const RefinedMesh& refined, uint32_t quad)
@@ -170,8 +168,7 @@ class Cell {
         return make_unit(cross(inside.du, inside.dv));
     }
 
-    /// A control point beside corner k moves into the plane of the surface there, so that patches around an
-    /// irregular point join smoothly.
+    /// Moves a control point beside corner k into the tangent plane, so that irregular patches join smoothly.
     Vec3d flatten(const Vec3d& control, size_t k) const {
         return control - normal_[k] * dot(normal_[k], control - corner_[k]);
     }

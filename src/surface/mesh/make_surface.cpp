@@ -42,8 +42,8 @@ class VertexSplitter {
         return vertex;
     }
 
-    /// Vertices are numbered anew: first the dominant ones, then the others, each kind in its order. Their
-    /// old numbers to new ones.
+    /// Renumbers vertices: the dominant ones, then the others, each in order. Returns new numbers by old
+    /// ones.
     std::vector<uint32_t> put_copies_last() {
         std::vector<uint32_t> numbers(vertices_.size());
         uint32_t next = 0;

@@ -146,8 +146,7 @@ struct GroupFrame {
     bool is_turned = false;
 };
 
-/// Groups the triangles around a vertex and gives its corners their tangents. Keeps its memory from one
-/// vertex to the next.
+/// Groups the triangles around a vertex and gives its corners tangents. Reuses its memory.
 class Fan {
   public:
     Fan(const TriangleMesh& mesh, Polygons& target) : mesh_(mesh), target_(target) {}
@@ -241,8 +240,7 @@ class Fan {
         return sum;
     }
 
-    /// A quad may come by two groups with its two triangles: it takes their mean. Who was not reached takes
-    /// over what there is.
+    /// A quad reached by two groups takes their mean; what was not reached takes over what there is.
     void store() {
         if (groups_.empty()) return;
         owners_.clear();

@@ -18,8 +18,7 @@ struct Polygons {
     std::vector<uint32_t> points; ///< index into positions, one a corner
     std::vector<Vec2f> uvs;       ///< one a corner, or empty; (0, 0) where the face has none
     std::vector<Vec3f> normals;   ///< one a corner, or empty
-    /// One a corner, or empty: direction of growing u (x, y, z), and the sign of the bitangent, as Mesh has
-    /// it.
+    /// One a corner, or empty: direction of growing u (x, y, z) and sign of the bitangent, as in Mesh.
     std::vector<std::array<float, 4>> tangents;
     std::vector<Vec3f> bitangents; ///< one a corner, or empty; with them, `tangents` are dP/du, they dP/dv
     std::vector<uint32_t> source_faces; ///< face of the mesh
@@ -44,12 +43,10 @@ Polygons make_polygons(const Mesh& mesh, Welding welding);
 /// previous edge. Uvs, normals and tangents are interpolated.
 Polygons refine_to_quads(const Polygons& polygons);
 
-/// Leaves triangles and convex quads as they are and cuts all other faces by ears in the plane of their
-/// Newell normal.
+/// Keeps triangles and convex quads; cuts other faces by ears in the plane of their Newell normal.
 Polygons cut_to_triangles(const Polygons& polygons);
 
-/// Twice the area vector of the face by Newell's method, in double precision; of a face, or of corners in
-/// space.
+/// Twice the area vector by Newell's method in double precision, of a face or of corners in space.
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face);
 Vec3<double> compute_newell_normal(std::span<const Vec3f> corners);
 

@@ -1,5 +1,4 @@
-// Quads of a refined mesh cut into smaller ones, by coordinates on the quad; sides are cut once for both
-// quads that share them.
+// Quads of a refined mesh cut into smaller ones, in coordinates of the quad; shared sides are cut once.
 #pragma once
 
 #include <array>

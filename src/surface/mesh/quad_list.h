@@ -15,8 +15,7 @@ struct Quad {
     friend bool operator==(const Quad&, const Quad&) = default;
 };
 
-/// Quads are handed out by value, also by loops over them: they are stored in 8 bytes where the surface has
-/// at most 2^16 vertices.
+/// Hands out quads by value: they are stored in 8 bytes where the surface has at most 2^16 vertices.
 class QuadList {
   public:
     class Iterator {

@@ -9,8 +9,7 @@
 namespace relief {
 
 struct SmoothBase {
-    /// Quads. Positions are on the limit surface. Normals are those of the limit, each side of a crease its
-    /// own.
+    /// Quads on the limit surface, with its normals, each side of a crease its own.
     Polygons polygons;
     std::vector<Vec3f> point_normals;    ///< one a point: the mean of the sides; empty without a limit normal
     std::vector<InnerControls> controls; ///< one a face; empty: bilinear patches
@@ -18,9 +17,8 @@ struct SmoothBase {
 
 enum class BasePatches { bilinear, bicubic };
 
-/// Subdivides by `subdivision`, whose scheme must not be `none`. Bilinear subdivision gives neither normals
-/// nor controls. Throws bad_input for a mesh that cannot be subdivided and out_of_memory where the patches
-/// would not fit.
+/// Subdivides by `subdivision`, whose scheme is not `none`. Bilinear: neither normals nor controls. Throws
+/// bad_input for meshes that cannot be subdivided, out_of_memory where the patches would not fit.
 SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, BasePatches patches);
 
 } // namespace relief

@@ -13,8 +13,7 @@ namespace relief {
 
 using Vec3d = Vec3<double>;
 
-/// Where a quad lies: its corners on a face of the mesh, or on the part of a polygon beside its corner
-/// `part`.
+/// Where a quad lies: corners on a face of the mesh, or on a polygon's part beside its corner `part`.
 struct QuadPlace {
     uint32_t face = 0, part = 0;
     std::array<Vec2<double>, 4> corners;
@@ -62,9 +61,8 @@ class LimitFace {
 /// Immutable; its faces may be made by any thread.
 class SubdivisionMesh {
   public:
-    /// The scheme must not be `none`. Throws bad_input with mesh and points for edges of more than two faces
-    /// or of faces that are turned against each other, for creases along no edge, and for what OpenSubdiv
-    /// refuses.
+    /// The scheme must not be `none`. Throws bad_input with mesh and points for non-manifold or
+    /// inconsistently wound edges, for creases along no edge, and for what OpenSubdiv refuses.
     SubdivisionMesh(const Polygons& polygons, const Subdivision& subdivision);
     ~SubdivisionMesh();
 

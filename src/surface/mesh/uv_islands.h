@@ -69,7 +69,7 @@ class UvIslands {
     UvIslands(const Displacement& displacement, const MapTile& tile)
         : displacement_(displacement), udim_(tile.udim), texture_(*tile.texture) {}
 
-    /// Faces with indices out of range are left out. Throws as make_surface for a mesh that cannot be
+    /// Leaves out faces with indices out of range. Throws as make_surface for a mesh that cannot be
     /// subdivided.
     void add(const Mesh& mesh);
 
@@ -79,8 +79,7 @@ class UvIslands {
     /// Edges that belong to one face only.
     const std::vector<std::pair<Point, Point>>& borders() const { return borders_; }
 
-    /// Calls `visit(x, y)` for each texel, anywhere in the plane, whose centre lies in a face or on its edge
-    /// and that `is_wanted(x, y)`.
+    /// Calls `visit(x, y)` for each texel that `is_wanted(x, y)` whose centre lies in a face or on its edge.
     template <class Wanted, class Visit>
     void visit_covered(const Wanted& is_wanted, const Visit& visit) const {
         for (size_t k = 0; k + 1 < starts_.size(); ++k) {

@@ -1,5 +1,4 @@
-// The bicubic base of a patch: its corners and inner control points, evaluated with the operations of
-// formulas/displace.h.
+// The bicubic base of a patch: corners and inner control points, evaluated as in formulas/displace.h.
 #pragma once
 
 #include <array>

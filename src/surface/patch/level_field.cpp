@@ -49,8 +49,7 @@ double count_texels(const Surface& surface, uint8_t tile, const Vec2f& a, const 
                     std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height));
 }
 
-/// Of an edge by itself, and of the lines through the middle: the map may stretch the inside more than the
-/// edges.
+/// Of an edge, and of lines through the middle: the map may stretch the inside more than the edges.
 PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& world_from_object,
                           const LevelFieldConfig& config) {
     const PatchSamples samples(surface, patch, PatchSamples::Filtering::none);

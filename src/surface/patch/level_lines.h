@@ -19,8 +19,7 @@ struct LevelLines {
     std::array<std::array<Vec3f, kMiddleSegments - 1>, 2> middles;
 };
 
-/// `samples`: of the patch, unfiltered, as the lines are. Many points at once where that can be, the same
-/// bits on every instruction set.
+/// `samples`: of the patch, unfiltered, as the lines are. In SIMD where possible, with the same bits.
 LevelLines evaluate_level_lines(const Surface& surface, uint32_t patch, const PatchSamples& samples);
 
 /// The same one by one, which is the definition.

@@ -9,8 +9,7 @@
 
 namespace relief {
 
-/// Copies all of `source` to column x, row y of `target`, where it has room; rounded to halves where the
-/// target holds such.
+/// Copies `source` to column x, row y of `target`, where it fits; rounded where the target holds halves.
 void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y);
 
 /// One byte a patch: 1 where the displacement of any of its samples, its normals, or the level of one of its

@@ -47,8 +47,7 @@ class PatchSamples {
 
     /// Displaced point of corner k, of its dominant vertex.
     Vec3f corner(int k) const;
-    /// Displaced point on the line of edge k at s in [0, 1] from the line's start; not for the ends, which
-    /// are corners.
+    /// Displaced point on the line of edge k at s in (0, 1) from its start; the ends are corners.
     Vec3f edge(int k, float s) const;
     /// Displaced point inside.
     Vec3f interior(float u, float v) const;
@@ -57,11 +56,10 @@ class PatchSamples {
     int line_start(int k) const { return lines_[k].is_reversed ? (k + 1) & 3 : k; }
     int line_end(int k) const { return lines_[k].is_reversed ? k : (k + 1) & 3; }
     bool is_line_reversed(int k) const { return lines_[k].is_reversed; }
-    /// True where the line of edge k is not between the patch's own corners, or reads another copy of the
+    /// True where the line of edge k has other ends than the patch's corners or reads another copy of the
     /// map.
     bool is_line_foreign(int k) const { return lines_[k].is_foreign; }
-    /// True where corner k is displaced by another vertex than the patch's own, or by another copy of the
-    /// map.
+    /// True where corner k is displaced by another vertex or another copy of the map.
     bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }
 
     /// Their frames hold the unit normal whether the map is tangent or not; zero on a surface without frames.

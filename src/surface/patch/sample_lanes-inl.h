@@ -1,5 +1,4 @@
-// Samples of a displaced patch, sixteen at a time: the same operations in the same order as evaluate_vertex,
-// hence the same bits.
+// Samples of a displaced patch, sixteen at a time, by the operations of evaluate_vertex: the same bits.
 #if defined(RELIEF_SAMPLE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_SAMPLE_LANES_INL_H
 #undef RELIEF_SAMPLE_LANES_INL_H
@@ -209,8 +208,7 @@ HWY_INLINE void evaluate_samples(const Surface& surface, const MapImage& image, 
     displace<kSpacing>(surface, image, value, position);
 }
 
-/// Sixteen samples of the line of an edge that reads copy `mip` of the map, at s; `controls` lie between its
-/// ends where the base is bicubic.
+/// Sixteen samples of an edge's line from copy `mip` of the map, at s; `controls`: of a bicubic base.
 template <Spacing kSpacing>
 HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& line,
                               const std::array<Vec3f, 2>& controls, uint32_t mip, const Lanes16& s,

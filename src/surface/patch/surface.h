@@ -22,8 +22,7 @@
 
 namespace relief {
 
-/// Unit normal and tangent of a vertex: octahedral, 2 x 16 bit each; the lowest bit of `tangent` is set where
-/// the bitangent is -cross(N, T).
+/// Unit normal and tangent of a vertex, octahedral, 2 x 16 bits; bit 0 of `tangent`: bitangent -cross(N, T).
 struct PackedFrame {
     uint32_t normal = 0, tangent = 0;
 };
@@ -40,8 +39,7 @@ Vec3f unpack_normal(const PackedFrame& packed);
 
 class MipChain;
 
-/// How raw texel values become a displacement: d = matrix (value - midlevel), in (t, b, n) or object (x, y,
-/// z).
+/// Displacement of raw texel values: matrix (value - midlevel), in (t, b, n) or object (x, y, z).
 struct DisplacementMap {
     struct Tile {
         int udim = 1001;

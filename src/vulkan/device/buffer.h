@@ -1,5 +1,4 @@
-// Device buffers with a name and a purpose: every byte is accounted for, and allocation failures report the
-// size.
+// Device buffers with a name and a purpose; every byte is accounted for.
 #pragma once
 
 #include <cstring>
@@ -40,8 +39,8 @@ struct BufferConfig {
 class Buffer {
   public:
     Buffer() noexcept;
-    /// Throws Error{out_of_memory} with the byte count if the device has too little memory, or if the size
-    /// exceeds the limit of one buffer.
+    /// Throws Error{out_of_memory} with the byte count where memory ends, or the size exceeds a buffer's
+    /// limit.
     Buffer(const Device& device, const BufferConfig& config);
     ~Buffer();
     Buffer(Buffer&&) noexcept;

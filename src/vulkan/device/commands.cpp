@@ -96,8 +96,7 @@ void Commands::Implementation::mark(std::optional<Stage> next) {
     marks.push_back(next);
 }
 
-/// Called before every command: begins the command buffer, writes a timestamp at a stage change, and records
-/// the memory barrier.
+/// Before every command: begins the command buffer, marks a change of stage, records the memory barrier.
 void Commands::Implementation::prepare() {
     // The last mark is reserved for the end of the submission.
     if (is_recording && marks.size() + 1 == kMarkCount && marks.back() != stage) run();

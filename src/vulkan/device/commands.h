@@ -11,8 +11,7 @@
 
 namespace relief::vulkan {
 
-/// Timed stages of a frame; names follow the keys of `stage_s`. From tree_boxes on: stages of tree builds and
-/// traversals outside of renders.
+/// Timed stages, named as the keys of `stage_s`. From tree_boxes on: of tree builds and walks by themselves.
 enum class Stage {
     top_traversal,
     sort,
@@ -33,8 +32,7 @@ struct DrawSize {
     uint32_t width = 0, height = 0; ///< pixels, at most Device::max_draw_size() each
 };
 
-/// Not thread safe. A full memory barrier separates any two commands, so each sees the writes of those
-/// before.
+/// Not thread safe. A full memory barrier separates any two commands: each sees earlier writes.
 class Commands {
   public:
     Commands(const Device& device, const BindingTable& bindings);
@@ -48,8 +46,7 @@ class Commands {
 
     /// Dispatches ceil(invocations / group size) groups, in two dimensions above 65535; kernels compute the
     /// group index as gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x and must skip excess
-    /// invocations. A kernel drawn with kFullScreen gets as many fragments, indexed alike
-    /// (shaders/kernel.glsl).
+    /// invocations. Kernels drawn with kFullScreen get as many fragments (shaders/kernel.glsl).
     template <class Push> void dispatch(const Kernel& kernel, uint64_t invocations, const Push& push) {
         dispatch_bytes(kernel, invocations, std::as_bytes(std::span(&push, 1)));
     }
@@ -68,8 +65,7 @@ class Commands {
     void fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value);
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset, uint64_t bytes);
 
-    /// Submits the recorded commands and waits. Throws Error{device_missing}, naming the kernels, if the
-    /// device is lost.
+    /// Submits the recorded commands and waits. Throws Error{device_missing} if the device is lost.
     void run();
 
     /// Discards recorded commands after an error.

@@ -1,5 +1,4 @@
-// A Vulkan device prepared for a render method: selected, checked for required features, with its queue and
-// pipeline cache.
+// A Vulkan device for a render method: selected and checked, with its queue and pipeline cache.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +29,7 @@ struct DeviceDescription {
 /// All devices of all drivers, in the loader's order; empty without a driver, which is not an error.
 std::vector<DeviceDescription> list_devices();
 
-/// Immutable once constructed, except for memory accounts and cached pipelines; only one thread at a time may
-/// record and submit.
+/// Immutable but for memory accounts and cached pipelines; one thread at a time may record and submit.
 class Device {
   public:
     struct Config {

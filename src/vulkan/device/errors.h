@@ -12,8 +12,7 @@ namespace relief::vulkan {
 
 inline constexpr const char* kUseCpu = "use device.engine = cpu";
 
-/// Error{device_missing} for a lost or absent device, Error{out_of_memory} for failed allocations, else
-/// Error{failed}.
+/// Error{device_missing} for a lost or absent device, Error{out_of_memory} or else Error{failed}.
 [[noreturn]] void throw_vulkan_error(std::string_view operation, const vk::SystemError& error);
 
 /// Returns the result of `call`; rethrows a Vulkan exception as a relief::Error that names the operation.

@@ -1,5 +1,4 @@
-// The Vulkan instance with or without validation, and queries of physical devices. Included by the
-// implementation of device.h only.
+// The Vulkan instance, with or without validation, and queries of devices. For device.h's sources only.
 #pragma once
 
 #include <mutex>
@@ -42,8 +41,7 @@ DeviceDescription describe_device(const vk::raii::PhysicalDevice& device, uint32
 /// Whether the device supports an extension.
 bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name);
 
-/// The queue family with compute; of several the one with the fewest other capabilities. nullopt if there is
-/// none.
+/// The queue family with compute and the fewest other capabilities; nullopt if there is none.
 std::optional<uint32_t> find_compute_family(const vk::raii::PhysicalDevice& device);
 
 /// The first queue family with compute and graphics.

@@ -17,12 +17,10 @@ struct KernelConfig {
     std::string shader; ///< file in shaders/ without its suffix, e.g. "bottom_build"
     /// Specialization constants 0, 1, 2, ...; constant 0 is the work-group size of every kernel.
     std::vector<uint32_t> constants;
-    /// SPIR-V of a shader that is not in shaders/; empty: the one of that name. Read during construction
-    /// only.
+    /// SPIR-V, read during construction only; empty: of the shader of that name in shaders/.
     std::span<const uint32_t> code = {};
-    /// If not empty, `shader` is a fragment shader drawn with this vertex shader, which requires a device
-    /// created for the method fragment or hybrid. With kFullScreen a launch corresponds to a compute dispatch
-    /// with groups of kFragmentGroup.
+    /// If not empty, `shader` is a fragment shader drawn with this vertex shader, on a device for the method
+    /// fragment or hybrid. With kFullScreen a launch acts as a compute dispatch in groups of kFragmentGroup.
     std::string vertex_shader = {};
 };
 
@@ -57,9 +55,8 @@ class BindingTable {
     BindingTable(BindingTable&&) noexcept;
     BindingTable& operator=(BindingTable&&) noexcept;
 
-    /// Binds the whole `buffer`; not during a submission that uses the table. Numbers from kFirstTexelBinding
-    /// on are uniform texel buffers, those below storage buffers. Unbound numbers refer to a small buffer of
-    /// zeros.
+    /// Binds the whole `buffer`, not during a submission. Numbers from kFirstTexelBinding on are uniform
+    /// texel buffers, those below storage buffers. Unbound numbers refer to a buffer of zeros.
     void bind(uint32_t binding, const Buffer& buffer);
 
     /// Unbinds a buffer, as is required before one is destroyed without a replacement.

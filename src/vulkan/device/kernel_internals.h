@@ -1,5 +1,4 @@
-// Vulkan objects behind Kernel and BindingTable. Included by kernel.cpp, binding_table.cpp, commands.cpp and
-// tests only.
+// Vulkan objects behind Kernel and BindingTable, for their own sources, commands.cpp and tests.
 #pragma once
 
 #include <memory>

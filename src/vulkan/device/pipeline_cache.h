@@ -13,8 +13,7 @@ namespace relief::vulkan {
 std::vector<uint8_t> read_pipeline_cache(const std::filesystem::path& path,
                                          const vk::PhysicalDeviceProperties& device);
 
-/// Replaces the file atomically. A file that cannot be written is left unchanged without an error: the cache
-/// only saves time.
+/// Replaces the file atomically, or leaves it as it is without an error: the cache only saves time.
 void write_pipeline_cache(const std::filesystem::path& path, const std::vector<uint8_t>& data) noexcept;
 
 } // namespace relief::vulkan

@@ -19,8 +19,7 @@ template <class Pipeline> class PipelineStore {
     /// Shader, vertex shader, constants: as in KernelConfig, for shaders of the build.
     using Key = std::tuple<std::string, std::string, std::vector<uint32_t>>;
 
-    /// The pipeline of `key`, created by make() if there is none. Exceptions of make() propagate; the next
-    /// call tries again.
+    /// The pipeline of `key`, created by make() if there is none; exceptions of make() propagate.
     template <class Make> std::shared_ptr<const Pipeline> find_or_make(Key key, const Make& make) {
         const std::lock_guard lock(mutex_);
         std::shared_ptr<const Pipeline>& place = pipelines_[std::move(key)];

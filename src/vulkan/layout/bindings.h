@@ -1,5 +1,4 @@
-// Constants shared by kernels and host: bindings, sizes, markers. Shared structs are in device_scene.h,
-// device_rays.h and device_paths.h.
+// Constants of kernels and host: bindings, sizes, markers. Shared structs are in device_*.h.
 #ifndef RELIEF_BINDINGS_H
 #define RELIEF_BINDINGS_H
 

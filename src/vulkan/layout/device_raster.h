@@ -1,5 +1,4 @@
-// Rasterised first hits: structs shared by the kernels of vulkan/rasteriser.h. Scalar block layout, members
-// of 4 bytes.
+// Rasterised first hits: structs shared with kernels. Scalar block layout, members of 4 bytes.
 #ifndef RELIEF_DEVICE_RASTER_H
 #define RELIEF_DEVICE_RASTER_H
 #include "formulas/begin.h"

@@ -30,8 +30,7 @@ FN uint cell_column(uint cell) { return cell >> 1u & 0xfffu; }
 FN uint cell_row(uint cell) { return cell >> 13u & 0xfffu; }
 FN uint cell_is_upper(uint cell) { return cell & 1u; }
 
-/// Progress of a ray through its candidates, ordered by (entry, instance, tree). The next round offers those
-/// that follow.
+/// Progress of a ray through its candidates, ordered by (entry, instance, tree): later ones are next.
 struct CursorData {
     float entry;
     uint instance, tree;

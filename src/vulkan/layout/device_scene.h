@@ -72,9 +72,8 @@ struct TileRecord {
     uint cell_x, cell_y; ///< first cell on the patch
 };
 
-/// A scene tree for a traversal selected by name. Its nodes are stored among the nodes, all else as words
-/// among the primitive ids, which begin with these records: first that of the tree of instances, then one per
-/// surface.
+/// A scene tree of a traversal selected by name: nodes among the nodes, all else as words among the primitive
+/// ids, which begin with these records: of the instances, then one a surface.
 struct WalkTreeData {
     Vec3 lower, upper; ///< kd: cell of the root
     uint is_empty;
@@ -87,8 +86,7 @@ struct WalkTreeData {
 };
 const uint kWalkTreeWords = 14u;
 
-// Nodes of all scene trees take two texels: (lower x y z, first), (upper x y z, kind_and_count), floats as
-// bits.
+// Nodes of scene trees take two texels: (lower x y z, first), (upper x y z, kind_and_count), as bits.
 const uint kNodeInner = 0u;    ///< first: node of the left child, the right one follows
 const uint kNodeInstance = 1u; ///< first: instance
 const uint kNodePolygons = 2u; ///< first: entry of primitive_ids; count of them

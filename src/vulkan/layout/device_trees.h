@@ -1,11 +1,9 @@
-// Trees built and traversed on the device outside of renders: bindings of a separate table, and shared
-// structs.
+// Trees built and walked on the device by themselves: bindings of a separate table, and structs.
 #ifndef RELIEF_DEVICE_TREES_H
 #define RELIEF_DEVICE_TREES_H
 #include "formulas/begin.h"
 
-// Set layout and texel formats are those of bindings.h; the meaning of the numbers differs. Storage buffers
-// of a traversal.
+// Set layout and texel formats of bindings.h; the numbers differ. Storage buffers of a traversal.
 const uint kBindTreeRays = 0u;  ///< TreeRay
 const uint kBindTreeHits = 1u;  ///< TreeHit
 const uint kBindStartKeys = 2u; ///< HeapKey: start node of each ray in a heap

@@ -1,6 +1,5 @@
-// One job: looks up its tree in the pool; if it is missing, too coarse or about to be overwritten, allocates space. The
-// pool is a ring buffer; a tree lives until it is overwritten. A job without room in this wave keeps its needs and is
-// deferred to the next one.
+// One job: looks up its tree in the pool, a ring buffer; if it is missing, too coarse or about to be overwritten,
+// allocates space. A job without room in this wave is deferred to the next one.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

@@ -1,5 +1,4 @@
-// Groups the sorted pairs into jobs: range of pairs per tree, and the needs of its rays, which are the finest level and
-// how much coarser edges are.
+// Groups the sorted pairs into jobs: pairs per tree, the finest level of its rays and how much coarser edges are.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

@@ -1,5 +1,4 @@
-// Far parts of bounce rays that met the coarse surface from within, as they began between it and the fine one:
-// these go on along the fine one.
+// Far parts of bounce rays that met the coarse surface from within go on along the fine one.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/surface_point.glsl"

@@ -48,8 +48,7 @@ DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint lod_bias,
     return result;
 }
 
-/// Selects one light in proportion to its estimated irradiance, then samples a direction towards it; density 0: no
-/// sample.
+/// Selects a light in proportion to its estimated irradiance, then a direction; density 0: no sample.
 DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
     float total = total_irradiance(push.source_count, at.position);
     float target = pick_and_emitter.x * total;

@@ -1,5 +1,4 @@
-// Vertices of a displaced patch: the same operations as evaluate_vertex (surface/patch/patch_samples.cpp), with the
-// formulas of formulas/displace.h.
+// Vertices of a displaced patch, as evaluate_vertex (surface/patch/patch_samples.cpp) makes them.
 #ifndef RELIEF_PATCH_EVALUATION_GLSL
 #define RELIEF_PATCH_EVALUATION_GLSL
 
@@ -220,8 +219,7 @@ uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
     return reversed;
 }
 
-/// Interpolation of a boundary sample: the ends of a line and the position between them. A corner uses its dominant
-/// vertex only.
+/// A boundary sample: the ends of a line and the position between. Corners use their dominant vertex only.
 struct LinePlace {
     uint first, second;
     float s;

@@ -1,5 +1,4 @@
-// Split form, traversal kernel: one invocation per pair. After the fused form it traces the excess pairs of trees with
-// very many.
+// Split form, traversal kernel: one invocation per pair; after the fused form for trees with excess pairs.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"
 

@@ -1,5 +1,4 @@
-// Commits the hit of a camera ray in a wave of items if it is nearer than those of previous waves; bit-identical to a
-// traced hit.
+// Commits a camera ray's hit in a wave of items if it is nearer than earlier ones; same bits as traced.
 #define READS_RASTER_VERTICES
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"

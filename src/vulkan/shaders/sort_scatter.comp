@@ -1,5 +1,4 @@
-// Third step of a pass: moves each pair to the start of its tile and digit, plus the number of equal digits before it
-// in the tile. Stable.
+// Third step of a pass: moves each pair to its digit's start in its tile, plus its rank there. Stable.
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 

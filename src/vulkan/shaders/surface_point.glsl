@@ -26,8 +26,7 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
                         CellPlace place) {
     SurfaceData s = surfaces[instance.surface];
     vec3 corner[3];
-    // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper one. A loop, so that the evaluation is inlined only
-    // once.
+    // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper; a loop inlines the evaluation once.
     for (uint k = 0u; k < 3u; ++k) {
         uint around = k + (place.is_upper && k > 0u ? 1u : 0u);
         if (s.map == kNone) {

@@ -66,8 +66,7 @@ PixelHeader make_header(const OIIO::ImageSpec& spec) {
     return header;
 }
 
-/// OpenImageIO 2.4 takes an offset before the start, as damaged tables of chunks hold it, for a place in
-/// memory.
+/// OpenImageIO 2.4 takes a negative offset, as in damaged tables of chunks, for a place in memory.
 class MemoryReader final : public OIIO::Filesystem::IOMemReader {
   public:
     using IOMemReader::IOMemReader;

@@ -1,5 +1,4 @@
-// What the kernels of the linear builders share: sorted codes, and where a range of entries is cut. The rule is that
-// of lab/trees/lbvh.h.
+// Shared by the linear builders: sorted codes, and where a range is cut, by the rule of lab/trees/lbvh.h.
 #include "formulas/lang.h"
 #include "formulas/constants.h"
 #include "formulas/exact.h"

@@ -8,8 +8,7 @@ layout(set = 0, binding = kBindBuildNodes) writeonly buffer Nodes { uvec4 nodes[
 layout(set = 0, binding = kBindBuildParents) writeonly buffer Parents { uint parents[]; };
 layout(set = 0, binding = kBindBuildSkips) writeonly buffer Skips { uint skips[]; };
 
-/// What the entries of one node have in common: bits of the code from `bit` on; or all of the code, and bits of the
-/// number from `bit` on.
+/// What the entries of a node share: bits of the code from `bit` on; or the code, and bits of the number from there.
 struct NodePrefix {
     HeapKey code;
     uint bit, number;

@@ -1,5 +1,4 @@
-// Codes of 63 bits are sorted by their low words, then by their high ones, which this brings; afterwards it lays the
-// whole codes out in their order.
+// Codes of 63 bits are sorted by their low words, then by their high ones (step 0); step 1 lays them out in order.
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

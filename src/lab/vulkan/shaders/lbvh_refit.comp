@@ -1,5 +1,4 @@
-// Boxes from the leaves upwards: whoever brings the second child of a pair goes on with their parent. No invocation
-// waits for another one.
+// Boxes from the leaves upwards: whoever brings a pair's second child goes on with the parent. Nobody waits.
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 

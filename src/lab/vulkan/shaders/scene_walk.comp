@@ -108,8 +108,7 @@ uint find_root() { return 0u; }
 
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
 
-/// Where the ray enters primitive `id` of a leaf: a place of its own, the same at whatever leaf it is met. Infinity where
-/// nothing in its box is wanted.
+/// Where the ray enters primitive `id`, the same in all leaves; infinity where nothing in its box is wanted.
 float enter_primitive(uint id, float leaf_entry) {
 #ifdef WALK_KD
     return enter_wanted_box(load_any_node(tree.boxes + id));

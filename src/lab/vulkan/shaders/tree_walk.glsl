@@ -1,6 +1,5 @@
-// One ray through one tree over a triangle mesh: the hooks of formulas/tree.h from buffers. The including file has
-// defined one of WALK_..., WALK_KD besides for kd-trees, and Key where the walk has one. begin_walk(), then walk_tree();
-// the result is in walk_best.
+// One ray through one tree over a triangle mesh: the hooks of formulas/tree.h from buffers. The including file defines
+// WALK_..., also WALK_KD for kd-trees, and Key where the walk has one. begin_walk(), walk_tree(), walk_best.
 #include "formulas/lang.h"
 #include "formulas/constants.h"
 #include "formulas/exact.h"
