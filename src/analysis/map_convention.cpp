@@ -58,8 +58,7 @@ Vec3f round_midlevel(const MapStatistics& statistics) {
     return {float(statistics.midlevel[0]), float(statistics.midlevel[1]), float(statistics.midlevel[2])};
 }
 
-/// Along the plane a sculpt spreads where it rises: of the eight ways to lay two channels, the right one
-/// overhangs most and has the largest area.
+/// Along the plane a sculpt spreads where it rises: the right one of eight orders overhangs most.
 void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, MapConvention& result) {
     constexpr double kAhead = 1.15;
     std::array<PlaneFolds, 8> folds;

@@ -81,8 +81,7 @@ Box join_children(const WideNode& node) {
     return box;
 }
 
-/// New boxes of the leaves of a node, of all: those that have not moved are known by their codes only, and
-/// codes rounded over and over would grow.
+/// New boxes of a node's leaves: of all, since codes rounded over and over would grow.
 std::array<Box, 8> find_leaf_boxes(const WideBvh& tree, const WideNode& node,
                                    const std::function<Box(uint32_t)>& find_box) {
     std::array<Box, 8> boxes;

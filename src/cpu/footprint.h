@@ -13,8 +13,7 @@ namespace relief::cpu {
 /// Equal voxels over a box, with one more all around for rounding.
 class VoxelGrid {
   public:
-    /// Nearly cubes, at least one; with those around at most `most_voxels`, from 27 on. `bounds`: finite, not
-    /// empty.
+    /// Nearly cubes, at least one; with those around at most `most_voxels`, from 27 on. `bounds`: finite.
     VoxelGrid(const Box& bounds, size_t most_voxels);
 
     size_t voxel_count() const { return size_t(size_[0] + 2) * size_t(size_[1] + 2) * size_t(size_[2] + 2); }
@@ -47,8 +46,7 @@ class Footprint {
     size_t byte_count() const { return words_.size() * sizeof(uint64_t); }
 
   private:
-    /// Distances to and between faces across each axis, strides of the voxels, first voxel, distance of the
-    /// end.
+    /// Distances to and between faces across each axis, voxel strides, first voxel, distance of the end.
     struct Line {
         std::array<float, 3> next, delta;
         std::array<int, 3> stride;

@@ -38,8 +38,7 @@ class SceneTreeHolder {
     /// not depend on the order of threads. Thread safe.
     void rebuild_if_worthwhile();
 
-    /// As Engine::apply_changes: not while rays are traced. Adds boxes of what changed, world space, to
-    /// `places`.
+    /// As Engine::apply_changes: not while rays are traced. Adds boxes of what changed, world space.
     void apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
   private:

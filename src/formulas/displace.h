@@ -23,8 +23,7 @@ struct CubicWeights {
     Float first, second, third, fourth;
 };
 
-/// At parameter s. Exactly one weight is nonzero at s = 0 and s = 1; the weights at 1 - s, where that is
-/// exact, are the same in reverse order.
+/// At parameter s. One weight is nonzero at s = 0 and s = 1; weights at 1 - s, where exact, are reversed.
 FN CubicWeights weigh_cubic(Float s) {
     EXACT Float r = Float(1.0f) - s;
     EXACT Float both = Float(3.0f) * (s * r);

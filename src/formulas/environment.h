@@ -9,8 +9,7 @@
 #endif
 #include "formulas/begin.h"
 
-/// Position in a latitude-longitude image, (0, 0) its top left corner, for a unit vector: the centre is -z,
-/// up is +y, right is +x. Without rotation.
+/// Position in a latitude-longitude image, (0, 0) top left, of a unit vector: centre -z, up +y, right +x.
 FN Vec2 direction_to_latlong(Vec3 d) {
     Vec2 result = {Float(0.5f) + find_angle(d.x, Float(0.0f) - d.z) * Float(0.5f / kPi),
                    find_arc_cosine(clamp(d.y, Float(-1.0f), Float(1.0f))) * Float(1.0f / kPi)};

@@ -49,8 +49,7 @@ FN float estimate_irradiance(LightSourceData source, Vec3 position) {
 
 /// Radiance of a light with extent: a sun's disc, or the sphere of a point light.
 FN Vec3 shape_radiance(LightSourceData source) {
-    // A disc of half angle a has the projected solid angle pi sin(a)^2, and sin^2 = h (2 - h) with h = 1 -
-    // cos.
+    // A disc of half angle a has projected solid angle pi sin(a)^2; sin^2 = h (2 - h), h = 1 - cos.
     float measure = source.kind == kSourceSun ? kPi * source.cone * (2.0f - source.cone)
                                               : kPi * source.radius * source.radius;
     return source.color * (source.strength / measure);

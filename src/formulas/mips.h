@@ -1,5 +1,4 @@
-// Mip levels of a map read by the samples of a patch, where maps are filtered by cell size: one packed word
-// per patch.
+// Mip levels of a map that a patch's samples read, filtered by cell size: one packed word a patch.
 #ifndef RELIEF_MIPS_H
 #define RELIEF_MIPS_H
 #include "formulas/begin.h"
@@ -7,8 +6,7 @@
 /// The coarsest mip level; 0 is the map itself.
 const uint kMaxMip = 7u;
 
-// Locations on a patch: interior, edge k, corner k. Edges and corners use the same mip level in all adjacent
-// patches.
+// Locations on a patch: interior, edge k, corner k; edges and corners agree in all adjacent patches.
 const uint kMipInside = 0u;
 const uint kMipEdges = 1u;
 const uint kMipCorners = 5u;

@@ -1,6 +1,5 @@
 // Morton codes of 30 and 63 bits: x is the most significant of each triple, so bit p belongs to axis 2 - p
-// mod 3. Uses only operations that all devices round alike, so that device and host builders give the same
-// codes.
+// mod 3. All devices and the host round these operations alike.
 #ifndef RELIEF_MORTON_H
 #define RELIEF_MORTON_H
 #include "formulas/begin.h"
@@ -12,8 +11,7 @@ struct MortonCode {
     uint low, high;
 };
 
-/// 1 / m for m in [1, 2), to an error of 1e-7, by Newton's iteration: devices may round quotients
-/// differently.
+/// 1 / m for m in [1, 2), to 1e-7, by Newton's iteration: devices may round quotients differently.
 FN float invert_mantissa(float m) {
     EXACT float guess = 1.41176471f - 0.470588235f * m;
     EXACT float first = guess * (2.0f - m * guess);

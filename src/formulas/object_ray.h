@@ -1,5 +1,4 @@
-// One ray in the space of one object: its test against boxes, conservative, and against triangles,
-// watertight.
+// One ray in an object's space: conservative test against boxes, watertight against triangles.
 #ifndef RELIEF_OBJECT_RAY_H
 #define RELIEF_OBJECT_RAY_H
 #include "formulas/exact.h"
@@ -84,8 +83,7 @@ FN bool is_box_met(BoxInterval interval) {
     return interval.entry <= reach;
 }
 
-/// A vertex relative to the ray: sheared x and y, and z along the major axis (Woop, Benthin, Wald 2013,
-/// Watertight Ray/Triangle Intersection).
+/// A vertex relative to the ray: sheared x and y, z along the major axis (Woop et al. 2013).
 FN Vec3 shear_vertex(ObjectRay ray, Vec3 p) {
     EXACT float z = select_axis(p, ray.axis_z) - select_axis(ray.origin, ray.axis_z);
     EXACT float x = (select_axis(p, ray.axis_x) - select_axis(ray.origin, ray.axis_x)) - ray.shear_x * z;

@@ -1,5 +1,5 @@
-// Octahedral unit vectors (Cigolle et al. 2014, A MapStatistics of Efficient Representations for Independent
-// Unit Vectors), in any number of lanes.
+// Octahedral unit vectors (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit
+// Vectors).
 #if !defined(RELIEF_OCTAHEDRON_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_OCTAHEDRON_H

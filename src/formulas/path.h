@@ -1,5 +1,4 @@
-// Path tracer conventions shared by both engines: sample dimensions per vertex, camera rays, Russian
-// roulette.
+// Path tracer conventions of both engines: sample dimensions, camera rays, Russian roulette.
 #ifndef RELIEF_PATH_H
 #define RELIEF_PATH_H
 #include "formulas/camera.h"
@@ -46,8 +45,7 @@ FN Vec3 limit_color(Vec3 color) {
     return max(zero, min(color, one));
 }
 
-/// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr, Jakob, Humphreys 2023, section
-/// 13.4).
+/// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr et al. 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);

@@ -40,8 +40,7 @@ FN ObjectCamera make_object_camera(Vec3 origin, CameraVectors vectors, CameraVec
     Vec3 position_error = {dot(one, x_bound), dot(one, y_bound), dot(one, w_bound)};
     Vec3 direction_error = {dot(reach, x_bound), dot(reach, y_bound), dot(reach, w_bound)};
     float slack = kRasterSlack * abs(scale);
-    // The object is so flat that rounding hides on which side of the camera a point lies: every point is
-    // unknown.
+    // So flat an object that rounding hides its points' side of the camera: all are unknown.
     if (!(abs(volume) > kRasterSlack * dot(bounds.corner, w_bound))) slack = uintBitsToFloat(0x7f800000u);
     ObjectCamera camera = {
         origin, x * scale, y * scale, w * scale, position_error * slack, direction_error * slack};
@@ -100,8 +99,7 @@ FN ScreenBox add_point(ScreenBox box, SeenPoint p) {
     return result;
 }
 
-/// Homogeneous coordinate of a point, before or behind the camera: one coordinate times distance, and the
-/// distance.
+/// Homogeneous coordinate of a point before or behind the camera: coordinate times distance, distance.
 struct SeenCoordinate {
     float at, error;
     float distance, distance_error;
@@ -117,8 +115,7 @@ FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
     return abs(crossing) > 2.0f * error ? crossing : 0.0f;
 }
 
-/// Extends the rectangle by the visible part of a segment from a point in front of the camera to one behind
-/// it.
+/// Extends the rectangle by the visible part of a segment from before the camera to behind it.
 FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
     float all = uintBitsToFloat(0x7f800000u);
     SeenCoordinate front_x = {front.at.x, front.error.x, front.at.z, front.error.z};

@@ -17,8 +17,7 @@ FN Vec3 interpolate_triangle(Vec3 c0, Vec3 c1, Vec3 c2, Vec2 at) {
     return c0 * (Float(1.0f) - at.x) + c1 * (at.x - at.y) + c2 * at.y;
 }
 
-/// Normal of an undisplaced polygon, from its interpolated vertex normals and the cross product of the edges
-/// of the triangle that contains the point.
+/// Normal of a plain polygon, from its interpolated vertex normals and the hit triangle's own.
 FN Vec3 make_plain_normal(Vec3 blended, Vec3 plane) {
     Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
     Vec3 normal = make_unit(blended);
@@ -33,8 +32,7 @@ struct SurfaceDerivative {
     Vec3 displacement; ///< of d
 };
 
-/// Derivative of a bilinear patch along one direction, at `s` across: from p to q on the near side, from r to
-/// t on the far side.
+/// Derivative of a bilinear patch at `s` across: from p to q on the near side, r to t on the far side.
 FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, Float s) { return interpolate(q - p, t - r, s); }
 
 /// Ends of a central difference one cell wide about `at`. The difference extends into the neighbouring patch,
@@ -47,14 +45,12 @@ FN Vec2 find_difference_ends(Float at, Float half_cell, Bool is_low_seam, Bool i
     return ends;
 }
 
-/// Base derivative projected into the plane of the interpolated normal, plus the derivative of the
-/// displacement.
+/// Base derivative projected into the normal's plane, plus the derivative of the displacement.
 FN Vec3 displace_derivative(SurfaceDerivative along, Vec3 normal) {
     return along.base - normal * dot(normal, along.base) + along.displacement;
 }
 
-/// The same for a displacement d in `frame`, by the product rule: derivative of d in the frame, plus d in the
-/// derivative of the frame.
+/// The same for d in `frame`, by the product rule: derivative of d in the frame, d in that of the frame.
 FN Vec3 displace_derivative_through(SurfaceDerivative along, Basis frame, Vec3 d, Vec3 normal) {
     Vec3 base = along.base - normal * dot(normal, along.base);
     Vec3 change = along.displacement;

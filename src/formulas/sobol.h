@@ -1,7 +1,6 @@
 // Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair). Burley 2020,
 // Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0, 2)-sequence of Sobol,
-// shuffled and scrambled independently. Samples do not depend on the sample count, so renders can be
-// extended.
+// scrambled independently. Samples do not depend on their count, so renders can be extended.
 #if !defined(RELIEF_SOBOL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SOBOL_H

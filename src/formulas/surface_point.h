@@ -17,8 +17,8 @@ struct TrianglePoint {
     Float area_per_uv; ///< world-space area per area in the patch's (u, v)
 };
 
-/// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`:
-/// (i, j); `side`: cells along the patch.
+/// Lower: P = P00 + (x - y) P10 + y P11; upper: x P11 + (y - x) P01. `at`: (u, v); `cell`: (i, j); `side`:
+/// cells.
 FN CornerWeights weigh_cell_corners(Vec2 at, Vec2 cell, Bool is_upper, Float side) {
     Float x = clamp(at.x * side - cell.x, Float(0.0f), Float(1.0f));
     Float y = clamp(at.y * side - cell.y, Float(0.0f), Float(1.0f));
@@ -31,8 +31,7 @@ FN Vec3 blend_corners(Vec3 a, Vec3 b, Vec3 c, CornerWeights weights) {
     return a * (Float(1.0f) - weights.b - weights.c) + b * weights.b + c * weights.c;
 }
 
-/// `edge_b`, `edge_c`: from corner 0 to corners 1 and 2, world space; `turn`: -1 where the instance mirrors,
-/// else 1.
+/// `edge_b`, `edge_c`: from corner 0 to 1 and 2, world space; `turn`: -1 for mirrored instances, else 1.
 FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, Float turn, Float uv_area) {
     Vec3 area = cross(edge_b, edge_c) * turn;
     TrianglePoint point = {position, make_unit(area), Float(0.5f) * length(area) / uv_area};

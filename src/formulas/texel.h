@@ -8,8 +8,7 @@ const uint kWrapRepeat = 1u;
 const uint kWrapMirror = 2u;
 const uint kWrapBlack = 3u;
 
-/// floor() without a library call on instruction sets that lack rounding; integers and non-finite values are
-/// returned unchanged.
+/// floor() without a library call where rounding instructions lack; non-finite values stay.
 FN float floor_texel(float x) {
     if (!(abs(x) < 8388608.0f)) return x;
     float whole = float(int(x));

@@ -13,9 +13,8 @@ FN Float expose_filmic(Float x) {
     return min(select(x > Float(0.0f), x, Float(0.0f)), Float(1e6f)) * Float(1.461927f);
 }
 
-/// Filmic tone map of a linear Rec.709 colour into [0, 1], still linear: S. Hill's fit of the ACES reference
-/// and output transforms (BakingLab, 2015). Bright colours desaturate towards white instead of shifting hue.
-/// Negative and NaN components count as 0.
+/// Filmic tone map of a linear Rec.709 colour into [0, 1], still linear: S. Hill's fit of the ACES transforms
+/// (BakingLab, 2015). Bright colours desaturate. Negative and NaN components count as 0.
 FN Vec3 tone_map_filmic(Vec3 c) {
     Float r = expose_filmic(c.x);
     Float g = expose_filmic(c.y);

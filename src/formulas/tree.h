@@ -52,9 +52,8 @@ const uint kFromParent = 0u;
 const uint kFromSibling = 1u;
 const uint kFromChild = 2u;
 
-/// 32 bytes, the bits of relief::BvhNode. Children of an inner node are first and first + 1, the lower one
-/// along the axis first. A leaf's `first` and count are defined by the includer, as are the highest four bits
-/// of its word.
+/// 32 bytes, the bits of relief::BvhNode. Children of an inner node are first and first + 1, the lower along
+/// the axis first. A leaf's `first`, count and the highest four bits of its word are the includer's.
 struct TreeNode {
     Vec3 lower;
     uint first;
@@ -78,8 +77,7 @@ FN float cross_node(ObjectRay ray, TreeNode node, float t_min, float t_max) {
     return is_box_met(interval) ? interval.entry : make_infinity();
 }
 
-// Heap: slot k of the array is the node of key k (slot 0 is empty). Both children of a node are one 64-byte
-// line.
+// Heap: slot k is the node of key k (slot 0 is empty). Siblings are one 64-byte line.
 //
 // Succinct heap: no empty slots. The root is slot 1; the pairs of children follow from slot 2 on, in the
 // order of their parents' keys as far as the flat part of the directory goes. A bit says that a key is an

@@ -47,14 +47,12 @@ FN Vec3 square_to_sphere(Vec2 u) { return square_to_cone(u, Float(2.0f)); }
 
 FN Float sphere_pdf() { return Float(0.25f / kPi); }
 
-/// Uniform point of the triangle (0, 0) (1, 0) (1, 1), that is y <= x (Heitz 2019, A Low-Distortion Map
-/// Between Triangle and Square). Density 2.
+/// Uniform point of the triangle y <= x in the unit square (Heitz 2019). Density 2.
 FN Vec2 square_to_triangle(Vec2 u) {
     Bool is_y_major = u.y > u.x;
     Float half_x = Float(0.5f) * u.x;
     Float half_y = Float(0.5f) * u.y;
-    // Barycentric weights of the first two axes of the standard map; x = 1 - b0 and y = b1 give the triangle
-    // y <= x.
+    // Barycentric weights of the standard map's first two axes; x = 1 - b0, y = b1 give y <= x.
     Float b0 = select(is_y_major, half_x, u.x - half_y);
     Float b1 = select(is_y_major, u.y - half_x, half_y);
     Vec2 result = {Float(1.0f) - b0, b1};

@@ -10,8 +10,7 @@ namespace relief {
 
 inline constexpr const char* kSamplesKey = "relief:samples"; ///< entry of the header, "A:B"
 
-/// [first, last) of the header; throws Error{bad_input} where it says nothing or nonsense. `part`: place
-/// among others, from 0, for the message.
+/// [first, last) of the header; throws Error{bad_input} without one. `part`: number, from 0, for messages.
 std::pair<int, int> read_sample_range(const Image& image, size_t part);
 
 } // namespace relief

@@ -157,8 +157,7 @@ class TrialRender {
     int stride_ = 1; ///< has no factor in common with part_count_
 };
 
-/// What `count` parts take whose trees are shared: building grows as a power of their number, the one that it
-/// grew by over the parts that were timed.
+/// What `count` parts take whose trees are shared: building grows as the power fitted to the timed parts.
 double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int count) {
     double half = 0, all = 0;
     for (size_t k = 0; k < parts.size(); ++k) {

@@ -26,8 +26,7 @@ struct TileRange {
     uint32_t side() const { return 1u << levels.patch; }
 };
 
-/// All rows and columns of the tile but those on a border of the patch, which evaluate_border takes care of
-/// (and may be written here nevertheless).
+/// All rows and columns of the tile; those on a border of the patch are left to evaluate_border.
 HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
     const MapImage image{surface.tile(surface.quads[range.patch].vertex[0]),
                          scalar::packed_mip(surface.packed_mips(range.patch), scalar::kMipInside)};

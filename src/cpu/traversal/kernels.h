@@ -31,8 +31,7 @@ struct SceneView {
     }
 };
 
-/// One primitive of an instance: a polygon or a displaced patch. closest: a hit nearer than `best` takes its
-/// place. Both tell whether there was one.
+/// A polygon or displaced patch of an instance: whether it is hit. closest: a nearer hit replaces `best`.
 struct PrimitiveKernels {
     using Function = bool (*)(const SceneView&, TraceContext&, const TraceRay& world, uint32_t instance,
                               uint32_t patch, TraceHit& best);

@@ -1,6 +1,5 @@
-// Rays that go about the same way from places of their own, in the space of one object: those through a lens.
-// They are seen along their mean direction, in parallel: there a ray is a line whose place at a
-// depth is x + (depth - pivot) * slope.
+// Rays of about one direction from different origins in an object's space: those through a lens. Seen along
+// their mean direction, in parallel, a ray is a line: at a depth at x + (depth - pivot) * slope.
 #pragma once
 
 #include "cpu/traversal/ray_bundle-inl.h"

@@ -36,8 +36,7 @@ HWY_INLINE void enter_object(const cpu::TraceRay& world, const Affine& object_fr
     ray.origin[0] = o.x, ray.origin[1] = o.y, ray.origin[2] = o.z;
     for (int k = 0; k < 3; ++k) {
         // Along an axis that the ray does not move on, 1 / 0 would make 0 * infinity on a box's face. A
-        // finite factor, and an origin moved outward by more than rounding, let it touch the box and miss
-        // neighbours.
+        // finite factor and an origin moved outward by more than rounding let it touch the box alone.
         const bool is_still = std::fabs(direction[k]) < kLeastSpeed;
         const float margin = is_still ? 1e-6f * (std::fabs(ray.origin[k]) + 1e-24f) : 0.0f;
         const float lower_origin = ray.origin[k] + margin, upper_origin = ray.origin[k] - margin;

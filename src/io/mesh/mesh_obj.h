@@ -11,10 +11,9 @@ namespace relief {
 
 /// `name` is for messages. Throws bad_input with the line for a missing or malformed number, an index out of
 /// range, uv on some corners only and a damaged tag. Faces of fewer than 3 corners, groups and materials are
-/// left out; normals are dropped unless all corners have one. A line that ends with a backslash goes on in
-/// the next. Creases come from OpenSubdiv's tags ("t crease 2/1/0 4 5 2.5"): `crease` (pairs of positions)
-/// and `corner` (single ones), counted from 0, with one sharpness for all or one each; negative ones count as
-/// 0. Other tags are left out.
+/// left out; normals are dropped unless all corners have one. A backslash joins a line to the next. Creases
+/// come from OpenSubdiv's tags ("t crease 2/1/0 4 5 2.5"): `crease` (pairs of positions) and `corner` (single
+/// ones), counted from 0, with one sharpness for all or one each; negative ones count as 0.
 Mesh parse_obj(std::string_view text, const std::string& name);
 
 /// Creases as lines of tags, which read back as they were.

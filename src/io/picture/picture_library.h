@@ -26,8 +26,7 @@ class PictureLibrary {
 /// refused in place of being called wrongly.
 #define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_1
 
-/// Loads a module, for good. Throws Error{failed}, with `name`, the picture, as the place, where it is
-/// missing or was built for another layout.
+/// Loads a module, for good. Throws Error{failed} with `name` where it is missing or of another layout.
 const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);
 
 /// Loads relief_pictures at first, from beside the program or the build. Throws as load_picture_library.

@@ -34,8 +34,7 @@ struct WalkView {
     const PrimitiveKernels& primitive;
 };
 
-/// Primitives of a kd-tree that a ray was tested against last: neighbouring leaves share them. Not cleared
-/// when made, since other trees need none.
+/// Primitives of a kd-tree that a ray was last tested against: neighbouring leaves share them.
 class Mailbox {
   public:
     void clear() { ids_.fill(kNoIndex); }

@@ -25,8 +25,8 @@ static Key make_root_level() {
         return make_root_level32();
 }
 
-/// From node `root`, kNoNode: no tree; the two trails from the node of `key`, 0: no tree. A stack holds what
-/// it held (at first: make_empty_stack).
+/// From node `root` (kNoNode: no tree), trails from the node of `key` (0: no tree). A stack keeps what it
+/// holds.
 void start_walk(uint root, Key key) {
     if constexpr (kTraversal == TraversalKind::stack)
         start_stack(root);

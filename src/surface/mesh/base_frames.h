@@ -17,9 +17,8 @@ struct FramedBase {
 
 /// Quads, smooth where the mesh says so, with the normals and tangents that `displacement` asks for.
 /// `polygons` are those of the mesh, with uvs. MikkTSpace runs on triangles and quads as they are in the
-/// mesh, before they are refined to quads; on the patches where there are faces of more corners or where the
-/// base is smooth. Throws bad_input where the mesh has no normals to take, or is subdivided, and for
-/// relative lengths of the file's frames.
+/// mesh, or on the patches where faces have more corners or the base is smooth. Throws bad_input for missing
+/// normals, and for subdivision or relative lengths with the file's frames.
 FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacement& displacement);
 
 } // namespace relief

@@ -225,8 +225,7 @@ class Cell {
         }
     }
 
-    /// Moves a sample's place to the foot of its target on the patch (Hoschek 1988, Intrinsic parametrization
-    /// for approximation): one Newton step.
+    /// Newton step to the foot of a sample's target on the patch (Hoschek 1988, Intrinsic parametrization).
     void project(FitSample& sample) const {
         constexpr double kStep = 1e-4;
         const Vec3d p = blend(sample.u, sample.v), miss = sample.target - p;

@@ -42,8 +42,7 @@ class VertexSplitter {
         return vertex;
     }
 
-    /// Renumbers vertices: the dominant ones, then the others, each in order. Returns new numbers by old
-    /// ones.
+    /// Renumbers vertices: dominant ones first, each kind in order. Returns new numbers by old ones.
     std::vector<uint32_t> put_copies_last() {
         std::vector<uint32_t> numbers(vertices_.size());
         uint32_t next = 0;

@@ -61,16 +61,14 @@ class TexelMask {
     std::vector<uint64_t> words_;
 };
 
-/// The faces of some meshes on one tile, as polygons counted in texels, row 0 at the top; of a mesh whose uvs
-/// are subdivided, those of its patches.
+/// The faces of some meshes on one tile, in texels, row 0 at the top; patches where uvs are subdivided.
 class UvIslands {
   public:
     using Point = Vec2<double>;
     UvIslands(const Displacement& displacement, const MapTile& tile)
         : displacement_(displacement), udim_(tile.udim), texture_(*tile.texture) {}
 
-    /// Leaves out faces with indices out of range. Throws as make_surface for a mesh that cannot be
-    /// subdivided.
+    /// Leaves out faces with indices out of range. Throws as make_surface where subdivision fails.
     void add(const Mesh& mesh);
 
     /// Some face runs over a map that repeats more than once, so that nothing of it is outside.

@@ -152,8 +152,7 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     return result;
 }
 
-/// Extends `bounds` by the hull over `corners` of p + F D; by a bicubic base that lies in `base` plus the
-/// hull of F D, where `base` is not null.
+/// Extends `bounds` by the hull over `corners` of p + F D, or of `base` plus F D where that is not null.
 void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint, const CoordinateRanges* base,
                     std::span<const Corner> corners) {
     Interval u, v;

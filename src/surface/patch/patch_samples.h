@@ -56,8 +56,7 @@ class PatchSamples {
     int line_start(int k) const { return lines_[k].is_reversed ? (k + 1) & 3 : k; }
     int line_end(int k) const { return lines_[k].is_reversed ? k : (k + 1) & 3; }
     bool is_line_reversed(int k) const { return lines_[k].is_reversed; }
-    /// True where the line of edge k has other ends than the patch's corners or reads another copy of the
-    /// map.
+    /// True where edge k's line has other ends than the patch's corners or another copy of the map.
     bool is_line_foreign(int k) const { return lines_[k].is_foreign; }
     /// True where corner k is displaced by another vertex or another copy of the map.
     bool is_corner_foreign(int k) const { return is_corner_foreign_[k]; }

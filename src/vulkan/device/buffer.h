@@ -39,8 +39,7 @@ struct BufferConfig {
 class Buffer {
   public:
     Buffer() noexcept;
-    /// Throws Error{out_of_memory} with the byte count where memory ends, or the size exceeds a buffer's
-    /// limit.
+    /// Throws Error{out_of_memory} with the byte count where memory or the limit of a buffer ends.
     Buffer(const Device& device, const BufferConfig& config);
     ~Buffer();
     Buffer(Buffer&&) noexcept;

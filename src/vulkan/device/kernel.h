@@ -27,8 +27,7 @@ struct KernelConfig {
 inline constexpr const char* kFullScreen = "full_screen";
 inline constexpr uint32_t kFragmentGroup = 64;
 
-/// One compiled shader with its constants. Kernels with the same shader and constants share one pipeline per
-/// device. The device must outlive it.
+/// A compiled shader with its constants; equal ones share a pipeline. The device must outlive it.
 class Kernel {
   public:
     Kernel() noexcept;

@@ -1,6 +1,5 @@
-// Builds the patch tree of one job with several lanes of a work group: vertices, bounds, leaves, then bottom-up level
-// by level (Harada 2015, listing 1.2). All lanes of the group must call these functions, even without a job, because of
-// the barriers between levels.
+// Builds a job's patch tree with several lanes: vertices, bounds, leaves, then bottom-up (Harada 2015, listing 1.2).
+// All lanes of the group must call these functions because of the barriers between levels.
 //
 // Vertices are stored before edge samples are snapped, so that coarser levels and coarser edges find their vertices
 // among them. Boxes of boundary nodes also bound the snapped samples of every level.

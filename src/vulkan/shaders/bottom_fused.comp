@@ -1,5 +1,4 @@
-// Fused form (Harada 2015, algorithm 1): persistent work groups take trees from a queue; each builds its tree with all
-// lanes, then traces one ray per lane.
+// Fused form (Harada 2015, algorithm 1): persistent groups build a tree with all lanes, then trace a ray a lane.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/bottom_build.glsl"
 #include "vulkan/shaders/patch_traversal.glsl"

@@ -1,6 +1,5 @@
-// One ray of a round in the scene trees, independent of the kind of tree: collects its nearest candidates, intersects
-// polygons, emits pairs. The including file defines kMayOfferTwice (the traversal may visit a patch repeatedly) before,
-// and enter_tiles() and walk() after.
+// One ray of a round in the scene trees, of any kind: collects its nearest candidates, intersects polygons, emits
+// pairs. Included after kMayOfferTwice (patches may be visited again) and before enter_tiles() and walk().
 #ifndef RELIEF_SCENE_CANDIDATES_GLSL
 #define RELIEF_SCENE_CANDIDATES_GLSL
 

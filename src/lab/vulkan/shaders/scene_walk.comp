@@ -128,8 +128,8 @@ float enter_leaf(uint node) {
 #endif
 }
 
-/// In world space, `tree` that of the instances. False: none is left. (No `continue` or `return` in these inner loops:
-/// Mesa 22.3's lavapipe loses lanes there.)
+/// In world space, `tree` that of the instances. False: none is left. (lavapipe of Mesa 22.3 loses lanes at
+/// `continue`.)
 bool enter_next_instance() {
     bool is_entered = false;
     while (waiting_count > 0u && !is_entered) {
