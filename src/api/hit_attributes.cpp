@@ -1,6 +1,5 @@
 #include "api/hit_attributes.h"
 
-
 #include "base/parallel.h"
 #include "cpu/shading/surface_points.h"
 

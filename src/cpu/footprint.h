@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-
 namespace relief::cpu {
 
 /// Equal voxels over a box, with one more all around for rounding.

@@ -2,7 +2,6 @@
 // numbers, and where all comparisons are false, an empty slot of a node is entered like any other.
 #pragma once
 
-
 namespace relief {
 
 /// False for a ray whose origin or direction is infinite or NaN, or whose interval is empty.

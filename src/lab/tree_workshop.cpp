@@ -1,6 +1,5 @@
 #include "lab/tree_workshop.h"
 
-
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "bvh/sah_bvh.h"

@@ -1,6 +1,5 @@
 #include "samples/bake.h"
 
-
 #include "base/check.h"
 #include "base/parallel.h"
 #include "math/half.h"

@@ -1,7 +1,6 @@
 // Materials and lights in device memory, for the path tracing kernels.
 #pragma once
 
-
 #include "prepare/prepared_scene.h"
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/kernel.h"

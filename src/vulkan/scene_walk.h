@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-
 namespace relief::vulkan {
 
 /// A node of a scene tree: two texels.

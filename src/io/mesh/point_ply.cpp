@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-
 #include "io/mesh/ply_cursor.h"
 #include "relief/error.h"
 

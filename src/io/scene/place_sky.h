@@ -1,7 +1,6 @@
 // How a picture of a sky is turned and scaled to light an object that comes alone.
 #pragma once
 
-
 namespace relief {
 
 struct SkyPlacement {

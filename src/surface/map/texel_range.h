@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-
 namespace relief {
 
 struct ChannelRange {

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-
 namespace relief {
 
 /// Twice the area of the triangle a b c, positive where it is counter-clockwise.

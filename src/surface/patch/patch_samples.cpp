@@ -1,6 +1,5 @@
 #include "surface/patch/patch_samples.h"
 
-
 #include "base/check.h"
 #include "formulas/displace.h"
 #include "formulas/levels.h"

@@ -1,8 +1,8 @@
 
+#include "formulas/shading_normal.h"
 #include "formulas/basis.h"
 #include "formulas/displace.h"
 #include "formulas/mips.h"
-#include "formulas/shading_normal.h"
 #include "surface/patch/patch_samples.h"
 #include "surface/patch/surface.h"
 
