@@ -10,6 +10,7 @@
 
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <type_traits>
 
 #include <hwy/highway.h>
@@ -19,6 +20,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// Body of a function of registers: register `p` of a Result is the expression.
+#define RELIEF_RETURN_PARTS(Result, ...)                                                                     \
+    Result r;                                                                                                \
+    for (size_t p = 0; p < std::size(r.part); ++p) r.part[p] = __VA_ARGS__;                                  \
+    return r
 
 /// One bit per lane.
 using LaneMask = uint32_t;
@@ -36,14 +43,10 @@ template <size_t kWidth> struct Lanes {
         for (size_t p = 0; p < kParts; ++p) part[p] = hn::Set(D(), value);
     }
     static HWY_INLINE Lanes load(const float* aligned) {
-        Lanes r;
-        for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * kLanes);
-        return r;
+        RELIEF_RETURN_PARTS(Lanes, hn::Load(D(), aligned + p * kLanes));
     }
     static HWY_INLINE Lanes load_unaligned(const float* source) {
-        Lanes r;
-        for (size_t p = 0; p < kParts; ++p) r.part[p] = hn::LoadU(D(), source + p * kLanes);
-        return r;
+        RELIEF_RETURN_PARTS(Lanes, hn::LoadU(D(), source + p * kLanes));
     }
     /// Sixteen (or eight, ...) pairs of numbers in structure-of-arrays layout.
     static HWY_INLINE void load_pairs(const float* source, Lanes& first, Lanes& second) {
@@ -77,9 +80,7 @@ template <size_t kWidth> struct Lanes {
 
 #define RELIEF_LANES_BINARY(name, function)                                                                  \
     template <size_t W> HWY_INLINE Lanes<W> name(const Lanes<W>& a, const Lanes<W>& b) {                     \
-        Lanes<W> r;                                                                                          \
-        for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);        \
-        return r;                                                                                            \
+        RELIEF_RETURN_PARTS(Lanes<W>, hn::function(a.part[p], b.part[p]));                                   \
     }
 RELIEF_LANES_BINARY(operator+, Add)
 RELIEF_LANES_BINARY(operator-, Sub)
@@ -90,9 +91,7 @@ RELIEF_LANES_BINARY(max, Max)
 #undef RELIEF_LANES_BINARY
 
 template <size_t W> HWY_INLINE Lanes<W> floor(const Lanes<W>& a) {
-    Lanes<W> r;
-    for (size_t p = 0; p < Lanes<W>::kParts; ++p) r.part[p] = hn::Floor(a.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Lanes<W>, hn::Floor(a.part[p]));
 }
 
 /// Converts mask and number through one word: mixed byte and word accesses defeat store-to-load forwarding.
@@ -128,30 +127,20 @@ RELIEF_LANES_COMPARE(not_equal, Ne) // NaN: true or false, depending on the inst
 /// a where x < y, else b.
 template <size_t W>
 HWY_INLINE Lanes<W> select_less(const Lanes<W>& x, const Lanes<W>& y, const Lanes<W>& a, const Lanes<W>& b) {
-    Lanes<W> r;
-    for (size_t p = 0; p < Lanes<W>::kParts; ++p)
-        r.part[p] = hn::IfThenElse(hn::Lt(x.part[p], y.part[p]), a.part[p], b.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Lanes<W>, hn::IfThenElse(hn::Lt(x.part[p], y.part[p]), a.part[p], b.part[p]));
 }
 
-template <size_t W> HWY_INLINE float reduce_min(const Lanes<W>& a) {
-    auto least = a.part[0];
-    for (size_t p = 1; p < Lanes<W>::kParts; ++p) least = hn::Min(least, a.part[p]);
-    return hn::GetLane(hn::MinOfLanes(typename Lanes<W>::D(), least));
-}
-
-template <size_t W> HWY_INLINE float reduce_max(const Lanes<W>& a) {
-    auto greatest = a.part[0];
-    for (size_t p = 1; p < Lanes<W>::kParts; ++p) greatest = hn::Max(greatest, a.part[p]);
-    return hn::GetLane(hn::MaxOfLanes(typename Lanes<W>::D(), greatest));
-}
-
-/// The order of summation is unspecified.
-template <size_t W> HWY_INLINE float reduce_sum(const Lanes<W>& a) {
-    auto sum = a.part[0];
-    for (size_t p = 1; p < Lanes<W>::kParts; ++p) sum = hn::Add(sum, a.part[p]);
-    return hn::GetLane(hn::SumOfLanes(typename Lanes<W>::D(), sum));
-}
+// The order of summation is unspecified.
+#define RELIEF_LANES_REDUCE(name, function, of_lanes)                                                        \
+    template <size_t W> HWY_INLINE float name(const Lanes<W>& a) {                                           \
+        auto all = a.part[0];                                                                                \
+        for (size_t p = 1; p < Lanes<W>::kParts; ++p) all = hn::function(all, a.part[p]);                    \
+        return hn::GetLane(hn::of_lanes(typename Lanes<W>::D(), all));                                       \
+    }
+RELIEF_LANES_REDUCE(reduce_min, Min, MinOfLanes)
+RELIEF_LANES_REDUCE(reduce_max, Max, MaxOfLanes)
+RELIEF_LANES_REDUCE(reduce_sum, Add, SumOfLanes)
+#undef RELIEF_LANES_REDUCE
 
 /// Lanes in [0, +inf) or in (-inf, 0] in all three: the sign test of a watertight triangle.
 template <size_t W> HWY_INLINE LaneMask same_side(const Lanes<W>& u, const Lanes<W>& v, const Lanes<W>& w) {
@@ -171,19 +160,14 @@ struct LaneIndices {
         for (auto& p : part) p = hn::Set(D(), value);
     }
     static HWY_INLINE LaneIndices load(const uint32_t* source) {
-        LaneIndices r;
         const hn::RebindToUnsigned<D> d;
-        for (size_t p = 0; p < Lanes16::kParts; ++p)
-            r.part[p] = hn::BitCast(D(), hn::LoadU(d, source + p * Lanes16::kLanes));
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::BitCast(D(), hn::LoadU(d, source + p * Lanes16::kLanes)));
     }
     HWY_INLINE void store(int32_t* aligned) const {
         for (size_t p = 0; p < Lanes16::kParts; ++p) hn::Store(part[p], D(), aligned + p * Lanes16::kLanes);
     }
     HWY_INLINE LaneIndices operator+(const LaneIndices& other) const {
-        LaneIndices r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::Add(part[p], other.part[p]);
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::Add(part[p], other.part[p]));
     }
     /// The bits of floats.
     HWY_INLINE explicit LaneIndices(const Lanes16& bits) {
@@ -191,34 +175,20 @@ struct LaneIndices {
     }
     /// From integer-valued floats.
     static HWY_INLINE LaneIndices convert(const Lanes16& whole) {
-        LaneIndices r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(D(), whole.part[p]);
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::ConvertTo(D(), whole.part[p]));
     }
-    HWY_INLINE Lanes16 bits() const {
-        Lanes16 r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::BitCast(Lanes16::D(), part[p]);
-        return r;
-    }
+    HWY_INLINE Lanes16 bits() const { RELIEF_RETURN_PARTS(Lanes16, hn::BitCast(Lanes16::D(), part[p])); }
     HWY_INLINE Lanes16 to_floats() const {
-        Lanes16 r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ConvertTo(Lanes16::D(), part[p]);
-        return r;
+        RELIEF_RETURN_PARTS(Lanes16, hn::ConvertTo(Lanes16::D(), part[p]));
     }
     template <int kBits> HWY_INLINE LaneIndices shifted_up() const {
-        LaneIndices r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftLeft<kBits>(part[p]);
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::ShiftLeft<kBits>(part[p]));
     }
     template <int kBits> HWY_INLINE LaneIndices shifted_down() const {
-        LaneIndices r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::ShiftRight<kBits>(part[p]);
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::ShiftRight<kBits>(part[p]));
     }
     HWY_INLINE LaneIndices masked(int32_t bits) const {
-        LaneIndices r;
-        for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = hn::And(part[p], hn::Set(D(), bits));
-        return r;
+        RELIEF_RETURN_PARTS(LaneIndices, hn::And(part[p], hn::Set(D(), bits)));
     }
 };
 
@@ -234,10 +204,7 @@ HWY_INLINE Lanes16 select_negative(const LaneIndices& number, const Lanes16& a, 
 
 /// Gathers base[index] in every lane.
 HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
-    Lanes16 r;
-    for (size_t p = 0; p < Lanes16::kParts; ++p)
-        r.part[p] = hn::GatherIndex(Lanes16::D(), base, index.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Lanes16, hn::GatherIndex(Lanes16::D(), base, index.part[p]));
 }
 
 /// Look-up table of kCount floats, eight or sixteen, indexed per lane: a permutation where two registers hold
@@ -253,9 +220,7 @@ template <size_t kCount> struct LaneTable {
     }
     HWY_INLINE Lanes16 pick(const LaneIndices& index) const {
         if constexpr (kIsInRegisters) {
-            Lanes16 r;
-            for (size_t p = 0; p < Lanes16::kParts; ++p) r.part[p] = look_up(*this, index.part[p]);
-            return r;
+            RELIEF_RETURN_PARTS(Lanes16, look_up(*this, index.part[p]));
         } else {
             return gather(stored, index);
         }

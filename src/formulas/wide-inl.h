@@ -23,9 +23,7 @@ struct Bool {
 
 #define RELIEF_WIDE_COMPARE(name, function)                                                                  \
     HWY_INLINE Bool name(const Float& a, const Float& b) {                                                   \
-        Bool r;                                                                                              \
-        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
-        return r;                                                                                            \
+        RELIEF_RETURN_PARTS(Bool, hn::function(a.part[p], b.part[p]));                                       \
     }
 RELIEF_WIDE_COMPARE(operator<, Lt)
 RELIEF_WIDE_COMPARE(operator<=, Le)
@@ -36,27 +34,19 @@ RELIEF_WIDE_COMPARE(operator==, Eq)
 
 /// Lanes with a nonzero value.
 HWY_INLINE Bool is_set(const float* aligned) {
-    Bool r;
     const Float value = Float::load(aligned), zero(0.0f);
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Ne(value.part[p], zero.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Bool, hn::Ne(value.part[p], zero.part[p]));
 }
 
 #define RELIEF_WIDE_LOGIC(name, function)                                                                    \
     HWY_INLINE Bool name(const Bool& a, const Bool& b) {                                                     \
-        Bool r;                                                                                              \
-        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
-        return r;                                                                                            \
+        RELIEF_RETURN_PARTS(Bool, hn::function(a.part[p], b.part[p]));                                       \
     }
 RELIEF_WIDE_LOGIC(operator&&, And)
 RELIEF_WIDE_LOGIC(operator||, Or)
 #undef RELIEF_WIDE_LOGIC
 
-HWY_INLINE Bool operator!(const Bool& a) {
-    Bool r;
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Not(a.part[p]);
-    return r;
-}
+HWY_INLINE Bool operator!(const Bool& a) { RELIEF_RETURN_PARTS(Bool, hn::Not(a.part[p])); }
 
 HWY_INLINE LaneMask to_mask(const Bool& b) {
     LaneMask bits = 0;
@@ -71,27 +61,18 @@ HWY_INLINE bool is_any(const Bool& b) {
 }
 
 HWY_INLINE Float select(const Bool& condition, const Float& a, const Float& b) {
-    Float r;
-    for (size_t p = 0; p < Float::kParts; ++p)
-        r.part[p] = hn::IfThenElse(condition.part[p], a.part[p], b.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Float, hn::IfThenElse(condition.part[p], a.part[p], b.part[p]));
 }
 
 #define RELIEF_WIDE_UNARY(name, function)                                                                    \
-    HWY_INLINE Float name(const Float& a) {                                                                  \
-        Float r;                                                                                             \
-        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p]);                      \
-        return r;                                                                                            \
-    }
+    HWY_INLINE Float name(const Float& a) { RELIEF_RETURN_PARTS(Float, hn::function(a.part[p])); }
 RELIEF_WIDE_UNARY(operator-, Neg)
 RELIEF_WIDE_UNARY(abs, Abs)
 RELIEF_WIDE_UNARY(sqrt, Sqrt)
 #undef RELIEF_WIDE_UNARY
 
 HWY_INLINE Float copy_sign(const Float& size, const Float& sign) {
-    Float r;
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::CopySign(size.part[p], sign.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Float, hn::CopySign(size.part[p], sign.part[p]));
 }
 
 // As in scalar.h: the first operand where neither is less, NaN included.
@@ -109,9 +90,7 @@ struct Uint {
         for (auto& p : part) p = hn::Set(D(), value);
     }
     static HWY_INLINE Uint load(const uint32_t* aligned) {
-        Uint r;
-        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Load(D(), aligned + p * Float::kLanes);
-        return r;
+        RELIEF_RETURN_PARTS(Uint, hn::Load(D(), aligned + p * Float::kLanes));
     }
     HWY_INLINE void store(uint32_t* aligned) const {
         for (size_t p = 0; p < Float::kParts; ++p) hn::Store(part[p], D(), aligned + p * Float::kLanes);
@@ -128,19 +107,14 @@ struct Uint {
     }
     /// For values below 2^31.
     HWY_INLINE explicit operator Float() const {
-        Float r;
-        for (size_t p = 0; p < Float::kParts; ++p)
-            r.part[p] = hn::ConvertTo(Float::D(), hn::BitCast(hn::RebindToSigned<D>(), part[p]));
-        return r;
+        RELIEF_RETURN_PARTS(Float, hn::ConvertTo(Float::D(), hn::BitCast(hn::RebindToSigned<D>(), part[p])));
     }
 };
 using uint = Uint;
 
 #define RELIEF_WIDE_UINT(name, assignment, function)                                                         \
     HWY_INLINE Uint name(const Uint& a, const Uint& b) {                                                     \
-        Uint r;                                                                                              \
-        for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::function(a.part[p], b.part[p]);           \
-        return r;                                                                                            \
+        RELIEF_RETURN_PARTS(Uint, hn::function(a.part[p], b.part[p]));                                       \
     }                                                                                                        \
     HWY_INLINE Uint& assignment(Uint& a, const Uint& b) { return a = name(a, b); }
 RELIEF_WIDE_UINT(operator+, operator+=, Add)
@@ -152,42 +126,28 @@ RELIEF_WIDE_UINT(operator|, operator|=, Or)
 #undef RELIEF_WIDE_UINT
 
 HWY_INLINE Uint operator<<(const Uint& a, uint32_t count) {
-    Uint r;
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftLeftSame(a.part[p], int(count));
-    return r;
+    RELIEF_RETURN_PARTS(Uint, hn::ShiftLeftSame(a.part[p], int(count)));
 }
 HWY_INLINE Uint operator>>(const Uint& a, uint32_t count) {
-    Uint r;
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::ShiftRightSame(a.part[p], int(count));
-    return r;
+    RELIEF_RETURN_PARTS(Uint, hn::ShiftRightSame(a.part[p], int(count)));
 }
 
 HWY_INLINE Uint min(const Uint& a, const Uint& b) {
-    Uint r;
-    for (size_t p = 0; p < Float::kParts; ++p) r.part[p] = hn::Min(a.part[p], b.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Uint, hn::Min(a.part[p], b.part[p]));
 }
 HWY_INLINE Uint select(const Bool& condition, const Uint& a, const Uint& b) {
-    Uint r;
-    for (size_t p = 0; p < Float::kParts; ++p)
-        r.part[p] = hn::IfThenElse(hn::RebindMask(Uint::D(), condition.part[p]), a.part[p], b.part[p]);
-    return r;
+    RELIEF_RETURN_PARTS(Uint,
+                        hn::IfThenElse(hn::RebindMask(Uint::D(), condition.part[p]), a.part[p], b.part[p]));
 }
 
 /// Gathers base[index] in every lane; indices below 2^31.
 HWY_INLINE Float gather(const float* base, const Uint& index) {
-    Float r;
-    for (size_t p = 0; p < Float::kParts; ++p)
-        r.part[p] =
-            hn::GatherIndex(Float::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
-    return r;
+    RELIEF_RETURN_PARTS(
+        Float, hn::GatherIndex(Float::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p])));
 }
 HWY_INLINE Uint gather(const uint32_t* base, const Uint& index) {
-    Uint r;
-    for (size_t p = 0; p < Float::kParts; ++p)
-        r.part[p] =
-            hn::GatherIndex(Uint::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p]));
-    return r;
+    RELIEF_RETURN_PARTS(
+        Uint, hn::GatherIndex(Uint::D(), base, hn::BitCast(hn::RebindToSigned<Uint::D>(), index.part[p])));
 }
 
 struct Vec2 {
