@@ -11,6 +11,7 @@
 #include "math/vec.h"
 #include "relief/convert.h"
 #include "relief/error.h"
+#include "scene/displacement_conventions.h"
 #include "surface/map/texels.h"
 
 namespace relief {
@@ -222,13 +223,7 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
     return result;
 }
 
-std::string format_map_axes(const AxisMap& axes, DisplacementSpace space) {
-    const char* letters = space == DisplacementSpace::tangent ? "tbn" : "xyz";
-    std::string text;
-    for (size_t c = 0; c < 3; ++c)
-        text += fmt::format("{}{}{}", c > 0 ? "," : "", axes.sign[c] < 0 ? "-" : "", letters[axes.axis[c]]);
-    return text;
-}
+std::string format_map_axes(const AxisMap& axes, DisplacementSpace space) { return format_axes(axes, space); }
 
 float find_largest_displacement(const Displacement& map) {
     float largest = 0;

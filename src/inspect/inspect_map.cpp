@@ -11,7 +11,7 @@
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
-#include "scene/displacement_conventions.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -86,7 +86,7 @@ std::string describe_looks(const MapStatistics& statistics, const MapConvention&
         text =
             convention.space.is_clear ? "tangent space, axes not clear" : "not clear from the values alone";
     } else {
-        text = fmt::format("{} space, axes {}, midlevel {:g}", get_name(space),
+        text = fmt::format("{} space, axes {}, midlevel {:g}", get_word(space),
                            format_map_axes(convention.axes.value, space), statistics.midlevel[0]);
         if (space == DisplacementSpace::tangent) {
             const std::string presets = list_presets(convention.axes.value);
@@ -116,8 +116,8 @@ void describe_convention(const Displacement& map, MapMeaning meaning, const MapS
     }
     facts.push_back({"space",
                      fmt::format("{}: {}",
-                                 convention.space.is_clear ? get_name(convention.space.value)
-                                                           : "tangent, unless told otherwise",
+                                 convention.space.is_clear ? get_word(convention.space.value)
+                                                           : std::string("tangent, unless told otherwise"),
                                  convention.space.reason),
                      {}});
     facts.push_back(

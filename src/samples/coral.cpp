@@ -87,12 +87,7 @@ class CoralSculptor {
 } // namespace
 
 Model make_coral() {
-    const LatheBody body(make_shape());
-    const CoralSculptor sculptor(body);
-    Model model = make_lathe_model("coral", body, DisplacementSpace::object,
-                                   [&](const BodyPoint& p) { return sculptor.sculpt(p); });
-    model.material.roughness = 0.5f;
-    return model;
+    return make_sculpted_model<CoralSculptor>("coral", make_shape(), DisplacementSpace::object, 0.5f);
 }
 
 } // namespace relief::samples

@@ -19,6 +19,17 @@ struct Sculpture {
 Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
                        const std::function<Sculpture(const BodyPoint&)>& sculpt);
 
+/// The same with a `Sculptor` made for the body.
+template <class Sculptor>
+Model make_sculpted_model(const std::string& name, const LatheShape& shape, DisplacementSpace space,
+                          float roughness) {
+    const LatheBody body(shape);
+    const Sculptor sculptor(body);
+    Model model = make_lathe_model(name, body, space, [&](const BodyPoint& p) { return sculptor.sculpt(p); });
+    model.material.roughness = roughness;
+    return model;
+}
+
 /// A displacement and a material of that name with one map each. `sample`: as of bake_maps.
 Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap, Texels texels,
                  const std::function<MapSample(Vec2f uv)>& sample);

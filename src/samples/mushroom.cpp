@@ -156,12 +156,7 @@ class MushroomSculptor {
 } // namespace
 
 Model make_mushroom() {
-    const LatheBody body(make_shape());
-    const MushroomSculptor sculptor(body);
-    Model model = make_lathe_model("mushroom", body, DisplacementSpace::tangent,
-                                   [&](const BodyPoint& p) { return sculptor.sculpt(p); });
-    model.material.roughness = 0.35f;
-    return model;
+    return make_sculpted_model<MushroomSculptor>("mushroom", make_shape(), DisplacementSpace::tangent, 0.35f);
 }
 
 } // namespace relief::samples

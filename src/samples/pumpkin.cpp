@@ -134,12 +134,7 @@ class PumpkinSculptor {
 } // namespace
 
 Model make_pumpkin() {
-    const LatheBody body(make_shape());
-    const PumpkinSculptor sculptor(body);
-    Model model = make_lathe_model("pumpkin", body, DisplacementSpace::object,
-                                   [&](const BodyPoint& p) { return sculptor.sculpt(p); });
-    model.material.roughness = 0.42f;
-    return model;
+    return make_sculpted_model<PumpkinSculptor>("pumpkin", make_shape(), DisplacementSpace::object, 0.42f);
 }
 
 } // namespace relief::samples

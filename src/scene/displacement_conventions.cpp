@@ -12,26 +12,6 @@ namespace relief {
 
 namespace {
 
-template <class Value> using NameTable = std::span<const std::pair<std::string_view, Value>>;
-
-constexpr std::array<std::pair<std::string_view, DisplacementType>, 2> kTypes = {
-    {{"vector", DisplacementType::vector}, {"height", DisplacementType::height}}};
-constexpr std::array<std::pair<std::string_view, DisplacementSpace>, 3> kSpaces = {
-    {{"tangent", DisplacementSpace::tangent},
-     {"object", DisplacementSpace::object},
-     {"world", DisplacementSpace::world}}};
-constexpr std::array<std::pair<std::string_view, MapFilter>, 2> kFilters = {
-    {{"none", MapFilter::none}, {"mip", MapFilter::mip}}};
-constexpr std::array<std::pair<std::string_view, WrapMode>, 4> kWraps = {{{"clamp", WrapMode::clamp},
-                                                                          {"repeat", WrapMode::repeat},
-                                                                          {"mirror", WrapMode::mirror},
-                                                                          {"black", WrapMode::black}}};
-constexpr std::array<std::pair<std::string_view, MapEncoding>, 2> kEncodings = {
-    {{"float", MapEncoding::as_stored}, {"signed", MapEncoding::from_unit}}};
-constexpr std::array<std::pair<std::string_view, FrameKind>, 3> kFrames = {
-    {{"mikk", FrameKind::mikk}, {"dpdu", FrameKind::dpdu}, {"file", FrameKind::file}}};
-constexpr std::array<std::pair<std::string_view, FrameLengths>, 2> kLengths = {
-    {{"absolute", FrameLengths::absolute}, {"relative", FrameLengths::relative}}};
 constexpr std::array<MapPreset, 10> kPresets = {{{"blender-brush", "t,b,n", {}},
                                                  {"genvdm", "t,b,n", {}},
                                                  {"3dcoat", "t,b,n", {}},
@@ -42,22 +22,6 @@ constexpr std::array<MapPreset, 10> kPresets = {{{"blender-brush", "t,b,n", {}},
                                                  {"arnold", "t,n,b", {}},
                                                  {"moonray", "t,n,b", {}},
                                                  {"daz16", "t,n,b", 0.5f}}};
-
-template <class Value> Value find_name(NameTable<Value> table, std::string_view text, const char* what) {
-    std::vector<std::string_view> names;
-    for (const auto& [name, value] : table) {
-        if (name == text) return value;
-        names.push_back(name);
-    }
-    throw Error(ErrorKind::bad_input,
-                {fmt::format("unknown {} '{}'", what, text), "", suggest_word(text, names)});
-}
-
-template <class Value> std::string_view find_value(NameTable<Value> table, Value wanted) {
-    for (const auto& [name, value] : table)
-        if (value == wanted) return name;
-    return {};
-}
 
 [[noreturn]] void fail_axes(std::string_view text) {
     throw Error(ErrorKind::bad_input, {fmt::format("'{}' is no order of axes", text), "",
@@ -92,44 +56,6 @@ const MapPreset& find_preset(std::string_view name) {
     throw Error(ErrorKind::bad_input,
                 {fmt::format("unknown preset '{}'", name), "", suggest_word(name, get_preset_names())});
 }
-
-DisplacementType parse_displacement_type(std::string_view text) {
-    return find_name(NameTable<DisplacementType>(kTypes), text, "type");
-}
-DisplacementSpace parse_displacement_space(std::string_view text) {
-    return find_name(NameTable<DisplacementSpace>(kSpaces), text, "space");
-}
-MapFilter parse_map_filter(std::string_view text) {
-    return find_name(NameTable<MapFilter>(kFilters), text, "filter");
-}
-
-WrapMode parse_wrap_mode(std::string_view text) {
-    return find_name(NameTable<WrapMode>(kWraps), text, "wrap");
-}
-std::string_view get_name(DisplacementType type) {
-    return find_value(NameTable<DisplacementType>(kTypes), type);
-}
-std::string_view get_name(DisplacementSpace space) {
-    return find_value(NameTable<DisplacementSpace>(kSpaces), space);
-}
-MapEncoding parse_encoding(std::string_view text) {
-    return find_name(NameTable<MapEncoding>(kEncodings), text, "encoding");
-}
-std::string_view get_name(MapEncoding encoding) {
-    return find_value(NameTable<MapEncoding>(kEncodings), encoding);
-}
-FrameKind parse_frame_kind(std::string_view text) {
-    return find_name(NameTable<FrameKind>(kFrames), text, "frame");
-}
-std::string_view get_name(FrameKind frame) { return find_value(NameTable<FrameKind>(kFrames), frame); }
-FrameLengths parse_frame_lengths(std::string_view text) {
-    return find_name(NameTable<FrameLengths>(kLengths), text, "lengths");
-}
-std::string_view get_name(FrameLengths lengths) {
-    return find_value(NameTable<FrameLengths>(kLengths), lengths);
-}
-std::string_view get_name(MapFilter filter) { return find_value(NameTable<MapFilter>(kFilters), filter); }
-std::string_view get_name(WrapMode wrap) { return find_value(NameTable<WrapMode>(kWraps), wrap); }
 
 AxisText parse_axes(std::string_view text) {
     AxisText result;

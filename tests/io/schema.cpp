@@ -13,6 +13,7 @@
 #include "io/scene/subdivision_json.h"
 #include "relief/scene.h"
 #include "scene/displacement_conventions.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -76,17 +77,20 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
 TEST(Schema, names_only_what_the_reader_takes) {
     const json schema = load_schema();
     const json& map = at(schema, "/properties/displacements/additionalProperties/properties");
-    for (const std::string name : map.at("type").at("enum")) EXPECT_NO_THROW(parse_displacement_type(name));
-    for (const std::string name : map.at("space").at("enum")) EXPECT_NO_THROW(parse_displacement_space(name));
-    for (const std::string name : map.at("wrap").at("enum")) EXPECT_NO_THROW(parse_wrap_mode(name));
-    for (const std::string name : map.at("encoding").at("enum")) EXPECT_NO_THROW(parse_encoding(name));
+    for (const std::string name : map.at("type").at("enum"))
+        EXPECT_NO_THROW(parse_word<DisplacementType>(name));
+    for (const std::string name : map.at("space").at("enum"))
+        EXPECT_NO_THROW(parse_word<DisplacementSpace>(name));
+    for (const std::string name : map.at("wrap").at("enum")) EXPECT_NO_THROW(parse_word<WrapMode>(name));
+    for (const std::string name : map.at("encoding").at("enum"))
+        EXPECT_NO_THROW(parse_word<MapEncoding>(name));
     const json& subdivision =
         at(schema, "/properties/meshes/additionalProperties/properties/subdivision/properties");
     for (const std::string name : subdivision.at("scheme").at("enum"))
-        EXPECT_NO_THROW(parse_subdivision_scheme(name));
-    for (const std::string name : subdivision.at("uv").at("enum")) EXPECT_NO_THROW(parse_uv_rule(name));
+        EXPECT_NO_THROW(parse_word<SubdivisionScheme>(name));
+    for (const std::string name : subdivision.at("uv").at("enum")) EXPECT_NO_THROW(parse_word<UvRule>(name));
     for (const std::string name : subdivision.at("boundary").at("enum"))
-        EXPECT_NO_THROW(parse_boundary_rule(name));
+        EXPECT_NO_THROW(parse_word<BoundaryRule>(name));
     const std::vector<std::string> presets = map.at("preset").at("enum");
     const std::span<const std::string_view> known = get_preset_names();
     EXPECT_EQ(Names(presets.begin(), presets.end()), make_names(known));

@@ -8,6 +8,8 @@
 #include "io/scene/tile_names.h"
 #include "math/vec.h"
 #include "relief/error.h"
+#include "scene/displacement_conventions.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -38,13 +40,13 @@ void decide_axes(const MapOptions& options, const MapPreset* preset, Displacemen
     std::optional<AxisText> axes;
     if (options.axes) axes = parse_axes(*options.axes);
     if (options.space)
-        map.space = parse_displacement_space(*options.space);
+        map.space = parse_word<DisplacementSpace>(*options.space);
     else if (axes && !axes->is_tangent)
         map.space = DisplacementSpace::object;
     const bool is_tangent = map.space == DisplacementSpace::tangent;
     if (axes && axes->is_tangent != is_tangent)
         throw Error(ErrorKind::bad_input,
-                    {fmt::format("axes '{}' do not fit {} space", *options.axes, get_name(map.space)), "",
+                    {fmt::format("axes '{}' do not fit {} space", *options.axes, get_word(map.space)), "",
                      "use t, b, n in tangent space and x, y, z in object or world space"});
     if (!axes && preset && is_tangent) axes = parse_axes(preset->axes);
     if (axes) map.axes = axes->axes;
@@ -52,7 +54,7 @@ void decide_axes(const MapOptions& options, const MapPreset* preset, Displacemen
 
 /// 0..1 that mean -1..1 are values around half the midlevel, twice as far apart.
 void apply_encoding(const MapOptions& options, Displacement& map) {
-    if (!options.encoding || parse_encoding(*options.encoding) == MapEncoding::as_stored) return;
+    if (!options.encoding || parse_word<MapEncoding>(*options.encoding) == MapEncoding::as_stored) return;
     map.midlevel = (map.midlevel + Vec3f{1, 1, 1}) * 0.5f;
     map.scale = map.scale * 2.0f;
 }
@@ -88,15 +90,15 @@ void complete_midlevel(const DisplacementRequest& request, Displacement& map, As
 Displacement make_displacement_values(const MapOptions& options) {
     Displacement map;
     const MapPreset* preset = options.preset.empty() ? nullptr : &find_preset(options.preset);
-    if (options.type) map.type = parse_displacement_type(*options.type);
+    if (options.type) map.type = parse_word<DisplacementType>(*options.type);
     decide_axes(options, preset, map);
-    if (options.frame) map.frame = parse_frame_kind(*options.frame);
-    if (options.lengths) map.lengths = parse_frame_lengths(*options.lengths);
-    if (options.wrap) map.wrap = parse_wrap_mode(*options.wrap);
+    if (options.frame) map.frame = parse_word<FrameKind>(*options.frame);
+    if (options.lengths) map.lengths = parse_word<FrameLengths>(*options.lengths);
+    if (options.wrap) map.wrap = parse_word<WrapMode>(*options.wrap);
     map.scale = options.scale.value_or(Vec3f{1, 1, 1});
     map.flip_v = options.flip_v;
     map.dilate = options.dilate;
-    if (options.filter) map.filter = parse_map_filter(*options.filter);
+    if (options.filter) map.filter = parse_word<MapFilter>(*options.filter);
     map.autobump = options.autobump;
     map.has_midlevel = options.midlevel.has_value();
     if (options.midlevel)

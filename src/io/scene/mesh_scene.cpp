@@ -7,9 +7,9 @@
 #include "io/scene/frame_scene.h"
 #include "io/scene/place_sky.h"
 #include "io/scene/scene_content.h"
-#include "io/scene/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -103,7 +103,7 @@ Mesh make_map_plane() {
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
     Scene scene = make_clay_scene(load_mesh(mesh, {.reader = options.reader}));
     Subdivision& subdivision = scene.meshes.front().subdivision;
-    if (options.subdivision) subdivision.scheme = parse_subdivision_scheme(*options.subdivision);
+    if (options.subdivision) subdivision.scheme = parse_word<SubdivisionScheme>(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     AssetCache assets("");
     if (!options.displacement_map.empty()) add_map(scene, options, assets);

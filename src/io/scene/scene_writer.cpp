@@ -12,6 +12,8 @@
 #include "io/scene/subdivision_json.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "scene/displacement_conventions.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -137,20 +139,20 @@ class SceneWriter {
         for (const Displacement& map : scene_.displacements) {
             displacement_names_.push_back(namer.make_unique(map.name));
             Json& node = root_["displacements"][displacement_names_.back()];
-            node["type"] = std::string(get_name(map.type));
+            node["type"] = get_word(map.type);
             node["file"] = add_displacement_maps(map, displacement_names_.back());
-            node["space"] = std::string(get_name(map.space));
+            node["space"] = get_word(map.space);
             node["axes"] = format_axes(map.axes, map.space);
-            node["frame"] = std::string(get_name(map.frame));
-            node["lengths"] = std::string(get_name(map.lengths));
+            node["frame"] = get_word(map.frame);
+            node["lengths"] = get_word(map.lengths);
             // Unsaid it is 0 of the floats that are written.
             if (map.has_midlevel || map.midlevel != Vec3f{}) node["midlevel"] = to_json(map.midlevel);
             node["scale"] = to_json(map.scale);
             node["flip_v"] = map.flip_v;
             node["dilate"] = map.dilate;
-            node["filter"] = std::string(get_name(map.filter));
+            node["filter"] = get_word(map.filter);
             node["autobump"] = map.autobump;
-            node["wrap"] = std::string(get_name(map.wrap));
+            node["wrap"] = get_word(map.wrap);
         }
     }
 

@@ -1,44 +1,16 @@
 #include "io/scene/subdivision_json.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "base/suggest.h"
 #include "io/scene/scene_keys.h"
+#include "scene/words.h"
 
 namespace relief {
 
 namespace {
-
-template <class Value, size_t N> using NameTable = std::array<std::pair<std::string_view, Value>, N>;
-
-constexpr NameTable<SubdivisionScheme, 3> kSchemes{{{"none", SubdivisionScheme::none},
-                                                    {"bilinear", SubdivisionScheme::bilinear},
-                                                    {"catmark", SubdivisionScheme::catmark}}};
-constexpr NameTable<UvRule, 2> kUvRules{{{"smooth", UvRule::smooth}, {"linear", UvRule::linear}}};
-constexpr NameTable<BoundaryRule, 2> kBoundaryRules{
-    {{"edge-only", BoundaryRule::edge_only}, {"edge-and-corner", BoundaryRule::edge_and_corner}}};
-
-template <class Value, size_t N>
-Value find_name(const NameTable<Value, N>& table, std::string_view text, const char* what) {
-    std::array<std::string_view, N> names;
-    for (size_t k = 0; k < N; ++k) {
-        if (table[k].first == text) return table[k].second;
-        names[k] = table[k].first;
-    }
-    throw Error(ErrorKind::bad_input,
-                {fmt::format("unknown {} '{}'", what, text), "", suggest_word(text, names)});
-}
-
-template <class Value, size_t N> std::string get_name(const NameTable<Value, N>& table, Value value) {
-    return std::string(std::find_if(table.begin(), table.end(), [&](const auto& entry) {
-                           return entry.second == value;
-                       })->first);
-}
 
 void add_crease(const JsonNode& node, Mesh& mesh) {
     const std::vector<JsonNode> values = node.elements();
@@ -62,34 +34,24 @@ void read_creases(const JsonNode& node, Mesh& mesh) {
 
 } // namespace
 
-SubdivisionScheme parse_subdivision_scheme(std::string_view text) {
-    return find_name(kSchemes, text, "subdivision scheme");
-}
-UvRule parse_uv_rule(std::string_view text) { return find_name(kUvRules, text, "rule for uvs"); }
-BoundaryRule parse_boundary_rule(std::string_view text) {
-    return find_name(kBoundaryRules, text, "rule for boundaries");
-}
-
 void read_subdivision(const JsonNode& node, Mesh& mesh) {
     if (node.is_string()) {
         const std::string scheme = node.as_string();
-        const bool is_known = std::any_of(kSchemes.begin(), kSchemes.end(),
-                                          [&](const auto& known) { return known.first == scheme; });
+        const auto& known = kWords<SubdivisionScheme>.words;
+        const bool is_known = std::find(known.begin(), known.end(), scheme) != known.end();
         node.fail("must be an object, not a string",
                   fmt::format(R"({{"scheme": "{}"}})", is_known ? scheme : "catmark"));
     }
     node.check_keys(scene_keys::kSubdivision);
-    const auto read_word = [&](const char* key, auto& value, auto parse) {
-        if (const auto found = node.find(key))
-            value = found->with_place([&] { return parse(found->as_string()); });
+    const auto read_word = [&]<class Value>(const JsonNode& word, Value& value) {
+        value = word.with_place([&] { return parse_word<Value>(word.as_string()); });
     };
     Subdivision& subdivision = mesh.subdivision;
-    const JsonNode scheme = node.get("scheme");
-    subdivision.scheme = scheme.with_place([&] { return parse_subdivision_scheme(scheme.as_string()); });
+    read_word(node.get("scheme"), subdivision.scheme);
     if (const auto level = node.find("level"))
         subdivision.level = int(level->as_integer(0, kMaxSubdivisionLevel));
-    read_word("uv", subdivision.uv, parse_uv_rule);
-    read_word("boundary", subdivision.boundary, parse_boundary_rule);
+    if (const auto uv = node.find("uv")) read_word(*uv, subdivision.uv);
+    if (const auto boundary = node.find("boundary")) read_word(*boundary, subdivision.boundary);
     if (const auto creases = node.find("creases")) read_creases(*creases, mesh);
 }
 
@@ -98,10 +60,10 @@ bool has_subdivision(const Mesh& mesh) { return !(mesh.subdivision == Subdivisio
 Json write_subdivision(const Mesh& mesh) {
     const Subdivision& subdivision = mesh.subdivision;
     Json node;
-    node["scheme"] = get_name(kSchemes, subdivision.scheme);
+    node["scheme"] = get_word(subdivision.scheme);
     node["level"] = subdivision.level;
-    node["uv"] = get_name(kUvRules, subdivision.uv);
-    node["boundary"] = get_name(kBoundaryRules, subdivision.boundary);
+    node["uv"] = get_word(subdivision.uv);
+    node["boundary"] = get_word(subdivision.boundary);
     if (subdivision.creases == CreaseRule::ignore) node["creases"] = false; // the mesh file has them
     return node;
 }

@@ -1,17 +1,10 @@
-// The key "subdivision" of a mesh in a scene file, and its words on the command line.
+// The key "subdivision" of a mesh in a scene file.
 #pragma once
-
-#include <string_view>
 
 #include "io/scene/json_node.h"
 #include "relief/scene.h"
 
 namespace relief {
-
-/// Throw bad_input with a suggestion for an unknown word.
-SubdivisionScheme parse_subdivision_scheme(std::string_view text);
-UvRule parse_uv_rule(std::string_view text);
-BoundaryRule parse_boundary_rule(std::string_view text);
 
 /// Sets `mesh.subdivision`; creases listed in the file are added to those that the mesh has.
 void read_subdivision(const JsonNode& node, Mesh& mesh);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,25 +38,11 @@ std::vector<uint8_t> mark_degenerate(const Polygons& polygons) {
     return marks;
 }
 
-/// First point at the same position, so that faces that share an edge have the same numbers for it.
-std::vector<uint32_t> number_positions(const std::vector<Vec3f>& positions) {
-    std::vector<uint32_t> order(positions.size()), numbers(positions.size());
-    for (uint32_t k = 0; k < order.size(); ++k) order[k] = k;
-    const auto key = [&](uint32_t k) {
-        return std::tuple(positions[k].x, positions[k].y, positions[k].z, k);
-    };
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-    for (size_t k = 0; k < order.size(); ++k)
-        numbers[order[k]] =
-            k > 0 && positions[order[k]] == positions[order[k - 1]] ? numbers[order[k - 1]] : order[k];
-    return numbers;
-}
-
 /// Decides which corners of dropped faces go into edges of faces that stay.
 class Splicer {
   public:
     Splicer(const Polygons& polygons, const std::vector<uint8_t>& is_dropped)
-        : polygons_(polygons), numbers_(number_positions(polygons.positions)) {
+        : polygons_(polygons), numbers_(find_equal_points(polygons.positions)) {
         for (uint32_t face = 0; face < polygons.face_count(); ++face)
             for (uint32_t k = 0; !is_dropped[face] && k < polygons.face_size(face); ++k)
                 corner_of_edge_.try_emplace(get_edge(face, k), polygons.starts[face] + k);

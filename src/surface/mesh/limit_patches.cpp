@@ -17,13 +17,6 @@ constexpr int kFitPasses = 12;
 constexpr double kSmallestSine = 0.1;
 constexpr double kNearby = 1.0 / 16; // of a cell
 
-Vec3f to_float(const Vec3d& p) { return {float(p.x), float(p.y), float(p.z)}; }
-
-Vec3d make_unit(const Vec3d& v) {
-    const double size = std::sqrt(dot(v, v));
-    return size > 0 ? v * (1 / size) : Vec3d{};
-}
-
 /// Bernstein polynomials of degree 3.
 std::array<double, 4> weigh(double s) {
     const double r = 1 - s;
@@ -162,10 +155,10 @@ class Cell {
         const Vec3d normal = cross(sample.du, sample.dv);
         const double product = std::sqrt(dot(sample.du, sample.du) * dot(sample.dv, sample.dv));
         if (is_regular_[k] || std::sqrt(dot(normal, normal)) > kSmallestSine * product)
-            return make_unit(normal);
+            return normalize_double(normal);
         const LimitSample inside =
             evaluate(k == 1 || k == 2 ? 1 - kNearby : kNearby, k >= 2 ? 1 - kNearby : kNearby);
-        return make_unit(cross(inside.du, inside.dv));
+        return normalize_double(cross(inside.du, inside.dv));
     }
 
     /// Moves a control point beside corner k into the tangent plane, so that irregular patches join smoothly.

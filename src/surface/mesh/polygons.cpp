@@ -37,18 +37,14 @@ void check_counts(const Mesh& mesh, const std::string& where) {
         throw Error(ErrorKind::bad_input, {"mesh has no faces", where, "export it with polygons"});
     size_t corner_count = 0;
     for (const uint32_t size : mesh.face_sizes) corner_count += size;
-    if (corner_count != mesh.position_indices.size())
-        fail(fmt::format("faces have {} corners, but there are {} position indices", corner_count,
-                         mesh.position_indices.size()));
-    if (!mesh.uv_indices.empty() && mesh.uv_indices.size() != corner_count)
-        fail(fmt::format("faces have {} corners, but there are {} uv indices", corner_count,
-                         mesh.uv_indices.size()));
-    if (!mesh.normal_indices.empty() && mesh.normal_indices.size() != corner_count)
-        fail(fmt::format("faces have {} corners, but there are {} normal indices", corner_count,
-                         mesh.normal_indices.size()));
-    if (!mesh.tangents.empty() && mesh.tangents.size() != corner_count)
-        fail(fmt::format("faces have {} corners, but there are {} tangents", corner_count,
-                         mesh.tangents.size()));
+    const auto check = [&](size_t count, const char* what) {
+        if (count != corner_count)
+            fail(fmt::format("faces have {} corners, but there are {} {}", corner_count, count, what));
+    };
+    check(mesh.position_indices.size(), "position indices");
+    if (!mesh.uv_indices.empty()) check(mesh.uv_indices.size(), "uv indices");
+    if (!mesh.normal_indices.empty()) check(mesh.normal_indices.size(), "normal indices");
+    if (!mesh.tangents.empty()) check(mesh.tangents.size(), "tangents");
     if (corner_count >= size_t(kNoIndex) / 8) fail("mesh has too many corners");
 }
 
@@ -93,22 +89,13 @@ void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t 
 
 struct PositionHash {
     size_t operator()(const Vec3f& p) const {
-        uint64_t hash = std::bit_cast<uint32_t>(p.x) | uint64_t(std::bit_cast<uint32_t>(p.y)) << 32;
-        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + std::bit_cast<uint32_t>(p.z);
+        const auto bits = [](float x) { return std::bit_cast<uint32_t>(x + 0.0f); }; // no -0
+        uint64_t hash = bits(p.x) | uint64_t(bits(p.y)) << 32;
+        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + bits(p.z);
         hash = (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
         return size_t(hash ^ hash >> 32);
     }
 };
-
-/// First point at the same position, for each point.
-std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
-    std::unordered_map<Vec3f, uint32_t, PositionHash> first_at;
-    first_at.reserve(positions.size());
-    std::vector<uint32_t> result(positions.size());
-    for (uint32_t k = 0; k < positions.size(); ++k)
-        result[k] = first_at.try_emplace(positions[k], k).first->second;
-    return result;
-}
 
 /// Creases between the points of the polygons; those between points that have become one are gone.
 std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
@@ -144,6 +131,15 @@ template <class Corner> Vec3<double> sum_newell(uint32_t size, const Corner& cor
 }
 
 } // namespace
+
+std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
+    std::unordered_map<Vec3f, uint32_t, PositionHash> first_at;
+    first_at.reserve(positions.size());
+    std::vector<uint32_t> result(positions.size());
+    for (uint32_t k = 0; k < positions.size(); ++k)
+        result[k] = first_at.try_emplace(positions[k], k).first->second;
+    return result;
+}
 
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
     const uint32_t start = polygons.starts[face];

@@ -38,6 +38,9 @@ enum class Welding {
 /// range, a value that is not finite or beyond 1e18, and where no face is left.
 Polygons make_polygons(const Mesh& mesh, Welding welding);
 
+/// First point at the same position, for each point.
+std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions);
+
 /// One linear Catmull-Clark step (Catmull and Clark 1978, without the smoothing): every face becomes one quad
 /// a corner, from the corner to the middle of its next edge, the middle of the face and the middle of its
 /// previous edge. Uvs, normals and tangents are interpolated.

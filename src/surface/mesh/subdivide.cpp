@@ -92,8 +92,6 @@ Vec3f normalize_sum(const Vec3d& sum) {
     return {float(sum.x / size), float(sum.y / size), float(sum.z / size)};
 }
 
-Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 /// Means of the corners' normals, by side and by point.
 void join_normals(const RefinedMesh& refined, const LimitPatches& patches, SmoothBase& base) {
     const PointCorners around = find_corners(refined);

@@ -142,8 +142,6 @@ using BlendedUv = Blended<Vec2<double>>;
 using BlendedPoint = Blended<Vec3d>;
 
 Vec3d read(const double* p) { return {p[0], p[1], p[2]}; }
-Vec3f to_float(const Vec3d& p) { return {float(p.x), float(p.y), float(p.z)}; }
-
 bool is_semi_sharp(float sharpness) { return sharpness > 0 && sharpness < kInfiniteSharpness; }
 
 /// True where the quads around a point are bicubic on each side of what stays sharp.
@@ -183,11 +181,6 @@ bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
     for (const int edge : level.GetVertexEdges(point))
         if (level.GetEdgeSharpness(edge) > 0) return false;
     return true;
-}
-
-Vec3d make_unit(const Vec3d& v) {
-    const double size = std::sqrt(dot(v, v));
-    return size > 0 ? v * (1 / size) : Vec3d{};
 }
 
 /// Cell (i, j) of a face or part, and its axes.
@@ -373,17 +366,27 @@ std::vector<QuadPlace> SubdivisionMesh::Implementation::find_places() const {
     return places;
 }
 
-std::vector<BlendedUv> SubdivisionMesh::Implementation::refine_uvs() const {
-    const osd::Far::PrimvarRefinerReal<double> values(*refiner);
-    std::vector<BlendedUv> current;
-    for (const Vec2f& uv : uvs.values) current.push_back({{uv.x, uv.y}});
-    for (int step = 1; step <= level; ++step) {
-        std::vector<BlendedUv> next(size_t(refiner->GetLevel(step).GetNumFVarValues()));
-        values.InterpolateFaceVarying(step, current, next);
-        current = std::move(next);
+/// Values of level 0 carried to `level`; `count` and `step` are of one level.
+template <class Value, class Count, class Step>
+std::vector<Blended<Value>> refine_values(std::vector<Blended<Value>> values, int level, const Count& count,
+                                          const Step& step) {
+    for (int k = 1; k <= level; ++k) {
+        std::vector<Blended<Value>> next(size_t(count(k)));
+        step(k, values, next);
+        values = std::move(next);
     }
-    std::vector<BlendedUv> limit(current.size());
-    values.LimitFaceVarying(current, limit);
+    return values;
+}
+
+std::vector<BlendedUv> SubdivisionMesh::Implementation::refine_uvs() const {
+    const osd::Far::PrimvarRefinerReal<double> primvars(*refiner);
+    std::vector<BlendedUv> base;
+    for (const Vec2f& uv : uvs.values) base.push_back({{uv.x, uv.y}});
+    const std::vector<BlendedUv> refined = refine_values(
+        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumFVarValues(); },
+        [&](int k, const auto& from, auto& to) { primvars.InterpolateFaceVarying(k, from, to); });
+    std::vector<BlendedUv> limit(refined.size());
+    primvars.LimitFaceVarying(refined, limit);
     return limit;
 }
 
@@ -409,15 +412,12 @@ void SubdivisionMesh::Implementation::copy_quads(RefinedMesh& refined) const {
 }
 
 std::vector<BlendedPoint> SubdivisionMesh::Implementation::refine_points() const {
-    const osd::Far::PrimvarRefinerReal<double> values(*refiner);
-    std::vector<BlendedPoint> current;
-    for (size_t k = 0; k < positions.size(); k += 3) current.push_back({read(&positions[k])});
-    for (int step = 1; step <= level; ++step) {
-        std::vector<BlendedPoint> next(size_t(refiner->GetLevel(step).GetNumVertices()));
-        values.Interpolate(step, current, next);
-        current = std::move(next);
-    }
-    return current;
+    const osd::Far::PrimvarRefinerReal<double> primvars(*refiner);
+    std::vector<BlendedPoint> base;
+    for (size_t k = 0; k < positions.size(); k += 3) base.push_back({read(&positions[k])});
+    return refine_values(
+        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumVertices(); },
+        [&](int k, const auto& from, auto& to) { primvars.Interpolate(k, from, to); });
 }
 
 /// The surface of a face is isolated to some depth only, which its normals at irregular points show.
@@ -430,7 +430,7 @@ SubdivisionMesh::Implementation::find_limit_normals(const std::vector<bool>& is_
     std::vector<Vec3d> normals(points.size());
     for (size_t point = 0; point < points.size(); ++point)
         if (!is_regular[point] && is_smooth_point(last, int(point)))
-            normals[point] = make_unit(cross(first[point].value, second[point].value));
+            normals[point] = normalize_double(cross(first[point].value, second[point].value));
     return normals;
 }
 

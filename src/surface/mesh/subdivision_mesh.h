@@ -7,11 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "math/vec_double.h"
 #include "surface/mesh/polygons.h"
 
 namespace relief {
-
-using Vec3d = Vec3<double>;
 
 /// Where a quad lies: corners on a face of the mesh, or on a polygon's part beside its corner `part`.
 struct QuadPlace {
