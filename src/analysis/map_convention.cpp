@@ -94,8 +94,7 @@ void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics
     if (!map.is_udim && statistics.bad_count == 0) guess_order_on_plane(map, normal, result);
 }
 
-/// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
-/// normal, not its sign: that is taken from a mean which is far to one side.
+/// Only the right channel order closes the seams in tangent space; the sign comes from a one-sided mean.
 void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& statistics,
                      MapConvention& result) {
     std::array<double, 3> gaps{1e9, 1e9, 1e9};

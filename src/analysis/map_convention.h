@@ -33,9 +33,8 @@ bool agrees_on_axes(const MapConvention& convention, const Displacement& map);
 /// Which space the uv seams speak for; nothing where they do not tell.
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams);
 
-/// Share of places where the surface faces away from its base: on its mesh, or on a plane 2 units wide.
-/// Nothing where that is unknown: a map with tiles or in object space without a mesh, or a mesh that does not
-/// fit.
+/// Share of places where the surface faces away from its base: its mesh, or a plane 2 units wide. Nothing
+/// where unknown: tiles or object space without a mesh, or a mesh that does not fit.
 std::optional<double> measure_fold_share(const Displacement& map, const Mesh* mesh);
 
 /// The presets that write such a map, for people: "blender-brush, genvdm"; empty: none.

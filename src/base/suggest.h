@@ -8,9 +8,8 @@
 
 namespace relief {
 
-/// "did you mean 'roughness'?" for a word within a third of its length (at least one edit) of a known one, or
-/// for a prefix of three letters or more of only one word; otherwise "known: a, b, c" for a short list, else
-/// empty. Distance: Damerau-Levenshtein (Damerau 1964). Lives in relief_io.
+/// "did you mean 'roughness'?" for the known word within a third of its length (Damerau 1964), or the only
+/// one with this prefix of three letters; otherwise "known: a, b, c" for a short list, else empty.
 std::string suggest_word(std::string_view word, std::span<const std::string_view> known);
 
 /// Insertions, deletions, replaced letters and exchanges of neighbours that make one word of the other.

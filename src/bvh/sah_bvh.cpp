@@ -27,9 +27,8 @@ constexpr uint32_t kParallelCount = 4096;
 /// Small sets are swept even by the binned method: exact, and cheaper than clearing the bins.
 constexpr uint32_t kSmallCount = 8;
 
-/// A subtree: primitives [begin, end) and the node slots that only it may use. A tree over n primitives has
-/// at most 2n - 1 nodes, hence ranges of slots can be handed out before it is known how many leaves there
-/// will be, and the layout does not depend on which thread builds what.
+/// A subtree: primitives [begin, end) and the node slots reserved for it. n primitives need at most 2n - 1
+/// nodes, so slots are assigned in advance and the layout is independent of the threads.
 struct Subtree {
     uint32_t begin;
     uint32_t end;

@@ -1,5 +1,4 @@
-// The way back through frames, also nearly collapsed ones: frames are blended between corners, and where
-// opposite tangents meet, no (t, b, n) of sensible size reaches some directions.
+// Inverse of frames, also nearly singular ones, as blends between opposite tangents are.
 #pragma once
 
 #include "convert/texel_frames.h"

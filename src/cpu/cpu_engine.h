@@ -8,8 +8,7 @@
 
 namespace relief {
 
-/// `walk` takes the place of the engine's own traversal of the scene, unless it is null. Throws
-/// Error{device_missing} for an instruction set that this machine lacks.
+/// `walk` replaces the default traversal. Throws Error{device_missing} for a missing instruction set.
 std::unique_ptr<Engine> make_cpu_engine(std::shared_ptr<const PreparedScene> scene,
                                         const RenderSettings& settings,
                                         std::unique_ptr<const cpu::SceneWalk> walk = nullptr);

@@ -8,8 +8,7 @@ namespace relief::cpu {
 
 namespace {
 
-/// How much wider than they are boxes are taken, in voxels: far above what rounding does to the place of a
-/// ray, whose entry is found in doubles and whose way through the grid is short.
+/// Margin of boxes in voxels, far above the rounding errors of a ray's path through the grid.
 constexpr double kMargin = 0.02;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 

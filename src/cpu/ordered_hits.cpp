@@ -78,8 +78,7 @@ size_t count_bytes(const SceneView& scene, const OrderedPairs& pairs) {
     return bytes;
 }
 
-/// Patches are met by several workers at once, and a ray by one at a time: hits at one distance are in an
-/// order that does not depend on which came first.
+/// Several workers meet patches at once: ties in distance are broken independently of their order.
 class RayLocks {
   public:
     explicit RayLocks(size_t count) : is_taken_(count) {}

@@ -34,8 +34,7 @@ class SceneTreeHolder {
     /// After rays have been traced. Thread safe.
     void count_rays(size_t rays) { rays_to_come_.fetch_sub(int64_t(rays), std::memory_order_relaxed); }
 
-    /// Makes the trees anew if that pays by now; once. Between batches, so that what is counted in them does
-    /// not depend on the order of threads. Thread safe.
+    /// Rebuilds the trees once if that pays; between batches, to be deterministic. Thread safe.
     void rebuild_if_worthwhile();
 
     /// As Engine::apply_changes: not while rays are traced. Adds boxes of what changed, world space.

@@ -24,8 +24,7 @@ struct TraceRay {
     uint32_t lod_bias = 0; ///< surface M_bias is seen: every level lowered by it
 };
 
-/// Where a ray met the surface. `i`, `j` is the cell at the patch's biased level, `is_upper` its second
-/// triangle (corners 00, 11, 01; the first is 00, 10, 11).
+/// Where a ray hit the surface; `i`, `j`: the cell at the biased level, `is_upper`: triangle 00, 11, 01.
 struct TraceHit {
     float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing
     uint32_t instance = kNoIndex;
@@ -61,8 +60,7 @@ struct PointScratch {
     std::vector<uint32_t> order;
 };
 
-/// Immutable after construction apart from the bottom-tree cache and the scene trees, which take care of
-/// themselves, and from `apply_changes`. Thread safe but for that.
+/// Immutable but for `apply_changes` and the caches of trees. Thread safe but for `apply_changes`.
 class Tracer {
   public:
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
@@ -77,9 +75,8 @@ class Tracer {
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 
-    /// While this lives, rays end with StopRequest (cpu/patch_trees/patch_tree_cache.h) before the next tree
-    /// that they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes
-    /// its time. Any worker asks. To be made and ended while nothing is traced.
+    /// While this lives, rays end with StopRequest before the next patch tree once `is_asked_for` is true. To
+    /// be made and ended while nothing is traced.
     class StopScope {
       public:
         StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);
@@ -91,8 +88,7 @@ class Tracer {
         const Tracer& tracer_;
     };
 
-    /// The box of all that has a displacement, world space; empty where apply_changes() would be false. It
-    /// may become smaller with rebuild_if_worthwhile().
+    /// World-space box of all that is displaced; empty if apply_changes() would return false.
     Box displaced_bounds() const;
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as
@@ -128,8 +124,7 @@ class Tracer {
     /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const;
 
-    /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
-    /// along the geometric normal, to the side that the direction is on.
+    /// Origin for a ray from `point`: moved off the surface by point.position_error, to the ray's side.
     Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
 
     void add_statistics(Statistics& statistics) const;

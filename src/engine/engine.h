@@ -19,8 +19,7 @@ class Engine {
     /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
     virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
 
-    /// Adds samples [settings.image.first_sample, + spp) of every pixel of the film's window. Returns false
-    /// when the observer cancelled; the film then holds what was done.
+    /// Adds `spp` samples from first_sample to the film's window. False if the observer cancelled.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
     /// apply_changes() and refresh() will be called: whatever makes them cheaper may cost a little.
@@ -37,8 +36,7 @@ class Engine {
     virtual void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const = 0;
     virtual void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const = 0;
 
-    /// Adds what the engine counted: rays, pairs, patch trees, stage times, bytes, device and isa. What
-    /// render() took to make itself ready moves from render_s to prepare_s.
+    /// Adds the engine's counters. What render() spent on setup moves from render_s to prepare_s.
     virtual void add_statistics(Statistics& statistics) const = 0;
 };
 

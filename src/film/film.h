@@ -34,8 +34,7 @@ struct FilmSums {
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
 };
 
-/// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
-/// order. Different pixels may be fed at the same time.
+/// Accumulates in the order of calls: one thread per pixel at a time, samples in rising order.
 class Film {
   public:
     /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one,

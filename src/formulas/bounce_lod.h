@@ -8,8 +8,7 @@
 
 const uint kBounceBias = 3u; ///< LOD bias of the far part of a bounce ray
 
-/// Width, at distance 1, of the cone of a ray whose direction has density 1 per steradian: much less than
-/// that of one sample, 1, as all samples of a pixel together see finer.
+/// Width at distance 1 of a ray cone with density 1 per steradian; a pixel's samples together see finer.
 const float kBounceCone = 0.0625f;
 
 /// Automatic levels: cells as wide as pixels are at their distance from the camera.

@@ -1,7 +1,5 @@
-// Metallic-roughness surface in the local frame (shading normal = z): a GGX lobe over a diffuse base, both
-// energy conserving. Microfacets: Walter et al. 2007 with height-correlated Smith shadowing (Heitz 2014).
-// Multiple-scattering compensation and coupling of coat and base: Kulla and Conty 2017, Revisiting Physically
-// Based Shading; both are reciprocal, and a white surface reflects all light.
+// Metallic-roughness surface, local frame: GGX lobe over a diffuse base. Microfacets: Walter et al. 2007,
+// height-correlated Smith shadowing (Heitz 2014). Multiple scattering and coat: Kulla and Conty 2017.
 #if !defined(RELIEF_BSDF_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_BSDF_H
@@ -53,8 +51,7 @@ FN Vec3 make_grey(Float value) {
 
 FN Float luminance(Vec3 c) { return Float(0.2126f) * c.x + Float(0.7152f) * c.y + Float(0.0722f) * c.z; }
 
-/// Fraction of light that leaves after multiple scattering between microfacets, for average Fresnel f (Hill
-/// 2018, A Multi-Faceted Exploration, part 2): f^2 E / (1 - f (1 - E)).
+/// Light that leaves after multiple scattering (Hill 2018, part 2): f^2 E / (1 - f (1 - E)).
 FN Float multiple_scattering(Float f, Float average_albedo) {
     return f * f * average_albedo / (Float(1.0f) - f * (Float(1.0f) - average_albedo));
 }
@@ -208,8 +205,7 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     return result;
 }
 
-/// Reflection of `wo` at a microfacet normal sampled from the visible normals (Dupuy and Benyoub 2023,
-/// Sampling Visible GGX Normals with Spherical Caps).
+/// Reflection of `wo` at a visible microfacet normal (Dupuy and Benyoub 2023, spherical caps).
 FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
     Vec3 stretched = {alpha * wo.x, alpha * wo.y, wo.z};
     Vec3 o = normalize(stretched);

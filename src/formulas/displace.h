@@ -35,8 +35,7 @@ FN CubicWeights weigh_cubic(Float s) {
     return weights;
 }
 
-/// Point of the cubic curve with control points p0 p1 p2 p3 (Bezier form), the same from either end. A
-/// bicubic patch is blended along v first, column by column, then along u.
+/// Point of a cubic Bezier curve, the same from either end. Patches: along v by columns, then along u.
 FN Float blend_cubic(Float p0, Float p1, Float p2, Float p3, CubicWeights weights) {
     EXACT Float ends = p0 * weights.first + p3 * weights.fourth;
     EXACT Float inner = p1 * weights.second + p2 * weights.third;

@@ -1,5 +1,4 @@
-// Environment light: a latitude-longitude image, importance-sampled by a piecewise constant density (Pharr,
-// Jakob and Humphreys 2023, Physically Based Rendering, section 12.5.2).
+// Latitude-longitude environment light, importance-sampled piecewise constantly (PBRT 4, section 12.5.2).
 #if !defined(RELIEF_ENVIRONMENT_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_ENVIRONMENT_H

@@ -1,5 +1,4 @@
-// Vector arithmetic in which every operation rounds once, in a fixed order, in C++ and GLSL alike. Everything
-// that determines surface positions uses it.
+// Vector arithmetic that rounds once per operation in a fixed order; for all surface positions.
 #ifndef RELIEF_EXACT_H
 #define RELIEF_EXACT_H
 #include "formulas/begin.h"

@@ -53,8 +53,7 @@ template <size_t kWidth> struct Lanes {
         for (size_t p = 0; p < kParts; ++p)
             hn::LoadInterleaved2(D(), source + 2 * p * kLanes, first.part[p], second.part[p]);
     }
-    /// origin + code * scale for the codes of a quantised box. The scale is a power of two, so the products
-    /// are exact and a fused multiply-add gives the same bits.
+    /// origin + code * scale of a quantised box. The scale is a power of two: exact, fused or not.
     static HWY_INLINE Lanes decode(const uint8_t* codes, float origin, float scale) {
         const hn::Rebind<uint8_t, D> d8;
         const hn::Rebind<int32_t, D> d32;
@@ -207,8 +206,7 @@ HWY_INLINE Lanes16 gather(const float* base, const LaneIndices& index) {
     RELIEF_RETURN_PARTS(Lanes16, hn::GatherIndex(Lanes16::D(), base, index.part[p]));
 }
 
-/// Look-up table of kCount floats, eight or sixteen, indexed per lane: a permutation where two registers hold
-/// the table, else a gather, which is slower.
+/// Table of kCount floats (8 or 16), indexed per lane: a permutation if two registers hold it, else a gather.
 template <size_t kCount> struct LaneTable {
     using Values = Lanes<kCount>;
     static constexpr bool kIsInRegisters = Lanes16::kLanes >= 8;

@@ -19,8 +19,7 @@ FN uint lower_packed_levels(uint packed, uint lod_bias) {
 /// The same level for a patch and its edges.
 FN uint pack_uniform_level(uint level) { return level * 0x11111u; }
 
-/// Index of an edge sample, from the start of its line, snapped to the nearest sample of the edge's level,
-/// which is `shift` below the patch's (ties: the later one).
+/// Index of an edge sample, snapped to the nearest of the edge's level, `shift` below (ties: later).
 FN uint move_line_sample(uint k, uint shift) { return (k + ((1u << shift) >> 1u)) >> shift << shift; }
 
 /// Edge, 0 to 3, that sample (i, j) of 2^level cells per side lies on; 4 for interior samples and corners.

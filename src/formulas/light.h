@@ -3,8 +3,7 @@
 #define RELIEF_LIGHT_H
 #include "formulas/begin.h"
 
-/// MIS weight of the technique with density a against one with density b (Veach 1997, power heuristic with
-/// exponent 2). Infinite a (a delta light) gives 1.
+/// MIS weight of density a against b (Veach 1997, power heuristic, exponent 2); infinite a gives 1.
 FN float power_heuristic(float a, float b) {
     float ratio = b / a;
     return a > 0.0f ? 1.0f / (1.0f + ratio * ratio) : 0.0f;
@@ -18,8 +17,7 @@ FN float sphere_cone_height(float radius, float distance) {
     return distance > radius ? s2 / (1.0f + sqrt(max(0.0f, 1.0f - s2))) : 2.0f;
 }
 
-/// Distance along the unit vector d from a point to a sphere whose centre is at `center` from it: where the
-/// ray enters, or leaves from inside; negative for a miss.
+/// Distance along the unit vector d to a sphere centred at `center`; negative for a miss.
 FN float sphere_distance(Vec3 center, float radius, Vec3 d) {
     float along = dot(center, d);
     Vec3 across = center - d * along;

@@ -1,5 +1,4 @@
-// Morton codes of 30 and 63 bits: x is the most significant of each triple, so bit p belongs to axis 2 - p
-// mod 3. All devices and the host round these operations alike.
+// Morton codes of 30 and 63 bits, x most significant: bit p belongs to axis 2 - p mod 3.
 #ifndef RELIEF_MORTON_H
 #define RELIEF_MORTON_H
 #include "formulas/begin.h"

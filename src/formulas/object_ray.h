@@ -5,8 +5,7 @@
 
 #include "formulas/begin.h"
 
-/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), with room for division errors of 2.5 ulp, as
-/// Vulkan allows; also the slack of a triangle's own t.
+/// (1 + 2 gamma(3)) of Ize 2013 (Robust BVH Ray Traversal), with room for Vulkan's 2.5 ulp.
 const float kBoxSlack = 1.0000015f;
 
 /// Smaller components of a direction (2^-120) count as zero in box tests.
@@ -97,8 +96,7 @@ struct TriangleHit {
     float weight_b, weight_c;
 };
 
-/// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
-/// as inside. Fused operations would break this.
+/// `a`, `b`, `c`: sheared corners. Edge functions never have the wrong sign unless operations are fused.
 FN TriangleHit intersect_sheared(ObjectRay ray, Vec3 a, Vec3 b, Vec3 c, float t_min, float t_max) {
     EXACT float u = c.x * b.y - c.y * b.x;
     EXACT float v = a.x * c.y - a.y * c.x;

@@ -1,5 +1,4 @@
-// Octahedral unit vectors (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit
-// Vectors).
+// Octahedral unit vectors (Cigolle et al. 2014, A Survey of Efficient Representations).
 #if !defined(RELIEF_OCTAHEDRON_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_OCTAHEDRON_H

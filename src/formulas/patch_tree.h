@@ -46,8 +46,7 @@ FN uint make_order_mask(bool is_u_backward, bool is_v_backward) {
     return (is_u_backward ? 0x155u : 0u) | (is_v_backward ? 0x2aau : 0u);
 }
 
-// Requirements of all rays on a tree, ORed together: bits 0..5 the levels, then five bits per edge, one for
-// each number of levels that the edge is coarser than the patch.
+// Requirements of all rays, ORed: bits 0..5 levels, then five bits an edge, one per level it is coarser.
 FN uint make_need(uint level, uint field_levels) {
     uint own = packed_patch_level(field_levels);
     uint need = 1u << level;

@@ -12,8 +12,7 @@ struct PixelPlace {
     uint x, y;
 };
 
-/// Pixel `index` of a window in the order of squares: bands of rows, squares in a band, rows in a square;
-/// squares at the right and lower border are clipped.
+/// Pixel `index` of a window: bands of rows, squares in a band, rows in a square, clipped at the border.
 FN PixelPlace place_pixel(uint index, uint width, uint height) {
     uint band = index / (kPixelSquare * width);
     uint in_band = index - band * kPixelSquare * width;

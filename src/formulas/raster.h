@@ -1,5 +1,4 @@
-// Conservative screen rectangles of triangles: every ray that can hit the triangle lies inside, all rounding
-// errors included, also where a triangle extends behind the camera.
+// Conservative screen rectangles of triangles, rounding included, also of those behind the camera.
 #ifndef RELIEF_RASTER_H
 #define RELIEF_RASTER_H
 #include "formulas/begin.h"

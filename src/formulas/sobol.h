@@ -32,8 +32,7 @@ FN uint reverse_bits(uint x) {
     return x;
 }
 
-/// Owen scrambling of a bit-reversed integer: each bit is flipped by a hash of the lower ones (Laine and
-/// Karras 2011, with the constants of Vegdahl 2021).
+/// Owen scrambling of a bit-reversed integer (Laine and Karras 2011, constants of Vegdahl 2021).
 FN uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;

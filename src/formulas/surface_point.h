@@ -17,8 +17,8 @@ struct TrianglePoint {
     Float area_per_uv; ///< world-space area per area in the patch's (u, v)
 };
 
-/// Lower: P = P00 + (x - y) P10 + y P11; upper: x P11 + (y - x) P01. `at`: (u, v); `cell`: (i, j); `side`:
-/// cells.
+/// Lower: P = P00 + x-y of P10 + y of P11; upper: x of P11 + y-x of P01. `at`: (u, v) on the patch; `cell`:
+/// (i, j); `side`: cells along the patch.
 FN CornerWeights weigh_cell_corners(Vec2 at, Vec2 cell, Bool is_upper, Float side) {
     Float x = clamp(at.x * side - cell.x, Float(0.0f), Float(1.0f));
     Float y = clamp(at.y * side - cell.y, Float(0.0f), Float(1.0f));
@@ -70,8 +70,7 @@ FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 geometric_normal) {
     return select(dot(normal, geometric_normal) < Float(0.0f), -normal, normal);
 }
 
-/// Origin of a ray spawned into `direction`: offset from the surface by the point's error bound, along the
-/// geometric normal, to the side of the direction.
+/// Origin of a ray into `direction`: offset along the normal by the point's error bound.
 FN Vec3 offset_origin(Vec3 position, Vec3 normal, Float position_error, Vec3 direction) {
     Float side = select(dot(direction, normal) < Float(0.0f), Float(-1.0f), Float(1.0f));
     return position + normal * (side * position_error);

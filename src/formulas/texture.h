@@ -5,8 +5,7 @@
 
 #include "formulas/begin.h"
 
-/// uv in texels from the centre of texel (0, 0); row 0 is v = 1. The integer part is removed first: large uvs
-/// would leave no bits for the position between texels.
+/// uv in texels from the centre of texel (0, 0), row 0 at v = 1; the integer part goes first for precision.
 FN Vec2 locate_texture_uv(Vec2 uv, Vec2 size) {
     Vec2 result = {(uv.x - floor_texel(uv.x)) * size.x - 0.5f,
                    (1.0f - (uv.y - floor_texel(uv.y))) * size.y - 0.5f};

@@ -78,14 +78,11 @@ FN float cross_node(ObjectRay ray, TreeNode node, float t_min, float t_max) {
 }
 
 // Heap: slot k is the node of key k (slot 0 is empty). Siblings are one 64-byte line.
-//
-// Succinct heap: no empty slots. The root is slot 1; the pairs of children follow from slot 2 on, in the
-// order of their parents' keys as far as the flat part of the directory goes. A bit says that a key is an
-// inner node. The flat part has a bit for each key below 2^(flat_levels + 1): below 2^flat_levels its rank is
-// the number of its pair; for the keys on the level of `flat_levels` it is the number of a brick, after the
-// pairs. A brick stands for six levels: bit i of `inner` is its inner node of local key i (1 to 63), ranked
-// from first_pair; bit i of `deeper` says that the node of local key 64 + i has a brick, ranked from
-// first_brick.
+// Succinct heap: no empty slots. The root is slot 1; pairs of children follow in the order of their parents'
+// keys. Flat part: a bit for each key below 2^(flat_levels + 1), set for inner nodes; its rank is the number
+// of the pair, or on the last level the number of a brick. A brick stands for six levels: bit i of `inner` is
+// its inner node of local key i (1 to 63), ranked from first_pair; bit i of `deeper`: the node of local key
+// 64 + i has a brick, ranked from first_brick.
 
 /// 64 keys of the flat part.
 struct HeapBlock {
@@ -130,8 +127,7 @@ struct KdBox {
 };
 const uint kKdBoxBytes = 32u;
 
-/// Part of a ray inside the root's cell. The origin is moved to the entry point and t counts from there,
-/// because planes far from the origin would coincide. t of the ray = t + offset.
+/// Part of a ray inside the root's cell; t counts from the entry point for precision: t = own t + offset.
 struct KdRay {
     Vec3 origin;
     Vec3 direction;

@@ -1,5 +1,4 @@
-// Arithmetic of 2- and 3-vectors over any lane type T (float, or a register of floats). The order of
-// operations is part of the contract: watertight shared edges depend on it.
+// 2- and 3-vectors over any lane type. The order of operations is fixed: watertight edges need it.
 #pragma once
 
 #include <cmath>

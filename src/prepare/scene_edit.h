@@ -1,5 +1,4 @@
-// Edits of a prepared scene between pictures. Everybody else holds a const view of the scene; the editor
-// alone owns one that can be written to, and nobody may read it meanwhile.
+// Edits of a prepared scene between pictures: the editor alone may write, while nobody reads.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,7 @@
 
 namespace relief {
 
-/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
-/// which are more: shading normals read beyond the sides of a patch.
+/// A byte a patch: those displaced anew, and those shaded anew, which shading normals make more.
 struct SurfaceChange {
     uint32_t surface = 0;
     std::vector<uint8_t> is_changed, looks_different;
@@ -31,8 +29,7 @@ class CheckedEdit {
 /// patches. Surfaces' meshes, instances' places, materials and lights never change. Not thread safe.
 class SceneEditor {
   public:
-    /// Prepares `scene` as prepare_scene() does, and copies its maps, which may be shared with others. Throws
-    /// as prepare_scene(), and Error{usage} for tessellated surfaces.
+    /// As prepare_scene(), with maps copied, as they may be shared. Error{usage} for tessellated surfaces.
     SceneEditor(Scene scene, const RenderSettings& settings);
 
     /// Changed by apply(), in place: no rays may be traced in it then.

@@ -12,12 +12,10 @@ namespace relief {
 /// Boxes of the patches of a surface, in parallel.
 std::vector<Box> compute_patch_boxes(const Surface& surface);
 
-/// Boxes of the instances in world space. `surface_boxes` hold the patches of each surface; where one is
-/// empty, there is nothing to be seen, and a point stands for the instance.
+/// World boxes of instances, from those of patches by surface; a point where a surface has none.
 std::vector<Box> compute_instance_boxes(const PreparedScene& scene, std::span<const Box> surface_boxes);
 
-/// Over the patches of one surface, whose boxes are given, in parallel. Displaced patches are expensive to
-/// intersect, so each has a leaf of its own; polygons share leaves.
+/// Over a surface's patches, in parallel: a leaf per displaced patch, shared leaves for polygons.
 Bvh build_surface_bvh(const Surface& surface, std::span<const Box> boxes);
 
 /// Over the instances, one a leaf; `surface_boxes` as above.

@@ -8,8 +8,7 @@
 
 namespace relief {
 
-/// Nothing to be seen or nothing that gives light; tiles that displaced meshes use and no file has; creases
-/// of smooth bases that their level cannot show. The scene must be valid.
+/// Nothing visible or no light; missing tiles; creases that are too fine for their level. Valid scenes only.
 std::vector<std::string> find_scene_warnings(const Scene& scene);
 
 } // namespace relief

@@ -1,5 +1,4 @@
-// What a displaced surface shows of its map's space: a map without a stated space counts as tangent, and one
-// in object space then looks torn and swollen.
+// Warnings of a wrong space: an object-space map that is read as tangent looks torn and swollen.
 #pragma once
 
 #include <string>

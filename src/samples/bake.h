@@ -21,8 +21,7 @@ struct Maps {
 
 enum class Texels { halves, floats };
 
-/// Evaluates `sample` (thread safe) at the centre of every texel of a map of size x size, row 0 at v = 1; a
-/// texel of the colour is the mean of four. `size` is even.
+/// `sample` (thread safe) at every texel centre of a square map, row 0 at v = 1; colour: means of four.
 Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
                const std::function<MapSample(Vec2f uv)>& sample);
 

@@ -1,5 +1,4 @@
-// The ear: its whole form is displacement of one quad. A rim that stands off the head and rolls inwards, an
-// inner ridge, a bowl with walls cut under, the flap before the canal.
+// The ear, all displacement of one quad: rolled rim, inner ridge, undercut bowl, flap at the canal.
 #include <cmath>
 
 #include "samples/bake.h"

@@ -20,8 +20,7 @@ constexpr float kTubeLow = 0.44f, kTubeHigh = 0.985f;
 constexpr float kCapHalfSize = 0.2f, kCapCentreV = 0.215f;
 constexpr float kBottomCapU = 0.25f, kTopCapU = 0.75f;
 
-/// Polar coordinates (radius, angle) of a point of the square [-1, 1]^2, squares becoming circles
-/// (Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square).
+/// Polar coordinates of a point of [-1, 1]^2, squares to circles (Shirley and Chiu 1997).
 Vec2f square_to_polar(const Vec2f& p) {
     if (p.x == 0 && p.y == 0) return {0, 0};
     if (std::fabs(p.x) >= std::fabs(p.y))

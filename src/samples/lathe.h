@@ -1,5 +1,4 @@
-// Closed bodies of revolution made of quads only: a tube of 4k columns, its two ends closed by k x k quads
-// each, so that no quad and no uv degenerates at the poles.
+// Closed bodies of revolution of quads only: a tube of 4k columns and two caps of k x k quads.
 #pragma once
 
 #include <vector>

@@ -14,12 +14,10 @@ struct Model {
     std::function<Mesh(const Deformation&)> make_mesh;
 };
 
-/// A squash of 800 patches: ribs pressed together over their creases, warts, cork veins, a bent stem. Radius
-/// 1, centre at the origin, lowest point at y = -0.8. Object space.
+/// A squash of 800 patches: ribs, warts, cork veins, bent stem. Radius 1, low point -0.8. Object space.
 Model make_pumpkin();
 
-/// A trunk of radius 1 about the y axis, from y = 0 up, its plates of bark curling over the cracks between
-/// them. One tile of the map goes around, and is repeated upwards. Tangent space.
+/// A trunk of radius 1 from y = 0 up with curled bark; the tile repeats upwards. Tangent space.
 struct TrunkShape {
     int cap_cells = 10; ///< 4 times as many columns, even
     int rows = 73;

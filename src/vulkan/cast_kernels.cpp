@@ -14,12 +14,10 @@ namespace {
 constexpr uint32_t kAll = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t kGroup = 64; ///< invocations of kernels without barriers
 
-/// Mesa's lavapipe silently ends the loops of an invocation after 65535 iterations in total. A ray visits at
-/// most the 1365 nodes of a tree; 32 rays after a build stay below the limit.
+/// lavapipe silently ends loops after 65535 iterations of an invocation; 32 rays of 1365 nodes stay below.
 constexpr uint32_t kSafePairsPerLane = 32;
 
-/// Lanes per tree in each bin. Software devices run lanes one after another and save the state of the group
-/// at every barrier, so small groups are faster there.
+/// Lanes per tree in each bin; few on software devices, which save a group's state at each barrier.
 std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
     if (is_cpu) return {4, 8, 8};
     return {4, 16, 64};

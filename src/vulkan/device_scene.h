@@ -13,8 +13,7 @@
 
 namespace relief::vulkan {
 
-/// All surfaces and all textures of maps, materials and the environment. Immutable once built. Throws
-/// Error{out_of_memory} with the byte count if the device cannot hold the scene.
+/// Surfaces and textures on the device, immutable. Throws Error{out_of_memory} with the byte count.
 class DeviceScene {
   public:
     /// `walk`, unless null, replaces the engine's own trees. Read during construction only.

@@ -12,8 +12,7 @@ namespace relief::vulkan {
 /// Not thread safe.
 class PatchTreeCache {
   public:
-    /// `cap_bytes` 0: trees live for one wave of jobs. Throws Error{out_of_memory}. `last_head`: address, in
-    /// units, after which addresses restart and all trees are discarded.
+    /// `cap_bytes` 0: trees live for one wave. `last_head`: after it addresses restart, trees are discarded.
     PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
 
     void bind(BindingTable& bindings) const;

@@ -29,8 +29,7 @@ struct SampleRange {
 /// Not thread safe; all calls are synchronous.
 class PathTracer {
   public:
-    /// Binds its buffers to the tracer's bindings. Its capacity is half the tracer's ray capacity. The tracer
-    /// must outlive it. Throws Error{out_of_memory}.
+    /// Binds its buffers to the tracer, which must outlive it, at half its capacity. Error{out_of_memory}.
     PathTracer(Tracer& tracer, const RenderSettings& settings);
 
     /// Paths traced at a time.

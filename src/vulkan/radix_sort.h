@@ -9,8 +9,7 @@
 
 namespace relief::vulkan {
 
-/// Least significant digit first, four bits per pass (Satish et al. 2009, Designing Efficient Sorting
-/// Algorithms for Manycore GPUs). The device must outlive it.
+/// Least significant digit first, four bits a pass (Satish et al. 2009). The device must outlive it.
 class RadixSort {
   public:
     explicit RadixSort(const Device& device);

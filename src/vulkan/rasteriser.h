@@ -31,8 +31,7 @@ class Rasteriser {
     /// it. The tracer's device must have been made for RenderMethod::hybrid.
     Rasteriser(Tracer& tracer, const RasterBuffers& buffers);
 
-    /// Finds the hits of the rays of the camera kernel with these settings, into kBindHits. The window must
-    /// be at most Device::max_draw_size() pixels a side, the camera a pinhole.
+    /// Finds the hits of the camera kernel's rays, into kBindHits. A pinhole; at most max_draw_size() a side.
     CastStatistics first_hits(const scalar::CameraPush& camera);
 
   private:

@@ -32,8 +32,7 @@ template <class Worker> class SizedTracer {
     /// False when default constructed, and after run() has thrown for lack of memory.
     explicit operator bool() const { return worker_ != nullptr; }
 
-    /// Runs work(Worker&). Out of memory, retries with a new tracer and worker, which frees what has
-    /// accumulated; if nothing has succeeded at this capacity, with half of it.
+    /// Runs work(Worker&). Out of memory: retries with new ones, at half the capacity if none succeeded.
     template <class Work> void run(const Work& work) {
         for (;;) {
             try {

@@ -1,5 +1,4 @@
-// Ray casting on the device: rounds of scene traversal, sort, patch tree build and patch traversal, until no
-// ray has candidates left in front of its hit. Counterpart of cpu/tracer.h.
+// Device ray casting: rounds of scene traversal, sort, tree build and patch traversal till all is hit.
 #pragma once
 
 #include <memory>

@@ -20,8 +20,7 @@ std::unique_ptr<Engine> make_engine_on(std::unique_ptr<Device> device,
 
 } // namespace vulkan
 
-/// The same on the device that the settings name. Also throws Error{device_missing}: no driver, no such
-/// device, or required features that it lacks.
+/// The same on the settings' device. Throws Error{device_missing} if it is absent or lacks features.
 std::unique_ptr<Engine> make_vulkan_engine(std::shared_ptr<const PreparedScene> scene,
                                            const RenderSettings& settings,
                                            const std::optional<vulkan::SceneWalk>& walk = {});

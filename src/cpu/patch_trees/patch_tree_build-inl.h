@@ -91,8 +91,7 @@ HWY_INLINE void extend_by_grid(Box& box, const VertexGrid& grid, uint32_t cells)
     }
 }
 
-/// Box of all vertices of a patch at a level up to kTileLevel. Those of lower levels, of its own or of edges,
-/// are among them: they are the same function of the same places.
+/// Box of all vertices of a patch at a level up to kTileLevel; lower levels use a subset of them.
 Box find_box(const Surface& surface, uint32_t patch, uint32_t level) {
     DCHECK(level <= uint32_t(cpu::kTileLevel));
     const uint32_t cells = 1u << level;

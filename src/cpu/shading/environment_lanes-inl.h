@@ -1,5 +1,4 @@
-// The environment as a light, sixteen directions at a time: the same operations in the same order as
-// EnvironmentLight for one, hence the same bits.
+// The environment as a light for sixteen directions: bit-identical to EnvironmentLight.
 #pragma once
 
 #include <cstring>
@@ -109,8 +108,7 @@ struct ImagePlaces {
     }
 };
 
-/// Calls step(round, first, count - first) for each sixteen of `count`, one step after another for a few
-/// rounds: each step has asked for what the next one reads.
+/// Calls step(round, first, count - first) per sixteen, in rounds: each step prefetches for the next.
 template <class Round, class... Steps> HWY_INLINE void run_rounds(size_t count, Steps... steps) {
     constexpr size_t kRounds = 4;
     for (size_t begin = 0; begin < count; begin += 16 * kRounds) {

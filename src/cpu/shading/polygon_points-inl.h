@@ -1,5 +1,4 @@
-// Surface points of hits on plain polygons, sixteen at a time: the same operations in the same order as
-// Tracer::make_surface_point for one, hence the same bits.
+// Surface points of sixteen hits on plain polygons: bit-identical to Tracer::make_surface_point.
 #pragma once
 
 #include "cpu/shading/surface_points-inl.h"

@@ -1,5 +1,4 @@
-// Surface points of hits on displaced patches, sixteen at a time: the same operations in the same order as
-// Tracer::make_surface_point for one, hence the same bits.
+// Surface points of sixteen hits on displaced patches: bit-identical to Tracer::make_surface_point.
 #pragma once
 
 #include <cstring>

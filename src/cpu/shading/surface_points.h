@@ -26,8 +26,7 @@ TraceHit locate_hit(const PreparedScene& scene, uint32_t instance, uint32_t patc
 /// Nothing on a surface without displacement.
 std::optional<PatchSamples> unpack_patch(const PreparedScene& scene, const TraceHit& hit);
 
-/// Corners of a hit's micro-triangle, object space: those of its cell at 00, 10, 11, or 00, 11, 01; of a
-/// polygon's own triangle where `samples` is null.
+/// Corners of the hit's micro-triangle (00, 10, 11 or 00, 11, 01), object space; without samples the polygon.
 std::array<Vec3f, 3> find_corners(const PreparedScene& scene, const TraceHit& hit,
                                   const PatchSamples* samples);
 

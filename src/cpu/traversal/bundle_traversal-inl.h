@@ -1,5 +1,4 @@
-// A bundle of rays (ray_bundle-inl.h) through the scene: as in a rasteriser of micro-polygons, every box,
-// patch and block is visited once for all rays of a tile, nearest first.
+// A bundle of rays through the scene: each box, patch and block is visited once for all rays of a tile.
 #pragma once
 
 #include <cstddef>

@@ -8,9 +8,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child,
-/// so that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will
-/// do). Up to kCapacity children, a power of two.
+/// Children to visit, at most kCapacity (a power of two): entry distances with the child in the lowest bits,
+/// so that integer order is distance order for t >= 0.
 template <uint32_t kCapacity> struct EntryList {
     static constexpr uint32_t kChildMask = kCapacity - 1;
     alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored

@@ -1,5 +1,4 @@
-// Rays from one point, in the space of one object: a pinhole camera's. Projected from there everything lies
-// on a plane at distance 1, where each ray is a point.
+// Rays of a pinhole, in object space: projected to the plane at distance 1, each ray is a point.
 #pragma once
 
 #include "cpu/traversal/ray_bundle-inl.h"

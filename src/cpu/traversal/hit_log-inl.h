@@ -118,8 +118,7 @@ HWY_NOINLINE inline bool wins_tie(const RayBundle& bundle, uint32_t k, uint32_t 
     return comes_before(make_hit(number), found == kWritten ? rays.hits[k] : make_hit(found));
 }
 
-/// Offers hits [first, log.count) of the log to their rays. Sets the bits of rays that were met in
-/// `hit_rays`; returns those of the groups of rays that took one.
+/// Offers hits [first, log.count) to their rays; sets hit_rays and returns the groups that took one.
 HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&hit_rays)[kGroupCount]) {
     BundleRays& rays = *bundle.rays;
     HitLog& log = *rays.log;
@@ -136,8 +135,7 @@ HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&h
     return dirty;
 }
 
-/// The hits of one block: noted as they are found, and offered to their rays when all pairs of the block have
-/// been tested. For many at once its branches are more predictable.
+/// The hits of one block, offered to their rays all at once: that makes branches predictable.
 template <class Bundle> class BlockHits {
   public:
     HWY_INLINE BlockHits(Bundle& bundle, LaneMask (&hit_rays)[kGroupCount])

@@ -83,9 +83,8 @@ HWY_INLINE uint32_t take_nearest(const Node& node, LaneMask mask, const Lanes8& 
     return stack[--size].child;
 }
 
-/// One ray in a tree of polygons: nodes of floats are tested with what is made ready once. Which of two
-/// planes a ray meets first is known from its direction; the widening by kBoxSlack is part of the far
-/// factors.
+/// One ray in a tree of polygons with float nodes: its direction tells which plane of two comes first, and
+/// the far factors contain kBoxSlack.
 struct PolygonRayWalker {
     using Entry = StackEntry;
 

@@ -141,8 +141,7 @@ HWY_INLINE bool choose_major_axis(const Affine& object_from_world, RayBundle& bu
     return major != 3;
 }
 
-/// Of sixteen rays, what their tests against triangles ask, and their dz_dt. False where they do not go
-/// forward, or along another axis than bundle.axis[2].
+/// Test data and dz_dt of sixteen rays. False for rays backwards or along another axis than bundle.axis[2].
 HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& rcp_dz_dt) {
     if (find_major_axis(d) != bundle.axis[2]) return false;
     const Lanes16 dz_dt = dot_lanes(d, bundle.forward);

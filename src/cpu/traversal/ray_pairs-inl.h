@@ -109,8 +109,7 @@ template <int kValues> struct PairList {
 
 template <class Bundle> using PairsOf = PairList<Bundle::kPairValues>;
 
-/// Appends the pairs of the rays `left` of a group: ray by ray where they are fewer than the parts that
-/// concern them, else quad by part. Returns the rays that have one.
+/// Appends the pairs of the group's rays `left`, by ray or by part, whichever is fewer. Returns those rays.
 template <class Bundle, class GroupLanes>
 HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, uint32_t group,
                                  const GroupLanes& rays, LaneMask left, PairsOf<Bundle>& pairs) {
@@ -138,8 +137,7 @@ HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, u
     return paired;
 }
 
-/// Calls trace_pairs(list) for the pairs of a bundle's rays with eight parts, until none is left; `all` holds
-/// all bounds. Sets the bits of rays that were tested.
+/// Calls trace_pairs(list) for the pairs of rays with eight parts; marks the rays that were tested.
 template <class Bundle, class TracePairs>
 HWY_INLINE void visit_pairs(const PartBounds& part, const ProjectedBounds& all, const Bundle& bundle,
                             LaneMask (&tested)[kGroupCount], uint64_t& count, TracePairs trace_pairs) {

@@ -1,5 +1,4 @@
-// One ray through the two upper levels: wide tree of instances, wide tree of a surface's patches. Nearest
-// first, for any-hit too: unordered, the cache of patch trees would thrash.
+// One ray through the trees of instances and patches, nearest first, for any-hit too: else trees thrash.
 #pragma once
 
 #include "cpu/traversal/patch_traversal-inl.h"

@@ -47,8 +47,7 @@ HWY_INLINE void shear_vertices(Load load, const RayState& ray, Lanes<W>& x, Lane
     y = (load(ray.axis[1]) - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
 }
 
-/// The order of hits that are as near as each other: (instance, patch, j, i, upper). The result then does not
-/// depend on the order in which triangles were met.
+/// Order of equally near hits: (instance, patch, j, i, upper), so that results are deterministic.
 HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
     const auto rank = [](const cpu::TraceHit& h) {
         return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper;
@@ -63,8 +62,7 @@ HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
     if (hit.t == ray.hit.t ? comes_before(hit, ray.hit) : hit.t < ray.hit.t) ray.hit = hit, ray.t_max = hit.t;
 }
 
-/// Offers every hit of a triangle test; locate(lane, weight_b, weight_c, hit) fills in cell, is_upper and,
-/// from the weights of the three corners, u and v.
+/// Offers the hits of a test; locate(lane, weight_b, weight_c, hit) sets cell, is_upper, u and v.
 template <size_t W, class Locate>
 HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
     alignas(64) float u[W], v[W], w[W], t[W];

@@ -15,8 +15,7 @@ enum Mode { kLastLineMode = 3, kTriangles = 4, kStrip = 5, kFan = 6 };
 
 using Triangle = std::array<uint32_t, 3>;
 
-/// Triangles of a list of vertices (specification, 3.7.2.1); those of a strip that have no area by
-/// construction, which join its pieces, are left out.
+/// Triangles of a list of vertices (specification, 3.7.2.1) without the empty ones that join strips.
 std::vector<Triangle> make_triangles(const std::vector<uint32_t>& indices, int64_t mode) {
     std::vector<Triangle> triangles;
     const size_t step = mode == kTriangles ? 3 : 1;

@@ -1,5 +1,4 @@
-// What a mesh reader in a child process leaves in memory shared with its parent: a header, then the arrays of
-// the mesh one after the other; or an error. The parent trusts none of it.
+// A mesh passed by a child process in shared memory: header and arrays, or an error. Untrusted.
 #pragma once
 
 #include <cstdint>

@@ -11,9 +11,8 @@
 
 namespace relief {
 
-/// Name of the first attribute of an EXR stream, in the headers of all of its parts, that claims to be longer
-/// than the stream or has not the size of its type; nothing when all fit, or when the stream is no EXR (the
-/// reader will say so). `stream_bytes` is its whole length; the position moves.
+/// Name of the first attribute of an EXR stream longer than the stream or not of its type's size; nothing
+/// when all fit or it is no EXR. `stream_bytes`: its whole length; the position moves.
 std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
 
 /// What the header of an EXR stream says of colours: "attribute chromaticities"; empty: nothing, or no EXR.

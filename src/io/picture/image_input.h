@@ -21,8 +21,7 @@ std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std:
 /// read_texture for the bytes of a file; throws as it does.
 Texture parse_texture(std::string_view bytes, const std::string& name);
 
-/// What a file, by the chunks and attributes in it, says of its values being colours; empty: nothing. The
-/// libraries' own guesses by the kind of file do not count.
+/// What a file's chunks or attributes say of its values being colours, without guesses by format; or empty.
 std::string find_colour_tag(std::istream& stream);
 
 /// True where the display window is at most four times as wide and high as the pixels, which textures fill.

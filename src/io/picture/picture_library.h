@@ -1,5 +1,4 @@
-// Loads relief_pictures: OpenImageIO, for formats without a reader of Relief's own. It brings some 250 shared
-// libraries, so this module is loaded when the first such picture is opened.
+// Loads relief_pictures: OpenImageIO, with some 250 shared libraries, on first use of such a format.
 #pragma once
 
 #include <memory>
@@ -21,9 +20,8 @@ class PictureLibrary {
                                                     const std::string& name) const = 0;
 };
 
-/// The module's function that returns its library. The number counts the layouts of PictureLibrary,
-/// PixelSource and PixelHeader: raise it with every change of theirs, so that a module of another build is
-/// refused in place of being called wrongly.
+/// The module's function that returns its library. Raise the number with every layout change of
+/// PictureLibrary, PixelSource and PixelHeader: other builds are then refused.
 #define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_1
 
 /// Loads a module, for good. Throws Error{failed} with `name` where it is missing or of another layout.

@@ -12,8 +12,7 @@
 
 namespace relief {
 
-/// What a texture is for decides what is done to its values: `data` nothing; `colour` decodes integers from
-/// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0.
+/// Decoding of values: `data` none; `colour` integers from sRGB; `radiance` finite and at least 0.
 enum class TextureUse { data, colour, radiance };
 
 class AssetCache {

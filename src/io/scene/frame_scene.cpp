@@ -133,8 +133,7 @@ void extend_by_ring(Reach& reach, const Vec3f& p, const Vec3f& centre, const Vec
         reach.extend(centre + axis * height + side * radius);
 }
 
-/// Rounds what the displacement adds to the reach of the bare mesh to fifteenths of the mesh's size, which
-/// the margin has room for: so coding errors rarely move the camera.
+/// Rounds up to fifteenths of the mesh's size, so that coding errors rarely move the camera.
 void coarsen(Reach& reach, const std::array<float, 4>& bare) {
     const float step = std::max(bare[0] + bare[1], bare[2] + bare[3]) / 15;
     if (!(step > 0)) return;

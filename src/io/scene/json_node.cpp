@@ -36,8 +36,7 @@ std::string strip_parser_prefix(std::string message) {
     return message;
 }
 
-/// Builds a document from the parser's events in linear time: the parser's own builder searches an object for
-/// each of its keys. Remembers the first key that came twice.
+/// Builds a document in linear time, unlike the parser's own builder; remembers the first double key.
 class DocumentBuilder {
   public:
     explicit DocumentBuilder(Json& document) : document_(document) {}

@@ -18,8 +18,7 @@ namespace relief {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses JSON with // and /* */ comments. Throws bad_input with file, line and column for broken text and
-/// for a key that stands twice in one object.
+/// JSON with comments. Throws bad_input with file, line and column, also for a key that is there twice.
 Json parse_json(std::string_view text, const std::string& file);
 
 /// Refers to a value and a file name, which must outlive it. Getters throw bad_input with file and path.

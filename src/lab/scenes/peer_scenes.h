@@ -1,5 +1,4 @@
-// Scenes to compare renderers by: closed bodies of quads under one rough map, white and diffuse, where all
-// the work is geometry. Made from nothing but formulas and a seed.
+// Scenes to compare renderers by: closed bodies under one rough map, white: the work is geometry.
 #pragma once
 
 #include <string>

@@ -40,8 +40,7 @@ struct KeyedNode {
     uint32_t node;
 };
 
-/// Level by level, in the order of keys: pairs get their slots in the order in which their parents come. One
-/// thread finds the order; all of them copy the nodes.
+/// Level by level, in key order: slots of pairs in the order of their parents. Copies in parallel.
 class SuccinctBuild {
   public:
     explicit SuccinctBuild(const AxisBvh& tree) : tree_(tree), bvh_(tree.bvh) {}

@@ -156,8 +156,7 @@ FN HeapKey find_postponed_trail(HeapKey trail) {
     return flip_lowest(shift_right(trail, count_trailing_zeros(trail)));
 }
 
-// Restart trail (Laine 2010): a level is one bit, the root's the second highest, and each level below owns
-// the next bit. 1: the child visited first is done, or is the only one.
+// Restart trail (Laine 2010): one bit a level from the second highest; 1: the near child is done or single.
 
 FN uint make_root_level32() { return 0x40000000u; }
 FN HeapKey make_root_level64() {

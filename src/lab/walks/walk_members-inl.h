@@ -25,8 +25,7 @@ static Key make_root_level() {
         return make_root_level32();
 }
 
-/// From node `root` (kNoNode: no tree), trails from the node of `key` (0: no tree). A stack keeps what it
-/// holds.
+/// From `root` (kNoNode: none), trails from the node of `key` (0: none). A stack keeps its contents.
 void start_walk(uint root, Key key) {
     if constexpr (kTraversal == TraversalKind::stack)
         start_stack(root);

@@ -1,5 +1,4 @@
-// Least and greatest value of every channel over rectangles of a map: what makes bounds tight without user
-// padding.
+// Min and max of every channel over rectangles of a map: tight bounds without user padding.
 #pragma once
 
 #include <array>
@@ -23,8 +22,7 @@ class BoundsPyramid {
     ChannelRange query(int64_t x0, int64_t y0, int64_t x1, int64_t y1, WrapMode wrap,
                        const std::array<float, 3>& black) const;
 
-    /// Follows a change of the texels in a rectangle inside the texture, which has its old size. Throws as
-    /// build; the ranges of the rectangle then hold nothing of use.
+    /// Follows a change of texels in a rectangle. If it throws, as build, the rectangle's ranges are invalid.
     void update(const Texture& texture, const TexelRectangle& changed);
 
     size_t byte_count() const;

@@ -10,8 +10,7 @@
 
 namespace relief {
 
-/// One pyramid a texture, shared by all surfaces that are made with it. Thread safe; keeps the textures
-/// alive.
+/// One pyramid a texture for all its surfaces. Thread safe; keeps the textures alive.
 class PyramidCache {
   public:
     std::shared_ptr<const BoundsPyramid> get_or_build(const std::shared_ptr<const Texture>& texture);
@@ -25,8 +24,7 @@ class PyramidCache {
     std::map<const Texture*, Entry> entries_;
 };
 
-/// Throws bad_input with the displacement's `name` for texels (raw, of `file`) that displace by more than
-/// 1e18.
+/// Throws bad_input with the displacement's `name` for texels that displace by more than 1e18.
 void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
                  const ChannelRange& range);
 /// The same of all tiles.

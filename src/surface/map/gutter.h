@@ -25,8 +25,7 @@ struct GutterFill {
     static constexpr uint32_t kReach = 2;
 
     void apply(Texture& texture);
-    /// After a rectangle has got new values, those of the gutter in it as raw as the others. Returns what has
-    /// changed in all.
+    /// Updates the gutter after a change of values in a rectangle. Returns all that has changed.
     TexelRectangle follow(Texture& texture, const TexelRectangle& changed);
 };
 

@@ -29,9 +29,8 @@ struct OutsideTexels {
 OutsideTexels find_outside_texels(const Displacement& displacement, const MapTile& tile,
                                   std::span<const Mesh* const> meshes);
 
-/// Copies 1, 2, ... of a map, each half as large as the one before (rounded up): every texel the mean over
-/// its area of what is not outside. In each copy the texels beside the islands take the value of the nearest
-/// inside, as shallow as that of bilinear fetches. Thread safe but for `update`.
+/// Copies 1, 2, ... of a map, each half as large (rounded up): means of what is not outside. Texels beside
+/// the islands take the nearest inside value, for bilinear fetches. Thread safe but for `update`.
 class MipChain {
   public:
     struct Copy {
@@ -47,8 +46,7 @@ class MipChain {
     uint32_t count() const { return uint32_t(copies_.size()); }
     const OutsideTexels& outside() const { return outside_; }
 
-    /// Follows new texels in a rectangle of the map; returns which texels of each copy have changed, copy 1
-    /// first.
+    /// Follows new texels in a rectangle; returns which texels of each copy have changed, copy 1 first.
     std::vector<TexelRectangle> update(const Texture& texture, const TexelRectangle& changed);
 
     size_t byte_count() const;

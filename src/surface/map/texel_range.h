@@ -16,8 +16,7 @@ struct TexelRectangle {
     uint32_t x0, y0, x1, y1;
 };
 
-/// Range of the first three channels over a rectangle inside the texture; nothing if one of them is NaN or
-/// infinite.
+/// Range of the first three channels over a rectangle of the texture; nothing if a value is not finite.
 std::optional<ChannelRange> find_texel_range(const Texture& texture, const TexelRectangle& rectangle);
 
 /// Throws bad_input that names the first texel of a rectangle that is not finite.

@@ -20,8 +20,7 @@ static_assert(uint32_t(WrapMode::clamp) == scalar::kWrapClamp &&
               uint32_t(WrapMode::repeat) == scalar::kWrapRepeat &&
               uint32_t(WrapMode::mirror) == scalar::kWrapMirror &&
               uint32_t(WrapMode::black) == scalar::kWrapBlack);
-/// Column or row that `index` reads in a map of `size` texels; -1 outside of WrapMode::black. 2 size must be
-/// representable.
+/// Texel that `index` reads of `size`; -1 outside of WrapMode::black. 2 size must be representable.
 template <class Index> Index wrap_index(Index index, std::type_identity_t<Index> size, WrapMode wrap) {
     // Both periods divide twice the size.
     if (index > kFarTexel || index < -kFarTexel)

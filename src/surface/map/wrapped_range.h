@@ -8,8 +8,7 @@
 
 namespace relief {
 
-/// Indices of one axis that a wrapped range reads: at most two ranges inside of the map, and perhaps the
-/// outside.
+/// Indices of one axis that a wrapped range reads: up to two ranges inside, perhaps the outside.
 struct WrappedRange {
     std::array<std::array<int64_t, 2>, 2> parts{};
     int count = 0;

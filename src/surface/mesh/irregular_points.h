@@ -5,8 +5,7 @@
 
 namespace relief {
 
-/// Steps that bring patches fitted around irregular points near enough;
-/// docs/decisions/bicubic-base-patches.md has the measurements.
+/// Steps until fitted patches are near enough: docs/decisions/bicubic-base-patches.md has figures.
 inline constexpr int kIsolationDepth = 3;
 
 /// Cuts every quad with one irregular corner, and none but such quads around that point, into three, `depth`

@@ -1,5 +1,4 @@
-// Bicubic patches of the limit surface: exact where it is bicubic, fitted beside irregular points and
-// semi-sharp creases (docs/decisions/bicubic-base-patches.md).
+// Limit surface as bicubic patches, exact or fitted (docs/decisions/bicubic-base-patches.md).
 #pragma once
 
 #include <array>

@@ -191,8 +191,8 @@ Quad split_face(Surface& surface, const Polygons& polygons, uint32_t face, bool 
     return quad;
 }
 
-/// Patches and split vertices. `lacks_uvs`: marks of faces, or empty. Vertices of marked faces come first and
-/// are dominant, so that no corner of such a face is displaced.
+/// Patches and split vertices. Vertices of faces marked in `lacks_uvs` come first, so they are dominant and
+/// such faces have no displaced corner.
 VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim,
                               const std::vector<uint8_t>& lacks_uvs) {
     VertexSplitter vertices(polygons.positions.size());

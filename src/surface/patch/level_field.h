@@ -19,14 +19,12 @@ struct LevelFieldConfig {
 /// Levels of all patches of one object, packed into one word a patch. Thread safe but for `update`.
 class LevelField {
   public:
-    /// The level of an edge depends on the edge alone (line, displaced length, transform, view; no map
-    /// filter): the finest such that a cell is at most `pixel_error` pixels at the nearest point, at most one
-    /// cell a texel and at most kMaxLevel. Undisplaced surfaces have level 0.
+    /// The level of an edge depends on the edge alone: the finest with cells of at most `pixel_error` pixels
+    /// at the nearest point, one texel, and kMaxLevel. Undisplaced: 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 
-    /// Makes the levels of some patches anew (a byte a patch): theirs were computed from a surface whose
-    /// displacement has changed there since. The rest as for `compute`.
+    /// Recomputes the levels of marked patches (a byte each) after a change of their displacement.
     void update(const Surface& surface, const Affine& world_from_object, const LevelFieldConfig& config,
                 std::span<const uint8_t> is_changed);
 

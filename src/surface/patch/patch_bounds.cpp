@@ -89,8 +89,7 @@ std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, d
             int64_t(std::floor(coordinate.high * size - 0.5 + slack)) + 1};
 }
 
-/// Range of the raw channels over a rectangle of texels: from the texels themselves where they are few, since
-/// the blocks of the pyramid would widen a small rectangle to twice its size.
+/// Raw channel range of a texel rectangle: from texels if few, as the pyramid's blocks would widen it.
 ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::ImageView& image,
                         const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};

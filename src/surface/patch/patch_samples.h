@@ -13,8 +13,7 @@
 
 namespace relief {
 
-/// What a vertex brings to its patch; the frame is zero on surfaces that are not displaced through it. As
-/// wide as four registers of four floats, so that SIMD kernels can load it whole.
+/// A vertex as its patch sees it, without a frame if not displaced through it. Four registers of four floats.
 struct alignas(16) VertexData {
     Vec3f position{};
     Vec2f uv{};
@@ -34,8 +33,7 @@ VertexData blend_corners(const std::array<VertexData, 4>& corners, float u, floa
 /// Same on the line from `a` to `b` at `s`; tile and mip are those of `a`.
 VertexData blend_line(const VertexData& a, const VertexData& b, float s);
 
-/// Sample of an edge, counted from the start of its line in [0, 2^patch_level], after its move onto the
-/// nearest sample of the edge's level (half way: the later one).
+/// Sample of an edge from its line's start, moved to the nearest of the edge's level (ties: later).
 inline uint32_t move_edge_sample(uint32_t k, int patch_level, int edge_level) {
     return scalar::move_line_sample(k, uint32_t(patch_level - edge_level));
 }

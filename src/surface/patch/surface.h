@@ -65,12 +65,10 @@ struct DisplacementMap {
     ImageView image(uint8_t tile, uint32_t mip) const;
 };
 
-/// The control points of a bicubic patch beside its corners (formulas/control_points.h less 4). Those of an
-/// edge have the same bits in both of its patches.
+/// Control points of a bicubic patch beside its corners (less 4), bit-equal on shared edges.
 using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
-/// Read from any thread. Only the texels and bounds behind `map`, and `mips`, ever change, through the
-/// scene's editor (prepare/scene_edit.h) and while nobody reads.
+/// Read by any thread. Only the map's texels, its bounds and `mips` change, by the scene's editor.
 struct Surface {
     std::string name;                ///< of the mesh, for messages
     std::vector<Vec3f> positions;    ///< one a dominant vertex; the others have theirs
@@ -106,9 +104,8 @@ struct Surface {
     }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
-    /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a
-    /// seam. Given lower dominant first, so that both sides of an edge run it the same way; `is_reversed`
-    /// tells whether that is against the patch's own direction (corner k to k + 1).
+    /// The straight line that carries edge k: its own vertices, or the dominant side's at a seam, lower
+    /// dominant first; `is_reversed`: against the patch's own direction.
     struct EdgeLine {
         uint32_t first, second;
         bool is_reversed;

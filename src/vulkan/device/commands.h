@@ -40,8 +40,7 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// Subsequent commands count as `stage`. On a CPU device this submits the commands recorded so far,
-    /// because its timestamps do not resolve short work.
+    /// Further commands count as `stage`. Submits first on CPU devices: their timestamps are coarse.
     void begin_stage(Stage stage);
 
     /// Dispatches ceil(invocations / group size) groups, in two dimensions above 65535; kernels compute the

@@ -1,5 +1,4 @@
-// Suballocation of device memory from blocks. Accounts for every byte and never exceeds the size of a heap.
-// Included by the implementation of device.h only.
+// Suballocated device memory, accounted by the byte, within heap sizes. Part of device.h's implementation.
 #pragma once
 
 #include <array>

@@ -76,8 +76,7 @@ const uint kBuildBinCount = 3u;
 const uint kArgumentWords = 8u;
 const uint kArgumentDrawWord = 4u;
 
-// Fragments in place of work groups: a square of fragments corresponds to a group of as many invocations. The
-// framebuffer size is supported by every device.
+// Fragments in place of work groups: a square of them is a group; all devices have the size.
 const uint kFragmentSquare = 8u;  ///< pixels per side
 const uint kScreenColumns = 256u; ///< squares
 const uint kScreenRows = 512u;    ///< squares

@@ -1,5 +1,4 @@
-// Path state on a device, between the kernels of one depth. Path p has ray p; its shadow ray is ray capacity
-// + p. Scalar block layout, members of 4 bytes.
+// Path state between the kernels of one depth: path p has ray p and shadow ray capacity + p.
 #ifndef RELIEF_DEVICE_PATHS_H
 #define RELIEF_DEVICE_PATHS_H
 #include "formulas/bounce_lod.h"
@@ -43,8 +42,7 @@ struct FilmSumsData {
     uint id;     ///< of the nearest hit: 1 + instance, the lowest among ties; 0: no hit
 };
 
-/// Emissive patch `index`: cumulative probability in units of 2^-24. Random numbers have 24 bits, so the
-/// integer comparison selects the same patch as the sums in double precision.
+/// Emissive patch `index`: cumulative probability in units of 2^-24, as fine as random numbers.
 struct EmitterData {
     uint end;
     uint probability; ///< bits of a float

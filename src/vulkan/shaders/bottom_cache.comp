@@ -1,5 +1,4 @@
-// One job: looks up its tree in the pool, a ring buffer; if it is missing, too coarse or about to be overwritten,
-// allocates space. A job without room in this wave is deferred to the next one.
+// One job: finds its tree in the ring buffer; if missing, too coarse or to be overwritten, allocates. Else defers.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

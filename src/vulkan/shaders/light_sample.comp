@@ -92,8 +92,7 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
     return ray;
 }
 
-/// Sets the shadow ray and its contribution; false if that is zero. The last vertex has no bounce ray that could also
-/// hit the light, so the MIS weight is 1 there.
+/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);

@@ -98,8 +98,7 @@ uint choose_order(PatchVisit visit) {
     return make_order_mask(dot(along_u, visit.ray.direction) < 0.0, dot(along_v, visit.ray.direction) < 0.0);
 }
 
-/// False if the device ended the loop early, as lavapipe does after 65535 iterations. The iteration bound itself is
-/// never reached, because no node is visited twice.
+/// False if lavapipe ended the loop early, after 65535 iterations; the bound itself is never reached.
 bool walk_tree(inout PatchVisit visit, bool is_any) {
     uint order = choose_order(visit);
     uint level = 0u;

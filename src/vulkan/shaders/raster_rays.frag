@@ -1,5 +1,4 @@
-// Tests the ray of a pixel against the two triangles of a cell, with the tracer's own test. No loops: helper
-// invocations would use up the loop budget of their neighbours on lavapipe.
+// A pixel's ray against both triangles of a cell, as the tracer tests. No loops: lavapipe counts helpers' too.
 #define READS_RASTER_VERTICES
 #include "vulkan/shaders/extensions.glsl"
 #include "vulkan/shaders/rays.glsl"

@@ -102,8 +102,7 @@ uint find_directory(uint patch_number, uint levels) {
     return kNone;
 }
 
-/// Requests tiles from the host once, rarely a few times, however many rays need them: a hashed bit marks requested
-/// patches. Patches that collide are requested when the traversal is repeated.
+/// Requests tiles from the host, in few rounds: a hashed bit marks patches; colliding ones come in a later round.
 void request_tiles(uint patch_number, RequestData request) {
     uint bit = hash_directory(patch_number, request.levels) & (kRequestBits - 1u);
     uint mask = 1u << (bit & 31u);

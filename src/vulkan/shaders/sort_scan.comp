@@ -1,5 +1,4 @@
-// Second step of a pass: exclusive prefix sum of the histogram, the start of each tile's pairs of each digit. One group
-// processes all of it, kSortGroupSize * kSortItemCount words at a time.
+// Second step: exclusive prefix sum of the histogram, one group, kSortGroupSize * kSortItemCount words at a time.
 #extension GL_EXT_scalar_block_layout : require
 #include "sort.glsl"
 

@@ -1,5 +1,4 @@
-// One invocation a cut finds the node that is cut there and writes both its children: what they hold, and their
-// links (after Karras 2012). Boxes follow in lbvh_refit.comp.
+// One invocation per cut finds its node and writes both children (Karras 2012); boxes: lbvh_refit.comp.
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 
