@@ -12,7 +12,7 @@
 #include "analysis/map_on_mesh.h"
 #include "analysis/map_on_plane.h"
 #include "relief/error.h"
-#include "scene/faces_without_uvs.h"
+#include "scene/face_uvs.h"
 
 namespace relief {
 
@@ -222,22 +222,6 @@ std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement&
                     "moves; in tangent space only the channel along the normal does",
                     kChannelNames[std::min(order[0], order[1])],
                     kChannelNames[std::max(order[0], order[1])])};
-}
-
-/// UDIM numbers of the middles of a mesh's faces.
-std::set<int> list_tiles(const Mesh& mesh) {
-    std::set<int> tiles;
-    size_t first = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        double u = 0, v = 0;
-        for (size_t k = first; k < first + size; ++k)
-            u += double(mesh.uvs[mesh.uv_indices[k]].x) / size,
-                v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
-        first += size;
-        u = std::floor(u), v = std::floor(v);
-        if (u >= 0 && u <= 9 && v >= 0 && v <= 99) tiles.insert(1001 + int(u) + 10 * int(v));
-    }
-    return tiles;
 }
 
 /// One image on a mesh with several tiles, and not repeated, is the image of one of them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -38,6 +39,7 @@ struct HalfEdge {
     uint64_t key;
     uint32_t face;
     bool is_turned; ///< runs from the larger point to the smaller
+    auto operator<=>(const HalfEdge&) const = default;
 };
 
 std::vector<HalfEdge> list_half_edges(const Mesh& mesh, const std::vector<uint32_t>& points) {
@@ -51,9 +53,7 @@ std::vector<HalfEdge> list_half_edges(const Mesh& mesh, const std::vector<uint32
         }
         first += size;
     }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return a.key != b.key ? a.key < b.key : a.face < b.face;
-    });
+    std::sort(edges.begin(), edges.end());
     return edges;
 }
 

@@ -11,7 +11,7 @@
 #include "analysis/mesh_points.h"
 #include "analysis/mesh_statistics.h"
 #include "math/vec.h"
-#include "scene/faces_without_uvs.h"
+#include "scene/face_uvs.h"
 
 namespace relief {
 
@@ -110,16 +110,6 @@ double Coverage::measure_overlap() const {
     return covered > 0 ? double(shared) / double(covered) : 0;
 }
 
-double compute_area(const Mesh& mesh, size_t first, uint32_t size) {
-    double area = 0;
-    for (uint32_t k = 0; k < size; ++k) {
-        const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
-        const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];
-        area += (double(a.x) * b.y - double(a.y) * b.x) / 2;
-    }
-    return area;
-}
-
 void note_place(const Mesh& mesh, size_t first, uint32_t size, MeshUvs& result) {
     double u = 0, v = 0;
     Vec2f low = mesh.uvs[mesh.uv_indices[first]], high = low;
@@ -195,7 +185,7 @@ MeshUvs measure_uvs(const Mesh& mesh) {
     std::vector<double> areas;
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
-        areas.push_back(compute_area(mesh, first, size));
+        areas.push_back(compute_uv_area(mesh, first, size));
         result.mirrored_faces += areas.back() < 0;
         result.flat_faces += areas.back() == 0;
         note_place(mesh, first, size, result);

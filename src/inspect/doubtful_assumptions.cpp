@@ -12,6 +12,7 @@
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
 #include "relief/inspect.h"
+#include "scene/face_uvs.h"
 
 namespace relief {
 
@@ -114,13 +115,7 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
     if (mesh.uv_indices.empty()) return;
     size_t triangles = 0, mirrored = 0, first = 0;
     for (const uint32_t size : mesh.face_sizes) {
-        double area = 0;
-        for (uint32_t k = 0; k < size && mesh.uv_indices[first] != kNoIndex; ++k) {
-            const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
-            const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1 == size ? 0 : k + 1)]];
-            area += double(a.x) * b.y - double(a.y) * b.x;
-        }
-        triangles += size == 3, mirrored += area < 0;
+        triangles += size == 3, mirrored += compute_uv_area(mesh, first, size) < 0;
         first += size;
     }
     if (triangles > mesh.face_sizes.size() / 2)

@@ -7,7 +7,7 @@
 #include "inspect/facts.h"
 #include "math/box.h"
 #include "relief/inspect.h"
-#include "scene/faces_without_uvs.h"
+#include "scene/face_uvs.h"
 
 namespace relief {
 

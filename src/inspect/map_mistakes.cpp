@@ -8,7 +8,7 @@
 
 #include "inspect/facts.h"
 #include "math/box.h"
-#include "math/vec.h"
+#include "scene/face_uvs.h"
 
 namespace relief {
 
@@ -156,17 +156,8 @@ double measure_texels_a_face(const Displacement& map, const Mesh& mesh) {
     std::vector<double> areas;
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
-        double area = 0;
-        if (mesh.uv_indices[first] == kNoIndex) {
-            first += size;
-            continue;
-        }
-        for (uint32_t k = 0; k < size; ++k) {
-            const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
-            const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];
-            area += (double(a.x) * b.y - double(a.y) * b.x) / 2;
-        }
-        areas.push_back(std::fabs(area));
+        if (mesh.uv_indices[first] != kNoIndex)
+            areas.push_back(std::fabs(compute_uv_area(mesh, first, size)));
         first += size;
     }
     if (areas.empty()) return 0;

@@ -8,30 +8,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "scene/faces_without_uvs.h"
+#include "scene/face_uvs.h"
 #include "surface/mesh/degenerate_faces.h"
 
 namespace relief {
 
 namespace {
-
-/// Of faces whose uvs name a tile; those with indices out of range are refused elsewhere.
-std::set<int> list_tiles(const Mesh& mesh) {
-    std::set<int> tiles;
-    size_t first = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        double u = 0, v = 0;
-        for (size_t k = first; k < first + size && k < mesh.uv_indices.size(); ++k)
-            if (mesh.uv_indices[k] < mesh.uvs.size()) {
-                u += double(mesh.uvs[mesh.uv_indices[k]].x) / size;
-                v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
-            }
-        first += size;
-        u = std::floor(u), v = std::floor(v);
-        if (u >= 0 && u <= 9 && v >= 0 && v < 1e6) tiles.insert(1001 + int(u) + 10 * int(v));
-    }
-    return tiles;
-}
 
 void warn_of_tiles(const Mesh& mesh, const Displacement& map, std::vector<std::string>& warnings) {
     if (!map.is_udim) return;

@@ -31,8 +31,8 @@ using scalar::TreeHit;
 using scalar::TreeRay;
 using test::Triangle;
 using test::TriangleSet;
-using Kind = TreeQuery::Kind;
-using Start = TreeQuery::Start;
+using Kind = HitKind;
+using Start = WalkStart;
 
 bool is_same(const TreeHit& a, const TreeHit& b) {
     return std::bit_cast<std::array<uint32_t, 4>>(a) == std::bit_cast<std::array<uint32_t, 4>>(b);
@@ -265,8 +265,9 @@ class TreeBatch : public GpuTest {
         rays_.rays.upload(packed);
     }
 
-    Answers run(const DeviceTree& tree, const DeviceMesh& mesh, const TreeQuery& query) {
-        tracer().trace(tree, mesh, rays_, kRayCount, query);
+    Answers run(const DeviceTree& tree, const DeviceMesh& mesh, const TreeQuery& query,
+                Start start = Start::root) {
+        tracer().trace(tree, mesh, rays_, kRayCount, query, start);
         return {rays_.hits.download<TreeHit>(kRayCount), rays_.counts.download<RayCounts>(kRayCount),
                 rays_.leaf_keys.download<HeapKey>(kRayCount)};
     }
@@ -350,8 +351,7 @@ TEST_P(TreeWalks, find_the_hits_of_brute_force_and_count_as_the_host_does) {
     const std::vector<Truth> truths = find_truths(set, forest.mesh, rays);
     for (const WalkCase& walk : forest.walks())
         for (const Kind kind : {Kind::closest, Kind::any}) {
-            const Answers found =
-                run(*walk.tree, forest.mesh, {walk.traversal, kind, TreeQuery::Counting::each_ray});
+            const Answers found = run(*walk.tree, forest.mesh, {walk.traversal, kind, Counting::on});
             const std::string name = walk.name + (kind == Kind::any ? ", any" : ", closest");
             Answers expected = walk.run_on_host(kind, rays, roots());
             expected.leaves = found.leaves; // none were requested
@@ -377,17 +377,17 @@ TEST_P(TreeWalks, that_start_at_the_last_hit_find_the_same) {
     const std::vector<BoxRay> rays = make_rays(set);
     for (const WalkCase& walk : forest.walks()) {
         if (walk.traversal != TraversalKind::trail && walk.traversal != TraversalKind::pair_trail) continue;
-        TreeQuery query{walk.traversal, Kind::closest, TreeQuery::Counting::each_ray, Start::last_leaf};
+        TreeQuery query{walk.traversal, Kind::closest, Counting::on};
         upload(rays);
         rays_.start_keys.upload(roots());
-        const Answers first = run(*walk.tree, forest.mesh, query);
+        const Answers first = run(*walk.tree, forest.mesh, query, Start::last_leaf);
         expect_as_on_host(first, walk.run_on_host(Kind::closest, rays, roots()), walk.name);
         const std::vector<BoxRay> bounced = bounce_rays(rays, first.hits);
         upload(bounced);
         rays_.start_keys.upload(first.leaves);
-        const Answers closest = run(*walk.tree, forest.mesh, query);
+        const Answers closest = run(*walk.tree, forest.mesh, query, Start::last_leaf);
         query.kind = Kind::any;
-        const Answers any = run(*walk.tree, forest.mesh, query);
+        const Answers any = run(*walk.tree, forest.mesh, query, Start::last_leaf);
         for (const Kind kind : {Kind::closest, Kind::any}) {
             const Answers expected = walk.run_on_host(kind, bounced, first.leaves);
             expect_as_on_host(kind == Kind::any ? any : closest, expected, walk.name + " from the last leaf");
@@ -425,15 +425,14 @@ class TreeTracing : public TreeBatch {
 
 TEST_F(TreeTracing, twice_gives_the_same_bits) {
     const DeviceTree heap = builder().build_heap(mesh_, {});
-    const TreeQuery query{TraversalKind::pair_trail, Kind::closest, TreeQuery::Counting::each_ray,
-                          Start::root};
+    const TreeQuery query{TraversalKind::pair_trail, Kind::closest, Counting::on};
     const Answers first = run(heap, mesh_, query);
     expect_same(run(heap, mesh_, query), first, "second run");
 }
 
 TEST_F(TreeTracing, counts_nothing_unless_asked) {
     const DeviceTree tree = make_linked();
-    const Answers counted = run(tree, mesh_, {.counting = TreeQuery::Counting::each_ray});
+    const Answers counted = run(tree, mesh_, {.counting = Counting::on});
     rays_.counts.upload(std::vector<RayCounts>(kRayCount, RayCounts{1, 2, 3, 4}));
     Answers uncounted = run(tree, mesh_, {});
     for (const RayCounts& counts : uncounted.counts) EXPECT_TRUE(is_same(counts, {1, 2, 3, 4}));
@@ -443,11 +442,10 @@ TEST_F(TreeTracing, counts_nothing_unless_asked) {
 
 TEST_F(TreeTracing, notes_the_leaf_of_each_hit) {
     const DenseHeap host = LbvhBuilder::build_heap(boxes_, {});
-    const Answers found =
-        run(upload_tree(device(), host), mesh_, {.traversal = TraversalKind::trail, .start = Start::root});
+    const Answers found = run(upload_tree(device(), host), mesh_, {.traversal = TraversalKind::trail});
     rays_.start_keys.upload(roots());
-    const Answers noted = run(upload_tree(device(), host), mesh_,
-                              {.traversal = TraversalKind::trail, .start = Start::last_leaf});
+    const Answers noted =
+        run(upload_tree(device(), host), mesh_, {.traversal = TraversalKind::trail}, Start::last_leaf);
     for (uint32_t k = 0; k < kRayCount; ++k) {
         EXPECT_TRUE(is_same(noted.hits[k], found.hits[k]));
         if (noted.hits[k].primitive == kNone) {
@@ -466,7 +464,7 @@ TEST_F(TreeTracing, refuses_trees_that_the_traversal_does_not_walk) {
     const DeviceTree kd = upload_tree(device(), SahKdTreeBuilder::build(boxes_, {}));
     EXPECT_THROW(run(linked, mesh_, {.traversal = TraversalKind::trail}), Error);
     EXPECT_THROW(run(linked, mesh_, {.traversal = TraversalKind::restart}), Error);
-    EXPECT_THROW(run(linked, mesh_, {.start = Start::last_leaf}), Error);
+    EXPECT_THROW(run(linked, mesh_, {}, Start::last_leaf), Error);
     EXPECT_THROW(run(kd, mesh_, {.traversal = TraversalKind::stack}), Error);
     EXPECT_THROW(run(kd, mesh_, {.traversal = TraversalKind::backtrack}), Error) << "it has no cells";
     DeviceTree deep = make_linked();

@@ -1,6 +1,7 @@
 #include "lab/vulkan/lbvh_builder.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -66,41 +67,28 @@ struct Kernels {
     CodeKernels of_30_bits, of_63_bits;
 };
 
-Buffer make_scratch(const Device& device, const char* name, uint64_t bytes) {
-    return {device, {.name = name, .bytes = bytes}};
-}
-
 /// What only a build needs, with room for `capacity` primitives.
 struct Scratch {
-    Scratch(const Device& device, uint64_t capacity, uint64_t histogram_words)
-        : capacity(capacity),
-          boxes(make_scratch(device, "primitive boxes", capacity * 24)),
-          codes(make_scratch(device, "codes", capacity * 8)),
-          pairs(make_scratch(device, "code pairs", capacity * 8)),
-          sorted_pairs(make_scratch(device, "sorted code pairs", capacity * 8)),
-          histogram(make_scratch(device, "code histogram", histogram_words * 4)),
-          numbers(make_scratch(device, "cut numbers", (capacity + 1) * 4)),
-          sums(make_scratch(device, "cut sums", (capacity / scalar::kBuildTileSize + 1) * 4)),
-          arrivals(make_scratch(device, "arrivals", capacity * 4)),
-          heights(make_scratch(device, "heights", capacity * 4)),
-          state(make_scratch(device, "build state", sizeof(scalar::BuildState))) {}
-
-    void bind(BindingTable& bindings) const {
-        using namespace scalar;
-        bindings.bind(kBindBuildBoxes, boxes);
-        bindings.bind(kBindBuildCodes, codes);
-        bindings.bind(kBindPairs, pairs);
-        bindings.bind(kBindSortedPairs, sorted_pairs);
-        bindings.bind(kBindHistogram, histogram);
-        bindings.bind(kBindBuildNumbers, numbers);
-        bindings.bind(kBindBuildSums, sums);
-        bindings.bind(kBindBuildArrivals, arrivals);
-        bindings.bind(kBindBuildHeights, heights);
-        bindings.bind(kBindBuildState, state);
+    Scratch(const Device& device, uint64_t capacity, uint64_t histogram_words) : capacity(capacity) {
+        const auto add = [&](uint32_t binding, const char* name, uint64_t bytes) {
+            buffers.emplace(binding, Buffer(device, {name, bytes}));
+        };
+        add(scalar::kBindBuildBoxes, "primitive boxes", capacity * 24);
+        add(scalar::kBindBuildCodes, "codes", capacity * 8);
+        add(scalar::kBindPairs, "code pairs", capacity * 8);
+        add(scalar::kBindSortedPairs, "sorted code pairs", capacity * 8);
+        add(scalar::kBindHistogram, "code histogram", histogram_words * 4);
+        add(scalar::kBindBuildNumbers, "cut numbers", (capacity + 1) * 4);
+        add(scalar::kBindBuildSums, "cut sums", (capacity / scalar::kBuildTileSize + 1) * 4);
+        add(scalar::kBindBuildArrivals, "arrivals", capacity * 4);
+        add(scalar::kBindBuildHeights, "heights", capacity * 4);
+        add(scalar::kBindBuildState, "build state", sizeof(scalar::BuildState));
     }
 
+    const Buffer& state() const { return buffers.at(scalar::kBindBuildState); }
+
     uint64_t capacity;
-    Buffer boxes, codes, pairs, sorted_pairs, histogram, numbers, sums, arrivals, heights, state;
+    std::map<uint32_t, Buffer> buffers; ///< by their bindings
 };
 
 void bind_tree(BindingTable& bindings, const DeviceTree& tree) {
@@ -130,8 +118,7 @@ double compute_bound_share(const BuildReport& report, double bandwidth) {
 
 double measure_copy_bandwidth(const Device& device, uint64_t bytes) {
     constexpr int kRuns = 5;
-    const Buffer from = make_scratch(device, "copied from", bytes),
-                 to = make_scratch(device, "copied to", bytes);
+    const Buffer from(device, {"copied from", bytes}), to(device, {"copied to", bytes});
     const BindingTable bindings(device);
     Commands commands(device, bindings);
     commands.begin_stage(Stage::copy);
@@ -173,15 +160,15 @@ void DeviceLbvhBuilder::Implementation::order_primitives(const DeviceMesh& mesh,
     const uint32_t count = mesh.triangle_count;
     if (!scratch || scratch->capacity < count)
         scratch = std::make_unique<Scratch>(device, count, kernels.sort.histogram_words(count));
-    scratch->bind(bindings);
+    for (const auto& [binding, buffer] : scratch->buffers) bindings.bind(binding, buffer);
     bindings.bind(scalar::kBindMeshTriangles, mesh.triangles);
     bindings.bind(scalar::kBindMeshPositions, mesh.positions);
     report = {.primitive_count = count, .code_bits = code_bits};
     seconds_before = commands.stage_seconds();
     begin(Part::boxes);
-    commands.fill(scratch->state, 0, sizeof(scalar::BuildState), 0);
-    commands.fill(scratch->state, scalar::kBuildCountWord * 4, 4, count);
-    commands.fill(scratch->state, offsetof(scalar::BuildState, lower), 12, 0xffffffffu);
+    commands.fill(scratch->state(), 0, sizeof(scalar::BuildState), 0);
+    commands.fill(scratch->state(), scalar::kBuildCountWord * 4, 4, count);
+    commands.fill(scratch->state(), offsetof(scalar::BuildState, lower), 12, 0xffffffffu);
     const scalar::BuildPush push{count, 0, 0, 0};
     commands.dispatch(kernels.boxes, count, push);
     // A triangle is 64 bytes with its corners.
@@ -217,7 +204,7 @@ void DeviceLbvhBuilder::Implementation::build_hierarchy(const scalar::BuildPush&
     commands.dispatch(kernels.numbers, in_tiles, push);
     commands.dispatch(of_codes.hierarchy, count, push);
     begin(Part::refit);
-    commands.fill(scratch->arrivals, 0, count * 4, 0);
+    commands.fill(scratch->buffers.at(scalar::kBindBuildArrivals), 0, count * 4, 0);
     commands.dispatch(kernels.refit, count, push);
 }
 
@@ -228,7 +215,7 @@ scalar::BuildState DeviceLbvhBuilder::Implementation::finish() {
         const size_t stage = size_t(kStages[part]);
         report.seconds[part] = commands.stage_seconds()[stage] - seconds_before[stage];
     }
-    const scalar::BuildState state = scratch->state.download<scalar::BuildState>(1).front();
+    const scalar::BuildState state = scratch->state().download<scalar::BuildState>(1).front();
     // A compact tree whose root was not reached has no depth.
     if (state.loops_ended > 0 || (state.cut_count > 0 && state.depth == 0))
         throw Error(ErrorKind::failed, {"the device ended a loop over the primitives of a leaf early",

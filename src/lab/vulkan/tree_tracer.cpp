@@ -14,21 +14,17 @@ namespace {
 
 constexpr uint32_t kGroupSize = 64;
 
-Buffer make_ray_buffer(const Device& device, const char* name, uint64_t bytes) {
-    return {device, {.name = name, .bytes = bytes}};
-}
-
 bool is_heap(const DeviceTree& tree) {
     return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
 }
 
-void check_query(const DeviceTree& tree, const TreeQuery& query) {
+void check_query(const DeviceTree& tree, const TreeQuery& query, WalkStart start) {
     const auto refuse = [](const char* message, const char* hint) {
         throw Error(ErrorKind::usage, {message, "tree traversal", hint});
     };
     if (!can_walk(query.traversal, tree))
         refuse("the traversal does not walk trees of this form", "choose another tree or traversal");
-    if (query.start == TreeQuery::Start::last_leaf && !is_heap(tree))
+    if (start == WalkStart::last_leaf && !is_heap(tree))
         refuse("only walks of heaps start at a leaf", "choose a heap and one of its trails");
     const bool is_trail = query.traversal == TraversalKind::restart_trail || is_heap(tree);
     if (is_trail && tree.depth > int(scalar::kTrailLevels64))
@@ -37,13 +33,14 @@ void check_query(const DeviceTree& tree, const TreeQuery& query) {
         refuse("the tree is too deep for the stack", "give the builder a smaller greatest depth");
 }
 
-scalar::WalkPush make_push(const DeviceTree& tree, uint32_t ray_count, const TreeQuery& query) {
+scalar::WalkPush make_push(const DeviceTree& tree, uint32_t ray_count, const TreeQuery& query,
+                           WalkStart start) {
     scalar::WalkPush push{};
     push.ray_count = ray_count;
     const bool is_empty = tree.node_count == 0;
     push.root = is_heap(tree) ? (is_empty ? 0u : 1u) : (is_empty ? scalar::kNoNode : 0u);
-    push.is_any = query.kind == TreeQuery::Kind::any;
-    push.has_start_keys = push.has_leaf_keys = query.start == TreeQuery::Start::last_leaf;
+    push.is_any = query.kind == HitKind::any;
+    push.has_start_keys = push.has_leaf_keys = start == WalkStart::last_leaf;
     push.flat_levels = tree.heap_form.flat_levels;
     push.flat_pairs = tree.heap_form.flat_pairs;
     push.cell_lower = tree.bounds.lower;
@@ -55,11 +52,11 @@ scalar::WalkPush make_push(const DeviceTree& tree, uint32_t ray_count, const Tre
 
 TreeRays::TreeRays(const Device& device, uint32_t capacity)
     : capacity(capacity),
-      rays(make_ray_buffer(device, "tree rays", capacity * sizeof(scalar::TreeRay))),
-      hits(make_ray_buffer(device, "tree hits", capacity * sizeof(scalar::TreeHit))),
-      start_keys(make_ray_buffer(device, "start keys", capacity * sizeof(scalar::HeapKey))),
-      leaf_keys(make_ray_buffer(device, "leaf keys", capacity * sizeof(scalar::HeapKey))),
-      counts(make_ray_buffer(device, "ray counts", capacity * sizeof(scalar::RayCounts))) {}
+      rays(device, {"tree rays", capacity * sizeof(scalar::TreeRay)}),
+      hits(device, {"tree hits", capacity * sizeof(scalar::TreeHit)}),
+      start_keys(device, {"start keys", capacity * sizeof(scalar::HeapKey)}),
+      leaf_keys(device, {"leaf keys", capacity * sizeof(scalar::HeapKey)}),
+      counts(device, {"ray counts", capacity * sizeof(scalar::RayCounts)}) {}
 
 TreeTracer::TreeTracer(const Device& device)
     : device_(device),
@@ -68,7 +65,7 @@ TreeTracer::TreeTracer(const Device& device)
       state_(device, {.name = "walk state", .bytes = sizeof(scalar::WalkState), .is_host_visible = true}) {}
 
 const Kernel& TreeTracer::find_kernel(const DeviceTree& tree, const TreeQuery& query) {
-    const uint32_t is_counting = query.counting == TreeQuery::Counting::each_ray;
+    const uint32_t is_counting = query.counting == Counting::on;
     const uint32_t is_succinct = tree.form == TreeForm::succinct_heap;
     const std::string shader = name_walk("tree_walk", query.traversal, tree.depth);
     const std::string name = fmt::format("{} {} {}", shader, is_counting, is_succinct);
@@ -99,15 +96,15 @@ void TreeTracer::bind(const DeviceTree& tree, const DeviceMesh& mesh, const Tree
 }
 
 void TreeTracer::trace(const DeviceTree& tree, const DeviceMesh& mesh, TreeRays& rays, uint32_t ray_count,
-                       const TreeQuery& query) {
+                       const TreeQuery& query, WalkStart start) {
     DCHECK(ray_count <= rays.capacity);
-    check_query(tree, query);
+    check_query(tree, query, start);
     bind(tree, mesh, rays);
     const Kernel& kernel = find_kernel(tree, query);
     commands_.begin_stage(Stage::tree_walk);
     commands_.fill(state_, 0, sizeof(scalar::WalkState), 0);
     const double before = commands_.stage_seconds()[size_t(Stage::tree_walk)];
-    commands_.dispatch(kernel, ray_count, make_push(tree, ray_count, query));
+    commands_.dispatch(kernel, ray_count, make_push(tree, ray_count, query, start));
     commands_.run();
     seconds_ = commands_.stage_seconds()[size_t(Stage::tree_walk)] - before;
     const uint32_t lost = static_cast<const scalar::WalkState*>(state_.mapped())->rays_lost;

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "lab/trees.h"
 #include "lab/vulkan/device_tree.h"
 #include "vulkan/device/commands.h"
 
@@ -17,23 +18,14 @@ struct TreeRays {
     uint32_t capacity;
     Buffer rays;       ///< scalar::TreeRay
     Buffer hits;       ///< scalar::TreeHit
-    Buffer start_keys; ///< scalar::HeapKey, of a node in the heap; see TreeQuery::Start
+    Buffer start_keys; ///< scalar::HeapKey, of a node in the heap; see WalkStart
     Buffer leaf_keys;  ///< scalar::HeapKey
-    Buffer counts;     ///< scalar::RayCounts
+    Buffer counts;     ///< scalar::RayCounts, where they are counted
 };
 
-struct TreeQuery {
-    enum class Kind { closest, any };
-    enum class Counting { off, each_ray };
-    /// last_leaf: each ray starts at its start_keys, and leaf_keys receive the leaf of its hit, its start
-    /// where nothing is hit (closest_hit_from and any_hit_from of lab/walks/walks.h). Heaps only.
-    enum class Start { root, last_leaf };
-
-    TraversalKind traversal = TraversalKind::stack;
-    Kind kind = Kind::closest;
-    Counting counting = Counting::off; ///< each_ray: fills counts
-    Start start = Start::root;
-};
+/// last_leaf: each ray starts at its start_keys, and leaf_keys receive the leaf of its hit, its start where
+/// nothing is hit (closest_hit_from and any_hit_from of lab/walks/walks.h). Heaps only.
+enum class WalkStart { root, last_leaf };
 
 /// One thread at a time. The device must outlive it.
 class TreeTracer {
@@ -44,7 +36,7 @@ class TreeTracer {
     /// tree; bits as on the CPU where the device divides exactly. Throws Error{usage} for a tree that the
     /// traversal cannot walk, Error{failed} when the device ended a walk early: no ray is lost in silence.
     void trace(const DeviceTree& tree, const DeviceMesh& mesh, TreeRays& rays, uint32_t ray_count,
-               const TreeQuery& query);
+               const TreeQuery& query, WalkStart start = WalkStart::root);
 
     /// Of the last trace, without uploads.
     double seconds() const { return seconds_; }

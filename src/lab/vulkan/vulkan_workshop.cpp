@@ -70,19 +70,13 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         return key < used_slots_.size() && used_slots_[key];
     }
 
-    TreeCast cast(const relief::TreeQuery& query, const TreeCastData& data) override {
+    TreeCast cast(const TreeQuery& query, const TreeCastData& data) override {
         const uint32_t count = uint32_t(data.rays.size());
         if (!rays_ || rays_->capacity < count) rays_.emplace(device_, std::max(count, 1u));
         rays_->rays.upload(std::as_bytes(data.rays));
-        TreeQuery walk;
-        walk.traversal = query.traversal;
-        walk.kind = query.kind == HitKind::any ? TreeQuery::Kind::any : TreeQuery::Kind::closest;
-        if (query.counting == Counting::on) walk.counting = TreeQuery::Counting::each_ray;
-        if (!data.keys.empty()) {
-            walk.start = TreeQuery::Start::last_leaf;
-            rays_->start_keys.upload(std::as_bytes(data.keys));
-        }
-        tracer_.trace(*tree_, mesh_, *rays_, count, walk);
+        const bool has_keys = !data.keys.empty();
+        if (has_keys) rays_->start_keys.upload(std::as_bytes(data.keys));
+        tracer_.trace(*tree_, mesh_, *rays_, count, query, has_keys ? WalkStart::last_leaf : WalkStart::root);
         TreeCast result;
         result.seconds = tracer_.seconds();
         if (query.counting == Counting::on) add_counts(count, result);

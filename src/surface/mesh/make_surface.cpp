@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <utility>
 
 #include <fmt/format.h>
@@ -217,6 +218,7 @@ void find_overrides(Surface& surface, const std::vector<uint8_t>& lacks_uvs) {
     struct Edge {
         uint64_t key;
         uint32_t patch_edge;
+        auto operator<=>(const Edge&) const = default;
     };
     std::vector<Edge> edges;
     std::vector<EdgeOverride> overrides;
@@ -230,9 +232,7 @@ void find_overrides(Surface& surface, const std::vector<uint8_t>& lacks_uvs) {
         const uint64_t a = surface.dominant(ends[0]), b = surface.dominant(ends[1]);
         edges.push_back({std::min(a, b) << 32 | std::max(a, b), patch_edge});
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return a.key != b.key ? a.key < b.key : a.patch_edge < b.patch_edge;
-    });
+    std::sort(edges.begin(), edges.end());
     if (!lacks_uvs.empty())
         std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
             return a.key != b.key ? a.key < b.key : lacks_uvs[a.patch_edge / 4] > lacks_uvs[b.patch_edge / 4];

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <numeric>
 #include <span>
 
@@ -15,6 +16,7 @@ std::vector<uint32_t> add_edge_points(const Polygons& polygons, std::vector<Vec3
     struct Edge {
         uint64_t key;
         uint32_t corner;
+        auto operator<=>(const Edge&) const = default;
     };
     std::vector<Edge> edges;
     edges.reserve(polygons.points.size());
@@ -25,9 +27,7 @@ std::vector<uint32_t> add_edge_points(const Polygons& polygons, std::vector<Vec3
             edges.push_back({std::min(a, b) << 32 | std::max(a, b), start + k});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-    });
+    std::sort(edges.begin(), edges.end());
     std::vector<uint32_t> result(edges.size());
     for (size_t k = 0; k < edges.size(); ++k) {
         if (k == 0 || edges[k].key != edges[k - 1].key) {

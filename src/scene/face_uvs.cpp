@@ -1,4 +1,6 @@
-#include "scene/faces_without_uvs.h"
+#include "scene/face_uvs.h"
+
+#include <cmath>
 
 namespace relief {
 
@@ -24,6 +26,33 @@ FacesWithoutUvs find_faces_without_uvs(const Mesh& mesh) {
     for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face], ++face)
         if (!has_uvs(mesh, first) && result.count++ == 0) result.first = face;
     return result;
+}
+
+double compute_uv_area(const Mesh& mesh, size_t first, uint32_t size) {
+    double area = 0;
+    for (uint32_t k = 0; k < size && has_uvs(mesh, first); ++k) {
+        const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
+        const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];
+        area += (double(a.x) * b.y - double(a.y) * b.x) / 2;
+    }
+    return area;
+}
+
+std::set<int> list_tiles(const Mesh& mesh) {
+    std::set<int> tiles;
+    size_t first = 0;
+    for (const uint32_t size : mesh.face_sizes) {
+        double u = 0, v = 0;
+        for (size_t k = first; k < first + size && k < mesh.uv_indices.size(); ++k)
+            if (mesh.uv_indices[k] < mesh.uvs.size()) {
+                u += double(mesh.uvs[mesh.uv_indices[k]].x) / size;
+                v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
+            }
+        first += size;
+        u = std::floor(u), v = std::floor(v);
+        if (u >= 0 && u <= 9 && v >= 0 && v < 1e6) tiles.insert(1001 + int(u) + 10 * int(v));
+    }
+    return tiles;
 }
 
 Mesh drop_faces_without_uvs(const Mesh& mesh) {
