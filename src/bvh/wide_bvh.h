@@ -12,10 +12,9 @@
 
 namespace relief {
 
-/// 96 bytes. Child boxes are origin + code * 2^exponent: the product is exact and every decoder agrees. Codes
-/// are rounded outward and checked with the decoder. Children fill the slots from 0. Unused slots have lower
-/// code 255 and upper code 0 in x, so lower > upper; a slab test that widens its interval may still enter
-/// them where the box is tiny next to its distance, so walkers must mask by child_count.
+/// 96 bytes. Child boxes are origin + code * 2^exponent, which is exact; codes are rounded outward. Children
+/// fill the slots from 0; unused slots have lower > upper in x. Walkers must mask by child_count: a widened
+/// slab test may still enter such slots.
 struct WideNode : WideChild {
     static constexpr int kMaxChildCount = kMaxWideChildCount;
 
@@ -51,10 +50,9 @@ struct WideBvh {
 /// Inner children of a node are adjacent. Throws Error for more than 2^28 primitives.
 WideBvh make_wide_bvh(const Bvh& bvh);
 
-/// New boxes after some primitives have moved, in a tree whose leaves hold one primitive each; it keeps its
-/// shape. `is_moved` holds a byte a primitive; `find_box` gives the
-/// box of a primitive as it is now and is called from several threads, also for some that have not moved.
-/// Boxes of what has not moved may come out a little larger than before, but do not grow from call to call.
+/// Refits a tree of one primitive a leaf, shape kept. `is_moved`: a byte a primitive; `find_box` gives
+/// current boxes, for several threads, also of some that have not moved. Boxes of the unmoved may come out
+/// slightly larger, but do not grow from call to call.
 void refit_wide_bvh(WideBvh& tree, std::span<const uint8_t> is_moved,
                     const std::function<Box(uint32_t primitive)>& find_box);
 

@@ -13,9 +13,8 @@ struct FrameCoordinates {
     float error = 0; ///< distance from what the frame makes of `tbn` to what was requested
 };
 
-/// The (t, b, n) that the frame turns into `d`. Along directions that the frame shortens to less than
-/// kLeastStretch of what its corners do, components are damped, so that none is larger than |d| /
-/// (kLeastStretch x the length of its axis at the corners); sound frames are inverted as they are.
+/// The (t, b, n) that the frame turns into `d`. Components along directions that the frame shortens to less
+/// than kLeastStretch of its corners' lengths are damped to at most |d| / (kLeastStretch x that length).
 FrameCoordinates invert_frame(const TexelFrame& frame, const Vec3f& d);
 
 } // namespace relief

@@ -20,8 +20,7 @@ using RunCast =
 /// Bytes of all trees of a patch at its levels.
 size_t count_tree_bytes(uint32_t level);
 
-/// Closest hits of rays without LOD bias. False, and `hits` unusable, if the trees of all patches that the
-/// rays may meet fit into `room_bytes`.
+/// Closest hits of rays without LOD bias. False, and no hits, if all trees needed fit into `room_bytes`.
 bool trace_ordered(const Kernels& kernels, const SceneView& scene, const RunCast& run,
                    std::span<const TraceRay> rays, std::span<TraceHit> hits, size_t room_bytes);
 

@@ -75,8 +75,8 @@ class Tracer {
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 
-    /// While this lives, rays end with StopRequest before the next patch tree once `is_asked_for` is true. To
-    /// be made and ended while nothing is traced.
+    /// While this lives, rays stop with StopRequest once `is_asked_for` is true. Made while nothing is
+    /// traced.
     class StopScope {
       public:
         StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);
@@ -96,18 +96,16 @@ class Tracer {
     /// them: bounces behind the rays. Instances are met whose visibility mask shares a bit with `mask`.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0,
                       uint32_t mask = kVisibleToAll) const;
-    /// The same of rays without an LOD bias, at most kOrderedRays, on the threads of the scope: each patch
-    /// tree is built once for all of them (ordered_hits.h). False, and nothing is found, where the trees that
-    /// they need fit into the cache, or rays are too few or need another traversal.
+    /// The same for up to kOrderedRays rays without LOD bias: one build per patch tree (ordered_hits.h).
+    /// False, and nothing found, if their trees fit into the cache or ordering does not apply.
     bool ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, uint32_t mask) const;
     /// False where ordered_hits of `count` rays is sure to be.
     bool may_order(size_t count) const;
     /// The same for further parts of rays that closest_hits has counted.
     void continued_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const;
 
-    /// Nearest hits of what a camera without an aperture sees at positions of the picture, in pixels:
-    /// closest_hits of the rays that scalar::make_pinhole_ray aims, bit for bit. Give neighbours in runs of
-    /// 256. The rays are written to `rays`, which has as many places as there are positions, or none.
+    /// Nearest hits of a pinhole camera at positions in pixels: bit-identical to closest_hits of the rays of
+    /// scalar::make_pinhole_ray. Give neighbours in runs of 256. `rays` receives the rays unless it is empty.
     void camera_hits(const scalar::CameraFrame& camera, std::span<const Vec2f> positions,
                      std::span<TraceRay> rays, std::span<TraceHit> hits) const;
 

@@ -50,9 +50,8 @@ class Film {
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 
-    /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
-    /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
-    /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
+    /// R G B A and the layers: means over the samples (normals normalised again, P and uv over hits); depth
+    /// and id of the nearest first hit; variance of the mean. Without samples: 0, depth infinity.
     Image resolve() const;
 
     /// The least number of samples that a pixel has.

@@ -1,6 +1,5 @@
-// Sixteen (or eight, or four) floats as one value: one register with AVX-512, two with AVX2, four with SSE4
-// and NEON, emulated without SIMD. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
-// Nothing is fused, so results are bit-identical on all targets.
+// Sixteen (or eight, or four) floats as one value: in one, two or four registers, or emulated. Compiled once
+// per target by Highway, inside HWY_NAMESPACE. Nothing is fused: bit-identical on all targets.
 #if defined(RELIEF_MATH_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_LANES_INL_H
 #undef RELIEF_MATH_LANES_INL_H

@@ -1,6 +1,5 @@
-// The common dialect of GLSL 4.60 and C++20 (docs/decisions/one-source-formulas.md). GLSL gets its names
-// here; C++ defines them before: FN EXACT Float Bool Uint Vec2 Vec3 select is_any copy_sign is_finite
-// make_unit.
+// Common dialect of GLSL 4.60 and C++20 (docs/decisions/one-source-formulas.md). GLSL's names; C++ defines
+// them elsewhere: FN EXACT Float Bool Uint Vec2 Vec3 select is_any copy_sign is_finite make_unit.
 #ifndef __cplusplus
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H

@@ -19,8 +19,7 @@ FN float invert_mantissa(float m) {
     return third;
 }
 
-/// Cell of `position` in [lower, upper] cut into 2^bits cells; 0 where the interval is empty or a value is
-/// NaN. Scaled by a quarter, so that no difference of floats overflows.
+/// Cell of `position` of 2^bits in [lower, upper]; 0 if empty or NaN. Quartered, so as not to overflow.
 FN uint quantise_position(float position, float lower, float upper, uint bits) {
     EXACT float extent = upper * 0.25f - lower * 0.25f;
     EXACT float offset = position * 0.25f - lower * 0.25f;

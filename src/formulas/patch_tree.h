@@ -1,6 +1,5 @@
-// Complete quadtree over the cells of a patch or tile. No links: the next node follows from the index of the
-// current one (Harada 2015 tabulates them). Nodes are stored level by level, in Morton order within a level;
-// a node is three words, one per axis: lower code, upper code. Vertices follow, row by row.
+// Complete quadtree over the cells of a patch or tile, without links (cf. Harada 2015): by levels, in Morton
+// order; a node is three words, one per axis: lower code, upper code. Vertices follow by rows.
 #ifndef RELIEF_PATCH_TREE_H
 #define RELIEF_PATCH_TREE_H
 #include "formulas/exact.h"

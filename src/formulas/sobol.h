@@ -1,6 +1,5 @@
-// Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair). Burley 2020,
-// Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0, 2)-sequence of Sobol,
-// scrambled independently. Samples do not depend on their count, so renders can be extended.
+// Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair); each pair is
+// a scrambled (0, 2)-sequence (Burley 2020, JCGT 9, 4). Renders can be extended.
 #if !defined(RELIEF_SOBOL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SOBOL_H

@@ -41,10 +41,9 @@ FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, Fl
 FN Float largest_coordinate(Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 FN Float sum_magnitudes(Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
-/// Bound of the position error of a point that is interpolated and transformed, and whose spawned ray is
-/// transformed back: each step errs by a few ulp of the largest term. `corner`: largest coordinate of the
-/// corners in object space; `row`: largest sum_magnitudes of the linear part's rows; `translation` and
-/// `position`: their largest coordinates.
+/// Bound of a point's position error: each step errs by a few ulp of the largest term. `corner`: largest
+/// coordinate of the corners in object space; `row`: largest sum_magnitudes of the linear part's rows;
+/// `translation` and `position`: their largest coordinates.
 FN Float bound_position_error(Float corner, Float row, Float translation, Float position) {
     const float units = 32.0f * 5.9604644775390625e-8f;
     return Float(units) * (row * corner + translation + position);

@@ -1,10 +1,9 @@
 // Layouts of the trees that traverse_*.h traverse, and the hooks that those expect of their includer.
 //
-// traverse_*.h are loops, not formulas, and therefore not in this folder: GLSL includes them after declaring
-// the hooks below, C++ includes them in the body of a class with the hooks as members
-// (lab/walks/walk_members-inl.h). Each has a state of a few words, in a global variable or member:
-// start_x(root) initialises it, walk_x() resumes from it. The state is advanced before a leaf is visited, so
-// a leaf that is an instance can save it and start on another tree; resume_walk() restores it.
+// traverse_*.h are loops, not formulas: GLSL includes them after declaring the hooks below, C++ in the body
+// of a class with these members (lab/walks/walk_members-inl.h). Each has a state of a few words:
+// start_x(root) initialises it, walk_x() resumes. It is advanced before a leaf is visited, so an instance can
+// save it and start on another tree; resume_walk() restores it.
 //
 // Hooks of all traversals:
 // - bool visit_leaf(uint first, uint word, uint node): tests the primitives of a leaf; true ends the
@@ -12,8 +11,7 @@
 // - bool resume_walk(): called when a tree is finished; true: another state has been restored.
 // - float get_limit(): t_max of the ray, shortened by hits.
 // - void count_box_test(), count_restart(), count_bytes(uint): empty where statistics are off. Bytes are
-//   those
-//   of nodes, links and directories; primitives are counted by visit_leaf.
+//   those of nodes, links and directories; primitives are counted by visit_leaf.
 //
 // Of traversals of BVHs:
 // - TreeNode load_node(uint node): 32 bytes.
@@ -28,8 +26,8 @@
 // - uint load_parent(uint node): 4 bytes. Parent links.
 // - uint load_skip(uint node): 4 bytes; kNoNode behind the last. Skip links.
 //
-// Of kd-trees: KdNode load_kd_node(uint node), 8 bytes; KdBox load_kd_box(uint node), 32 bytes, backtrack
-// only. There `word` of visit_leaf is the count alone.
+// Of kd-trees: KdNode load_kd_node(uint node), 8 bytes; KdBox load_kd_box(uint node), 32, backtrack only.
+// `word` of visit_leaf is then the count alone.
 #ifndef RELIEF_TREE_H
 #define RELIEF_TREE_H
 #include "formulas/constants.h"

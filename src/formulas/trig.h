@@ -1,6 +1,5 @@
-// Sine, cosine and their inverses as polynomials, bit-identical for any number of lanes and instruction set,
-// and equal on devices up to rounding: math libraries differ more, and few are vectorised. Coefficients:
-// Moshier 1992, Cephes Mathematical Library (single precision).
+// Sine, cosine and their inverses as polynomials (Moshier 1992, Cephes, single precision): bit-identical on
+// all instruction sets, and equal on devices up to rounding, unlike math libraries.
 #if !defined(RELIEF_TRIG_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_TRIG_H

@@ -1,6 +1,5 @@
-// The formula dialect over sixteen lanes: vectors, comparisons and selections on the types of lanes-inl.h.
-// Each lane performs the operations of the scalar instance (scalar.h) in the same order, so results are
-// bit-identical. Compiled once per target by Highway; use inside HWY_NAMESPACE only.
+// The formula dialect over sixteen lanes, on the types of lanes-inl.h: each lane does the operations of
+// scalar.h in order, bit-identically. Compiled once per target by Highway, inside HWY_NAMESPACE.
 #if defined(RELIEF_MATH_WIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RELIEF_MATH_WIDE_INL_H
 #undef RELIEF_MATH_WIDE_INL_H

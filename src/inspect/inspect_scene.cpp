@@ -170,9 +170,8 @@ double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int cou
     return all * std::pow(count / whole, power);
 }
 
-/// What a render would take: parts of the picture are rendered for about a second and a half with a few
-/// samples. Tracing grows with pixels and samples, building of patch trees for the first sample with the part
-/// of the surfaces that is seen; what later samples build they build for all pixels, as trees were dropped.
+/// Estimates a render from about 1.5 seconds of partial renders. Tracing grows with pixels and samples, tree
+/// building for the first sample with the visible part, later with all pixels.
 Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
                    const RenderSettings& settings) {
     constexpr double kBudget_s = 1.5;

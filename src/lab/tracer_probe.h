@@ -79,9 +79,8 @@ class TracerProbe {
     /// Rays through the middles of the picture's pixels in the order of packets: squares of 4 x 4 within
     /// tiles of 16 x 16. With an aperture each has a place on the lens of its own, always the same.
     std::vector<Ray> make_camera_rays(const Camera& camera) const;
-    /// The scene's camera: the same rays in the same order, made and traced as the engine does it, the making
-    /// by the clock.
-    /// `room`: of an earlier run, its memory is used again.
+    /// The scene's camera: the same rays in the same order as the engine's, making them by the clock. `room`:
+    /// of an earlier run, its memory is used again.
     ProbeRun trace_camera(ProbeRun room = {}) const;
     ProbeRun trace(std::span<const Ray> rays, HitKind kind, RayGrouping grouping, ProbeRun room = {}) const;
 

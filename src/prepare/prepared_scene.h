@@ -55,9 +55,8 @@ struct PreparedScene {
 /// Chooses the copies of maps that the surfaces read, by the levels of their instances.
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 
-/// The one way from a scene to a prepared one, for renders, sessions and intersectors. Validates, makes
-/// surfaces in parallel, computes level fields, and lists what the scene is warned of. Meshes of `scene` are
-/// freed as they are used. Throws Error: bad_input, out_of_memory for a tessellation.
+/// The one way from a scene to a prepared one: validates, makes surfaces in parallel, computes levels, lists
+/// warnings; meshes are freed as used. Throws bad_input, out_of_memory for a tessellation.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
 
 } // namespace relief

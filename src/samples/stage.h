@@ -17,8 +17,7 @@ class Stage {
     /// Takes a model in; returns its index.
     uint32_t add_model(const Model& model);
 
-    /// An object that wears a model. With Instancing::none it gets a mesh of its own, shaped by `deform`;
-    /// with Instancing::shared all objects of a model share one plain mesh.
+    /// An object of a model: with Instancing::none its mesh is its own, shaped by `deform`; else shared.
     void add_displaced(uint32_t model, const std::string& name, const Affine& world_from_object,
                        const Deformation& deform);
 

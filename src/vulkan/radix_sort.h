@@ -20,9 +20,8 @@ class RadixSort {
     /// Number of passes; each reads all pairs twice and writes them once.
     static uint32_t count_passes(uint32_t key_bits);
 
-    /// Sorts the first counters[counter_word] pairs of kBindPairs, at most `capacity`, by the lowest
-    /// `key_bits` (0 to 32) of their first word; higher bits must be 0. The result is in kBindPairs;
-    /// overwrites kBindSortedPairs, of the same size, and kBindHistogram.
+    /// Sorts counters[counter_word] pairs of kBindPairs, at most `capacity`, by the lowest `key_bits` of
+    /// their first word (others 0), in place; overwrites kBindSortedPairs and kBindHistogram.
     void record(Commands& commands, uint64_t capacity, uint32_t key_bits, uint32_t counter_word) const;
 
   private:

@@ -1,6 +1,5 @@
-// First hits of camera rays by rasterisation: every cell of every surface is drawn as a conservative
-// rectangle of pixels whose rays are tested against it. Hits are bit-identical to those of the tracer
-// (docs/decisions/hybrid-by-exact-raster.md).
+// First camera hits by rasterisation: every cell is drawn as a conservative rectangle of pixels whose rays
+// are tested, bit-identical to the tracer's (docs/decisions/hybrid-by-exact-raster.md).
 #pragma once
 
 #include <cstdint>
@@ -27,8 +26,7 @@ struct RasterBuffers {
 /// Not thread safe; all calls are synchronous.
 class Rasteriser {
   public:
-    /// The buffers must be bound to the tracer's bindings as kBindRasterVertices and so on; all must outlive
-    /// it. The tracer's device must have been made for RenderMethod::hybrid.
+    /// Its buffers must be bound as kBindRasterVertices etc. and outlive it; RenderMethod::hybrid only.
     Rasteriser(Tracer& tracer, const RasterBuffers& buffers);
 
     /// Finds the hits of the camera kernel's rays, into kBindHits. A pinhole; at most max_draw_size() a side.

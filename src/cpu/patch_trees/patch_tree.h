@@ -1,10 +1,8 @@
-// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over
-// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
-// stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
+// What a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over blocks of 4 x
+// 2 micro-quads (16 triangles). Vertices are kept once, in their tile's grid; blocks load three rows of it.
 //
-// A patch tree covers one tile of at most 64 x 64 cells. A patch finer than that has a directory: a tree of
-// the same sixteen-wide nodes over the boxes of its tiles' quarters, so that only the tiles that rays enter
-// are ever evaluated.
+// A patch tree covers a tile of at most 64 x 64 cells. Finer patches have a directory, the same tree over the
+// boxes of their tiles' quarters: only the tiles that rays enter are evaluated.
 #pragma once
 
 #include <atomic>
@@ -76,8 +74,7 @@ struct PatchTree : CachedTree {
                : level == 3 ? sizeof(Node8)
                             : 0;
     }
-    /// Vertices a row, and rows: those of a block at least. What a tile has less repeats its last column and
-    /// row, which makes triangles without area that no ray hits.
+    /// Vertices a row, and rows, at least a block's: the rest repeats the last ones, without area.
     static constexpr uint32_t column_count(int level) { return level < 2 ? 5 : (1u << level) + 1; }
     static constexpr uint32_t row_count(int level) { return level < 1 ? 3 : (1u << level) + 1; }
     static constexpr uint32_t vertex_count(int level) { return column_count(level) * row_count(level); }
@@ -142,10 +139,9 @@ constexpr size_t PatchTree::size_bytes(int level) {
     return sizeof(PatchTree) + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
 }
 
-/// Tree over the quarters of the tiles of a patch above kTileLevel, 2^depth of them a side: their boxes come
-/// from the map, and those of whole tiles would be a good deal larger. Step s has step_side(s)^2 nodes, row
-/// by row; a node's children are 4 x 4 nodes of the next step (2 x 2 from the root when depth is odd); those
-/// of the last step are the quarters of four tiles.
+/// Tree over the quarters of a finer patch's tiles, 2^depth a side, with boxes from the map, smaller than
+/// those of whole tiles. Step s has step_side(s)^2 nodes by rows; children are 4 x 4 nodes of the next step
+/// (2 x 2 from the root when depth is odd); those of the last step are the quarters of four tiles.
 struct TileDirectory : CachedTree {
     uint32_t depth = 0;
 

@@ -1,10 +1,9 @@
 // Patch trees kept between rays, batches, samples and bounces, under a byte cap.
 //
-// No lock is taken inside a traversal: a look-up reads a few slots of a fixed table; a miss builds privately
-// and offers the tree to the table by compare-and-swap; what the clock hand evicts is unlinked first and
-// freed when no worker can hold it any more (epoch-based reclamation, Fraser 2004, Practical lock-freedom,
-// section 5.2.3). When the cap leaves no room, a tree lives in the worker's scratch memory for one visit. The
-// image never depends on any of this.
+// Traversals take no lock: a look-up reads a few slots of a fixed table, a miss builds privately and
+// publishes by compare-and-swap; what the clock hand evicts is unlinked, and freed when no worker can hold it
+// (epoch-based reclamation, Fraser 2004, section 5.2.3). Beyond the cap a tree lives in scratch memory for
+// one visit. The image never depends on any of this.
 #pragma once
 
 #include <atomic>

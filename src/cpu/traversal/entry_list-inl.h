@@ -8,8 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// Children to visit, at most kCapacity (a power of two): entry distances with the child in the lowest bits,
-/// so that integer order is distance order for t >= 0.
+/// Children to visit, up to kCapacity (a power of two): distances with the child in the lowest bits.
 template <uint32_t kCapacity> struct EntryList {
     static constexpr uint32_t kChildMask = kCapacity - 1;
     alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored

@@ -1,6 +1,5 @@
-// Hits of a bundle as they are found: a ray keeps the number of its nearest one in a log, and what a TraceHit
-// says besides is worked out sixteen at a time when the bundle is done with an instance, or the log is full.
-// Most rays meet more than one hit on the way to the nearest. All of the log is of one instance.
+// Hits of a bundle as they are found, all of one instance: a ray keeps the index of its nearest one;
+// TraceHits are completed sixteen at a time at the end, since most rays meet several hits before the nearest.
 #pragma once
 
 #include <cstddef>

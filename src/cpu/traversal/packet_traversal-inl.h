@@ -1,7 +1,6 @@
-// Sixteen coherent rays at once: every box is tested against all of them, every leaf block against those that
-// enter it. Boxes and triangles are the very tests of the single ray: hits are bit-identical to single-ray
-// traversal.
-// Many rays from one point, and those through a lens, travel as a bundle instead (bundle_traversal-inl.h).
+// Sixteen coherent rays at once: boxes are tested against all of them, leaf blocks against those that enter.
+// The tests are those of single rays: hits are bit-identical. Larger groups with a common origin travel as a
+// bundle (bundle_traversal-inl.h).
 #pragma once
 
 #include "cpu/traversal/ray_packet-inl.h"

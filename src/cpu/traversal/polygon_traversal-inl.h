@@ -20,8 +20,7 @@ HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
     a = farther, b = nearer;
 }
 
-/// The place of a hit on its polygon from the weights of corners b and c. 0 is added as where the cell of a
-/// patch is: make_hits does the same for both, and a weight may be -0.
+/// Place on a polygon from the weights of b and c; 0 is added as for patches, since a weight may be -0.
 HWY_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
     hit.is_upper = is_upper;
     hit.u = 0.0f + (is_upper ? weight_b : weight_b + weight_c);

@@ -1,10 +1,8 @@
-// What all rays that travel together have in the space of one object. They are seen on a plane, where boxes
-// and blocks have bounds that are tested once for all of them, and each ray meets only the blocks in whose
-// bounds it lies. How a place on the plane is found depends on the kind: a frustum (frustum-inl.h) or a
-// parallel beam (parallel_beam-inl.h).
+// What rays that travel together have in the space of one object. On a plane, boxes and blocks have bounds
+// that are tested once for all; each ray meets only blocks whose bounds hold it. Places on the plane depend
+// on the kind: frustum (frustum-inl.h) or parallel beam (parallel_beam-inl.h).
 //
-// Bounds are wider than rounding asks for; what decides a hit is the test of triangle_test-inl.h, operation
-// for operation: hits are bit-identical to single-ray traversal.
+// Bounds are conservative; hits are decided by triangle_test-inl.h, bit-identical to single-ray traversal.
 #pragma once
 
 #include "cpu/traversal/bundle_rays-inl.h"

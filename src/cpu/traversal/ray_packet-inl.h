@@ -13,10 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// What holds of all rays of a packet: a node's children that it excludes are entered by none, since the
-/// bounds go through the operations of test_child in the same order and rounding keeps that order. After
-/// Boulos, Wald, Shirley 2006 (Geometric and Arithmetic Culling Methods for Entire Ray Packets). The rays are
-/// finite; empty slots, from +inf to -inf, are excluded.
+/// Bounds of all rays of a packet: nodes that they exclude are entered by none, since they go through the
+/// same rounded operations as test_child (after Boulos, Wald, Shirley 2006, Geometric and Arithmetic
+/// Culling). The rays are finite; empty slots, from +inf to -inf, are excluded.
 struct PacketBounds {
     int near_plane[3], far_plane[3]; ///< rows of a node's bounds
     float near_origin[3], far_origin[3];

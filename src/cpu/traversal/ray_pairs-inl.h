@@ -1,6 +1,5 @@
-// Which rays of a bundle may meet which micro-quads of a block, or triangles of a polygon: pairs of the two,
-// sixteen of them tested at once. Where a micro-quad is about as large as a pixel, few rays see it, and where
-// a polygon is large, all do: a lane a triangle of one block would leave most lanes idle.
+// Pairs of a bundle's rays and micro-quads or polygons that they may meet, tested sixteen at once. One lane a
+// triangle would leave most idle: few rays see a pixel-sized micro-quad, all see a large polygon.
 #pragma once
 
 #include <cstring>
@@ -59,8 +58,7 @@ HWY_INLINE ProjectedBounds find_bounds(const Lanes<W> (&v)[3], const Bundle& bun
     return bounds;
 }
 
-/// Up to all pairs of a group of rays and eight parts, and what a step left over. With each pair goes what
-/// its test reads of the ray: lanes that look it up elsewhere are slow.
+/// Up to all pairs of rays and eight parts, and a step's rest, each with what its test reads of the ray.
 template <int kValues> struct PairList {
     static constexpr uint32_t kCapacity = 8 * kGroupSize + 16;
     alignas(64) uint32_t code[kCapacity + 16]; ///< ray * 8 + part; a little more, for whole registers
@@ -185,8 +183,7 @@ HWY_INLINE void shear_corners(const PairLanes<Bundle::kPairValues>& pairs, const
     }
 }
 
-/// The triangles of corners 0, kSecond and kThird, however far along the rays: test.t is the place along the
-/// major axis. False where no ray's line meets one.
+/// The triangles of corners 0, kSecond and kThird on the rays' lines, test.t along the major axis.
 template <int kSecond, int kThird, int kValues, int kCount>
 HWY_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&corner)[3][kCount],
                            TriangleTest<16>& test) {

@@ -1,9 +1,8 @@
 // The exact test of triangles against rays, and which of several hits counts.
 //
-// Watertight after Woop, Benthin, Wald 2013 (Watertight Ray/Triangle Intersection): vertices are sheared into
-// ray space once each, and an edge function of a shared edge is the same two rounded products subtracted in
-// either order, so its sign is never wrong, only zero, and zero counts as inside. No fused operations here:
-// they would break that.
+// Watertight after Woop, Benthin, Wald 2013: vertices are sheared into ray space once each, and an edge
+// function is the same rounded products subtracted in either order: its sign is never wrong, only zero, which
+// counts as inside. Fused operations would break that.
 #pragma once
 
 #include "cpu/traversal/ray-inl.h"

@@ -3,9 +3,8 @@
 
 namespace relief {
 
-/// The thread count to open an EXR file with, so that no more threads code it than parallel loops may use
-/// here (thread_count()); 0: one after the other. Makes OpenEXR's pool where there is none, and leaves alone
-/// the one that a host program made. For any thread.
+/// The thread count to open an EXR file with, at most thread_count(); 0: serial. Makes OpenEXR's pool where
+/// there is none, and leaves a host program's alone. For any thread.
 int prepare_exr_threads();
 
 } // namespace relief

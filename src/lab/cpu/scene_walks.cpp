@@ -160,8 +160,7 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
     void count_restart() {}
     void count_bytes(uint) {}
 
-    /// Of a primitive of a leaf. The box of another leaf was met on the way; that of a kd leaf holds more
-    /// than its primitives, and these come again in others.
+    /// Of a leaf's primitive: other leaves' boxes were met on the way; a kd leaf's hold more than it has.
     bool is_to_be_entered(uint32_t id, Mailbox& mailbox) {
         if constexpr (kIsKd) {
             const Box& box = tree_->boxes[id];

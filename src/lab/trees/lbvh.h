@@ -36,8 +36,7 @@ class LbvhBuilder {
         int levels = 0; ///< [1, DenseHeap::kMaxLevels]: the heap has 2^levels slots; 0: choose_heap_levels
     };
 
-    /// The heap of the paper, of 2^levels slots: leaves hold all primitives of a code, and on the last level
-    /// all that is left. Throws Error for more than kNodeCountMask primitives.
+    /// The paper's heap of 2^levels slots; last-level leaves hold the rest. Error for over kNodeCountMask.
     static DenseHeap build_heap(std::span<const Box> boxes, const HeapConfig& config);
 };
 

@@ -23,9 +23,8 @@ struct KdTree {
     }
 };
 
-/// Cells are closed: a primitive that touches a plane goes to both sides, and one that is nearer to it than
-/// the rounding of a ray's distances counts as touching. No cell is thinner than that, none is flat: so the
-/// same tree serves all three walks, and none of them loses a hit.
+/// Cells are closed: a primitive within rounding of a plane goes to both sides. No cell is thinner than that,
+/// none is flat: one tree serves all three walks, and none loses a hit.
 class SahKdTreeBuilder {
   public:
     enum class Cells { left_out, kept };
@@ -41,8 +40,7 @@ class SahKdTreeBuilder {
 
     static constexpr int kMaxDepth = 62;
 
-    /// Every box must be finite and not empty. The same for any number of threads. No boxes: an empty tree.
-    /// Throws Error where nodes or entries could be more than their words count.
+    /// Boxes must be finite and not empty. Deterministic. No boxes: an empty tree. Throws Error if too large.
     static KdTree build(std::span<const Box> boxes, const Config& config);
 };
 

@@ -25,10 +25,9 @@ struct BuildReport {
     double primitives_per_second() const { return primitive_count / total_seconds(); }
 };
 
-/// Bytes that a build like this one has to read and write, with a sort that goes over its pairs once a pass
-/// of eight bits. For a triangle 18 of its box, 26 of its code (30 with 63 bits) and 68 of the sort (200); of
-/// a linked tree 24 of links (28), 68 of leaves and 88 of inner nodes; of a heap 36 of its entry (40), and
-/// for each slot 64: it is written on the way down and on the way up.
+/// Least bytes that such a build reads and writes, at one pass of sort per eight bits. A triangle: 18 box, 26
+/// code (30 with 63 bits), 68 sort (200); linked trees: 24 links (28), 68 leaves, 88 inner nodes; heaps: 36
+/// entry (40), and 64 a slot, written on the way down and up.
 double compute_least_build_bytes(const BuildReport& report);
 
 /// Share of the rate that memory traffic allows; `bandwidth`: measure_copy_bandwidth.

@@ -32,8 +32,7 @@ void start_kd(uint root, KdRay ray) {
     kd_walk = state;
 }
 
-/// From a cell that the ray has left at `near`. The test of its planes is counted as that of a box; a way
-/// down from a cell further up as a restart.
+/// From a cell that the ray left at `near`. Counts as a box test; from further up as a restart.
 void climb_kd_cells() {
     KdBox box = load_kd_box(kd_walk.node);
     count_bytes(kKdBoxBytes);

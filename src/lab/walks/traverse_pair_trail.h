@@ -1,6 +1,5 @@
-// Postponed-bit trail (Binder and Keller 2016) on a heap: both children are one line of 64 bytes and tested
-// together, the nearer goes first, and the way back is one shift: no stack, no parents, no hash. May start at
-// any node, like the other trail. At most kTrailLevels32 or 64 levels. Included as tree.h says.
+// Postponed-bit trail (Binder and Keller 2016) on a heap: siblings are one 64-byte line, tested together;
+// going back is one shift. Starts at any node. At most kTrailLevels32 or 64 levels. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_PAIR_TRAIL_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_PAIR_TRAIL_H

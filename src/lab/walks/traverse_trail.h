@@ -1,7 +1,6 @@
-// Bit trail on a heap (Murguia et al. 2013): a node is tested when the walk comes to it;
-// then down, or to the next sibling that is due, by shifts alone. It may start at any node and still visits
-// every leaf once: what lies under the start first, then the siblings of its ancestors, whose own boxes are
-// never tested. Trees of at most kTrailLevels32 or 64 levels. Included as tree.h says.
+// Bit trail on a heap (Murguia et al. 2013): tests a node on arrival, then goes down, or to the next sibling
+// due, by shifts. It may start at any node and visits every leaf once; ancestors' boxes are not tested. At
+// most kTrailLevels32 or 64 levels. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_TRAIL_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_TRAIL_H

@@ -155,10 +155,9 @@ template <class Tree> scalar::WalkView<Tree, scalar::HeapKey> make_wide_walk_vie
     return {tree};
 }
 
-/// Calls `leaf(primitive_id, ray)` for every primitive whose box the ray may meet before ray.t_max (in a
-/// kd-tree perhaps several times); the leaf shortens ray.t_max to its hits and decides ties. Trails may start
-/// at any node, `start`, which becomes the leaf of the hit, if there is one: successive rays often end at the
-/// same things. Others start at the root. `counts`: WalkCounts to add to, or NoCounts.
+/// Calls `leaf(primitive_id, ray)` for primitives whose box the ray may meet before ray.t_max (in kd-trees
+/// perhaps again); the leaf shortens ray.t_max and decides ties. Trails start at node `start`, which becomes
+/// the leaf of the hit; others at the root. `counts`: WalkCounts to add to, or NoCounts.
 template <TraversalKind kTraversal, class View, class Leaf, class Counts = NoCounts>
 void closest_hit_from(const View& view, typename View::Key& start, BoxRay& ray, Leaf&& leaf,
                       Counts&& counts = {}) {

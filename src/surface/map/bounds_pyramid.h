@@ -10,8 +10,7 @@
 
 namespace relief {
 
-/// Min/max pyramid over blocks of 8 x 8 texels, each level a quarter of the one below. Thread safe
-/// but for `update`.
+/// Min/max pyramid over 8 x 8 texels, each level a quarter of the last. Thread safe but for `update`.
 class BoundsPyramid {
   public:
     /// Throws bad_input with the pixel for a NaN or an infinity.

@@ -29,10 +29,9 @@ struct GutterFill {
     TexelRectangle follow(Texture& texture, const TexelRectangle& changed);
 };
 
-/// Texels of tile `udim` that are read along the borders of the uv islands of the meshes and whose centres
-/// lie outside of all faces. Where more than half of them hold one and the same value, that is the
-/// background's, and those that hold it are to take the value of the nearest texel inside; else the map is
-/// padded already, and nothing is to be done. Faces with indices out of range are left out.
+/// Texels of tile `udim` along the uv islands' borders with centres outside of all faces. Where most of them
+/// hold one value it is the background's, and these are to take the nearest inside value; else the map is
+/// padded already. Faces with indices out of range are left out.
 GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
                        std::span<const Mesh* const> meshes);
 

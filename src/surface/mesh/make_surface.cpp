@@ -192,8 +192,7 @@ Quad split_face(Surface& surface, const Polygons& polygons, uint32_t face, bool 
     return quad;
 }
 
-/// Patches and split vertices. Vertices of faces marked in `lacks_uvs` come first, so they are dominant and
-/// such faces have no displaced corner.
+/// Patches and split vertices. Vertices of faces in `lacks_uvs` come first: dominant, not displaced.
 VertexSources split_displaced(Surface& surface, const Polygons& polygons, bool is_udim,
                               const std::vector<uint8_t>& lacks_uvs) {
     VertexSplitter vertices(polygons.positions.size());

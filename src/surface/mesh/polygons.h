@@ -33,17 +33,15 @@ enum class Welding {
     equal_points ///< points at exactly equal positions become one, as exporters take them apart
 };
 
-/// Resolves and checks a mesh. Corners that repeat the position of the corner before are dropped, and faces
-/// without area (surface/mesh/degenerate_faces.h). Throws bad_input with mesh and face for an index out of
-/// range, a value that is not finite or beyond 1e18, and where no face is left.
+/// Resolves and checks a mesh; drops repeated corners and faces without area (degenerate_faces.h). Throws
+/// bad_input with mesh and face: index out of range, value not finite or beyond 1e18, no face left.
 Polygons make_polygons(const Mesh& mesh, Welding welding);
 
 /// First point at the same position, for each point.
 std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions);
 
-/// One linear Catmull-Clark step (Catmull and Clark 1978, without the smoothing): every face becomes one quad
-/// a corner, from the corner to the middle of its next edge, the middle of the face and the middle of its
-/// previous edge. Uvs, normals and tangents are interpolated.
+/// One linear Catmull-Clark step without smoothing: a quad per corner of every face, from it to the middles
+/// of its next edge, face and previous edge. Uvs, normals and tangents are interpolated.
 Polygons refine_to_quads(const Polygons& polygons);
 
 /// Keeps triangles and convex quads; cuts other faces by ears in the plane of their Newell normal.

@@ -19,8 +19,7 @@ struct LevelFieldConfig {
 /// Levels of all patches of one object, packed into one word a patch. Thread safe but for `update`.
 class LevelField {
   public:
-    /// The level of an edge depends on the edge alone: the finest with cells of at most `pixel_error` pixels
-    /// at the nearest point, one texel, and kMaxLevel. Undisplaced: 0.
+    /// An edge's level depends on the edge alone: cells up to `pixel_error` pixels, one texel, kMaxLevel.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 

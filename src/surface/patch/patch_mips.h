@@ -10,9 +10,8 @@
 
 namespace relief {
 
-/// One word a patch (formulas/mips.h), from the levels of all instances of the surface: the finest that one
-/// of them needs. The copy of an edge depends on the edge alone, that of a corner on the edges that meet
-/// there, so that patches agree wherever they meet. Empty where the map is neither filtered nor has autobump.
+/// One word a patch (formulas/mips.h): the finest level of all instances. The copy of an edge depends on the
+/// edge alone, that of a corner on its edges, so patches agree. Empty without filter and autobump.
 std::vector<uint32_t> choose_mips(const Surface& surface, std::span<const LevelField* const> levels);
 
 } // namespace relief

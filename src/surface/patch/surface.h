@@ -1,9 +1,8 @@
 // A mesh with its displacement, made ready to be evaluated: compact patches, seams resolved, frames packed.
 //
-// Vertices are split where uvs or what their frames are made from differ; the vertices of one point share its
-// position and know their dominant one, the lowest-numbered of them. Dominant vertices come first. Patches
-// have corners 0..3 counter-clockwise at (u, v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to
-// corner (k + 1) mod 4.
+// Vertices are split where uvs or frame sources differ; those of one point share its position and know their
+// dominant one, the lowest; dominant vertices come first. Patches have corners 0..3 counter-clockwise at (u,
+// v) = (0,0) (1,0) (1,1) (0,1); edge k runs from corner k to (k + 1) mod 4.
 #pragma once
 
 #include <array>
@@ -156,29 +155,25 @@ inline PatchLevels unpack_levels(uint32_t packed) {
 
 class PyramidCache;
 
-/// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
-/// refinement of the whole mesh where a face is not a quad), and points at exactly equal positions are one
-/// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
-/// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
-/// used by world-space displacement only. Surfaces made with the same `pyramids`
-/// (surface/map/displacement_map.h) share the bounds of their textures. Throws bad_input with mesh and face:
-/// missing uv, index out of range, no face with an area, a value that is not finite or absurdly large.
+/// Makes a surface from polygons. Displaced: every face becomes quads (one linear Catmull-Clark step if any
+/// is not one), equal positions one point. Else n-gons and concave quads are cut into triangles. Repeated
+/// corners are dropped. `object_from_world` is for world-space displacement. Surfaces with the same
+/// `pyramids` share texture bounds. Throws bad_input with mesh and face: missing uv, bad index, no area at
+/// all, or a value that is not finite or absurdly large.
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
                      PyramidCache* pyramids = nullptr);
 
-/// Sample (i, j) of a patch at its level, (i, j) in [0, 2^level]^2, in object space. This is the definition:
-/// samples on an edge lie on the edge's line and move onto the nearest sample of the edge's level; corners
-/// belong to the dominant vertex; the rest is the bilinear patch plus its displacement.
+/// Sample (i, j) of a patch in [0, 2^level]^2, object space, by definition: edge samples lie on the edge's
+/// line, snapped to its level; corners are the dominant vertex's; the rest is the bilinear patch displaced.
 Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i,
                       uint32_t j);
 
 /// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile, bilinear.
 Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip = 0);
 
-/// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
-/// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex
-/// normal, so that the normal is continuous across cells and across patches of a smooth mesh that have the
-/// same level. The result points to the side of the winding.
+/// Shading point and derivatives of the displaced patch: map by central differences one cell of `level` wide,
+/// base turned into the plane of the interpolated normal, so that the normal is continuous across cells and
+/// patches of one level. Points to the side of the winding.
 Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, float u, float v);
 
 /// Box of every vertex that the patch has at any level and bias, every ulp included.

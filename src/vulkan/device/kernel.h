@@ -1,5 +1,4 @@
-// Pipelines with one common set layout (vulkan/layout/bindings.h), so that buffers are bound once for all:
-// compute shaders, and fragment shaders that write buffers only.
+// Pipelines of one set layout (vulkan/layout/bindings.h): compute shaders, and buffer-writing fragments.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Builds a job's patch tree with several lanes: vertices, bounds, leaves, then bottom-up (Harada 2015, listing 1.2).
 // All lanes of the group must call these functions because of the barriers between levels.
 //
-// Vertices are stored before edge samples are snapped, so that coarser levels and coarser edges find their vertices
-// among them. Boxes of boundary nodes also bound the snapped samples of every level.
+// Vertices are stored before edge samples are snapped, so that coarser levels and edges find theirs. Boxes of boundary
+// nodes also bound the snapped samples.
 #ifndef RELIEF_BOTTOM_BUILD_GLSL
 #define RELIEF_BOTTOM_BUILD_GLSL
 

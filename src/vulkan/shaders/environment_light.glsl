@@ -1,5 +1,4 @@
-// Environment light: radiance by direction, and importance sampling of directions. The table holds the cumulative
-// distribution of the rows, then that of the cells of each row.
+// Environment light: radiance and importance sampling. The table: cumulative distribution of rows, then of cells.
 #ifndef RELIEF_ENVIRONMENT_LIGHT_GLSL
 #define RELIEF_ENVIRONMENT_LIGHT_GLSL
 

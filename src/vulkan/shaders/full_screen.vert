@@ -1,6 +1,5 @@
-// The framebuffer in squares, for fragments that act as the invocations of a kernel (GRAPP 2019, section 3.3, fragment
-// shaders): a point as large as a square replaces a work group. Not two triangles: helper invocations would run along
-// their shared edge, and lavapipe's loops wait for those.
+// The framebuffer in squares, for fragments as invocations of a kernel (GRAPP 2019, section 3.3): a point the size of a
+// square is a work group. Not triangles: helper invocations along their edge block lavapipe's loops.
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"
 

@@ -1,5 +1,4 @@
-// Common prologue of kernels: group size as specialization constant 0, and the invocation index. With FULL_SCREEN the
-// same kernel is a fragment shader: see full_screen.vert.
+// Prologue of kernels: group size as constant 0, and the invocation index. FULL_SCREEN: see full_screen.vert.
 #include "vulkan/shaders/extensions.glsl"
 #include "formulas/lang.h"
 #include "vulkan/layout/bindings.h"

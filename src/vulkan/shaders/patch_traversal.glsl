@@ -1,6 +1,5 @@
-// Traversal of the tree of one patch or tile: nodes in Morton order, mirrored so that near ones come first; no stack
-// and no links, since the tree is complete (Harada 2015, listing 1.1, whose link table follows from the indices). Rays
-// that see the patch at a lower level stop there.
+// Traversal of one patch or tile's tree: complete, in Morton order, mirrored so that near nodes come first; no stack,
+// no links (cf. Harada 2015, listing 1.1). Rays that see the patch at a lower level stop there.
 #ifndef RELIEF_PATCH_TRAVERSAL_GLSL
 #define RELIEF_PATCH_TRAVERSAL_GLSL
 

@@ -1,6 +1,5 @@
-// One ray through the two upper levels by a traversal chosen by name, compiled once for each (variants.cmake): what
-// scene_traversal.comp does with its stack. A leaf of the tree of instances puts the tree of a surface in the place of
-// the walk; at its end resume_walk() goes on with the next instance of that leaf, or brings the old walk back.
+// One ray through the two upper levels by a named traversal (variants.cmake). A leaf of the instances' tree replaces
+// the walk by a surface's; at its end resume_walk() goes on with the leaf's next instance or the old walk.
 #include "vulkan/shaders/kernel.glsl"
 
 #ifdef WALK_KD
