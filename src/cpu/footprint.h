@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "math/box.h"
+
 namespace relief::cpu {
 
 /// Equal voxels over a box, with one more all around for rounding.

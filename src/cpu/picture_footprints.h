@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpu/footprint.h"
+#include "math/box.h"
 #include "relief/render.h"
 
 namespace relief::cpu {

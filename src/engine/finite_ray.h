@@ -2,6 +2,8 @@
 // numbers, and where all comparisons are false, an empty slot of a node is entered like any other.
 #pragma once
 
+#include "relief/types.h"
+
 namespace relief {
 
 /// False for a ray whose origin or direction is infinite or NaN, or whose interval is empty.

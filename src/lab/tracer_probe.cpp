@@ -179,8 +179,6 @@ TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
 }
 
 TracerProbe::~TracerProbe() = default;
-TracerProbe::TracerProbe(TracerProbe&&) noexcept = default;
-TracerProbe& TracerProbe::operator=(TracerProbe&&) noexcept = default;
 
 const ProbePreparation& TracerProbe::preparation() const { return implementation_->preparation; }
 

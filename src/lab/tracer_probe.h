@@ -67,8 +67,6 @@ class TracerProbe {
     /// Prepares the scene, by the clock. Throws Error as render() does.
     TracerProbe(Scene scene, const RenderSettings& settings);
     ~TracerProbe();
-    TracerProbe(TracerProbe&&) noexcept;
-    TracerProbe& operator=(TracerProbe&&) noexcept;
 
     const ProbePreparation& preparation() const;
     /// Builds the scene trees once more and forgets them; seconds.

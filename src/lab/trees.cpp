@@ -94,8 +94,6 @@ MeshTrees::MeshTrees(const Mesh& mesh, const RenderSettings& settings) : threads
 }
 
 MeshTrees::~MeshTrees() = default;
-MeshTrees::MeshTrees(MeshTrees&&) noexcept = default;
-MeshTrees& MeshTrees::operator=(MeshTrees&&) noexcept = default;
 
 uint32_t MeshTrees::triangle_count() const { return workshop_->soup().triangle_count(); }
 const std::string& MeshTrees::device_name() const { return workshop_->device_name(); }

@@ -95,8 +95,6 @@ class MeshTrees {
     /// Of `settings` engine, device, pipeline_cache and threads. Throws Error, as validate_mesh too.
     MeshTrees(const Mesh& mesh, const RenderSettings& settings);
     ~MeshTrees();
-    MeshTrees(MeshTrees&&) noexcept;
-    MeshTrees& operator=(MeshTrees&&) noexcept;
 
     uint32_t triangle_count() const;
     const std::string& device_name() const;

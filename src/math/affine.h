@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "math/box.h"
 #include "math/vec.h"
 
 namespace relief {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/types.h"
+
 namespace relief::vulkan {
 
 /// A node of a scene tree: two texels.

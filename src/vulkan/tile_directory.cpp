@@ -137,21 +137,19 @@ void TileDirectories::append_node(const Boxes& boxes, uint32_t place, uint32_t f
 }
 
 void TileDirectories::insert(const scalar::DirectoryData& directory) {
-    if (2 * ++directory_count_ > table_.size()) grow_table();
+    if (2 * ++directory_count_ > table_.size()) {
+        std::vector<scalar::DirectoryData> old(2 * table_.size(), {scalar::kNone, 0, 0});
+        std::swap(old, table_);
+        for (const scalar::DirectoryData& moved : old)
+            if (moved.patch_number != scalar::kNone) place_in_table(moved);
+    }
+    place_in_table(directory);
+}
+
+void TileDirectories::place_in_table(const scalar::DirectoryData& directory) {
     uint32_t place = scalar::hash_directory(directory.patch_number, directory.levels) & directory_mask();
     while (table_[place].patch_number != scalar::kNone) place = (place + 1) & directory_mask();
     table_[place] = directory;
-}
-
-void TileDirectories::grow_table() {
-    std::vector<scalar::DirectoryData> old(2 * table_.size(), {scalar::kNone, 0, 0});
-    std::swap(old, table_);
-    for (const scalar::DirectoryData& directory : old) {
-        if (directory.patch_number == scalar::kNone) continue;
-        uint32_t place = scalar::hash_directory(directory.patch_number, directory.levels) & directory_mask();
-        while (table_[place].patch_number != scalar::kNone) place = (place + 1) & directory_mask();
-        table_[place] = directory;
-    }
 }
 
 void TileDirectories::upload_nodes(uint32_t first_node, Commands& commands) {

@@ -41,7 +41,7 @@ class TileDirectories {
     void append_node(const Boxes& boxes, uint32_t place, uint32_t first_tree,
                      const std::array<uint32_t, 3>& square);
     void insert(const scalar::DirectoryData& directory);
-    void grow_table();
+    void place_in_table(const scalar::DirectoryData& directory);
     void upload_nodes(uint32_t first_node, Commands& commands);
     void upload_tiles(size_t first_tile);
 

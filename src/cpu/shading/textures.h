@@ -2,6 +2,7 @@
 #pragma once
 
 #include "relief/image.h"
+#include "relief/types.h"
 
 namespace relief::cpu {
 

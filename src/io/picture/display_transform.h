@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "relief/image.h"
+#include "relief/types.h"
 
 namespace relief {
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/picture/image_coders.h"
+#include "relief/types.h"
 
 namespace relief {
 

@@ -7,6 +7,7 @@
 
 #include "io/picture/image_output.h"
 #include "relief/image.h"
+#include "relief/types.h"
 
 namespace relief {
 

@@ -1,6 +1,7 @@
 // Where a camera stands so that the objects of a scene fill the picture.
 #pragma once
 
+#include "math/box.h"
 #include "relief/aim.h"
 
 namespace relief {

@@ -7,6 +7,7 @@
 #include "io/scene/frame_scene.h"
 #include "io/scene/place_sky.h"
 #include "io/scene/scene_content.h"
+#include "math/vec.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "scene/words.h"

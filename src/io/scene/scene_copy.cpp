@@ -114,12 +114,7 @@ void add_ground(const Scene& scene, const fs::path& file, Json& root) {
 void update_values(const Scene& scene, Json& root) {
     if (Json node = write_picture(scene.picture); !node.empty()) root["render"] = std::move(node);
     root["camera"] = write_camera(scene.camera);
-    if (scene.environment) {
-        Json& node = root["environment"];
-        node["color"] = to_json(scene.environment->color);
-        node["strength"] = to_json(scene.environment->strength);
-        node["rotate_degrees"] = to_json(scene.environment->rotate_degrees);
-    }
+    if (scene.environment) write_environment(*scene.environment, root["environment"]);
     root["lights"] = Json::array();
     for (const Light& light : scene.lights) root["lights"].push_back(write_light(light));
 }

@@ -26,6 +26,12 @@ Json write_camera(const Camera& camera) {
             {"focus_distance", to_json(camera.focus_distance)}};
 }
 
+void write_environment(const Environment& environment, Json& node) {
+    node["color"] = to_json(environment.color);
+    node["strength"] = to_json(environment.strength);
+    node["rotate_degrees"] = to_json(environment.rotate_degrees);
+}
+
 Json write_light(const Light& light) {
     Json node;
     if (light.type == LightType::sun) {

@@ -14,5 +14,7 @@ Json to_json(const Vec3f& v);
 Json write_picture(const PictureDefaults& picture);
 Json write_camera(const Camera& camera);
 Json write_light(const Light& light);
+/// All but its picture.
+void write_environment(const Environment& environment, Json& node);
 
 } // namespace relief

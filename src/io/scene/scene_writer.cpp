@@ -102,9 +102,7 @@ class SceneWriter {
         const Environment& environment = *scene_.environment;
         Json& node = root_["environment"];
         if (environment.texture) node["file"] = add_map(environment.texture, "environment");
-        node["color"] = to_json(environment.color);
-        node["strength"] = to_json(environment.strength);
-        node["rotate_degrees"] = to_json(environment.rotate_degrees);
+        write_environment(environment, node);
     }
 
     void add_materials() {

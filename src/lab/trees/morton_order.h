@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "math/box.h"
+
 namespace relief {
 
 /// Equal codes keep the order of their indices.

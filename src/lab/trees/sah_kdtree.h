@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formulas/tree.h"
+#include "math/box.h"
 
 namespace relief {
 

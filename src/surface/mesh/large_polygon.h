@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "relief/types.h"
+
 namespace relief {
 
 /// Twice the area of the triangle a b c, positive where it is counter-clockwise.

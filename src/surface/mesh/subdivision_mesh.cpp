@@ -200,7 +200,6 @@ struct LimitFace::Surface {
 };
 
 LimitFace::LimitFace(std::unique_ptr<Surface> surface) : surface_(std::move(surface)) {}
-LimitFace::LimitFace(LimitFace&&) noexcept = default;
 LimitFace::~LimitFace() = default;
 
 LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {

@@ -47,7 +47,6 @@ class LimitFace {
   public:
     struct Surface;
     explicit LimitFace(std::unique_ptr<Surface> surface);
-    LimitFace(LimitFace&&) noexcept;
     ~LimitFace();
 
     /// At (u, v) in [0, 1]^2 of the face, or of the part of a polygon beside corner `part`.

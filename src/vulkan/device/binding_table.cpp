@@ -100,8 +100,6 @@ BindingTable::BindingTable(const Device& device) : implementation_(std::make_uni
     clear();
 }
 BindingTable::~BindingTable() = default;
-BindingTable::BindingTable(BindingTable&&) noexcept = default;
-BindingTable& BindingTable::operator=(BindingTable&&) noexcept = default;
 
 void BindingTable::clear() {
     for (uint32_t i = 0; i < scalar::kStorageBindingCount; ++i)

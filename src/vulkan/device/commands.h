@@ -37,8 +37,6 @@ class Commands {
   public:
     Commands(const Device& device, const BindingTable& bindings);
     ~Commands();
-    Commands(const Commands&) = delete;
-    Commands& operator=(const Commands&) = delete;
 
     /// Further commands count as `stage`. Submits first on CPU devices: their timestamps are coarse.
     void begin_stage(Stage stage);

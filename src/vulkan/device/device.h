@@ -45,8 +45,6 @@ class Device {
     /// Throws Error{device_missing}: no driver, no such index, or missing features, which it names.
     explicit Device(const Config& config);
     ~Device();
-    Device(const Device&) = delete;
-    Device& operator=(const Device&) = delete;
 
     const DeviceDescription& description() const;
     bool is_cpu() const { return description().is_cpu; }

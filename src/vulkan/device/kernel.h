@@ -50,8 +50,6 @@ class BindingTable {
   public:
     explicit BindingTable(const Device& device);
     ~BindingTable();
-    BindingTable(BindingTable&&) noexcept;
-    BindingTable& operator=(BindingTable&&) noexcept;
 
     /// Binds the whole `buffer`, not during a submission. Numbers from kFirstTexelBinding on are uniform
     /// texel buffers, those below storage buffers. Unbound numbers refer to a buffer of zeros.
