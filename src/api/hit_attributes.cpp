@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "cpu/shading/surface_points.h"
+#include "math/affine.h"
 
 namespace relief {
 

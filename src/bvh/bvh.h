@@ -28,4 +28,7 @@ struct Bvh {
     std::vector<uint32_t> primitive_ids;
 };
 
+/// Throws Error{out_of_memory} for more than `most` primitives of a tree of that name.
+void check_primitive_count(uint64_t count, uint64_t most, const char* tree, const char* hint);
+
 } // namespace relief

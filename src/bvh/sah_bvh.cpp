@@ -5,12 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "base/check.h"
 #include "base/parallel.h"
 #include "bvh/sah_split.h"
-#include "relief/error.h"
 
 namespace relief {
 
@@ -164,10 +161,8 @@ Bvh SahBvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= 8);
     DCHECK(config.max_depth >= 1 && config.max_depth <= kMaxBvhDepth);
     if (boxes.empty()) return {};
-    if (boxes.size() > kMaxPrimitiveCount)
-        throw Error(ErrorKind::out_of_memory,
-                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "SAH BVH",
-                     "split the scene into instances of several meshes"});
+    check_primitive_count(boxes.size(), kMaxPrimitiveCount, "SAH BVH",
+                          "split the scene into instances of several meshes");
     return SahBuild(boxes, config).run();
 }
 

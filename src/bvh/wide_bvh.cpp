@@ -4,11 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "base/check.h"
 #include "base/parallel.h"
-#include "relief/error.h"
 
 namespace relief {
 
@@ -95,13 +92,9 @@ std::array<Box, 8> find_leaf_boxes(const WideBvh& tree, const WideNode& node,
 
 WideBvh make_wide_bvh(const Bvh& bvh) {
     if (bvh.nodes.empty()) return {};
-    if (bvh.primitive_ids.size() > size_t(WideNode::kMaxLeafFirst) + 1)
-        throw Error(
-            ErrorKind::out_of_memory,
-            {fmt::format("{} primitives are too many, room is for 2^28", bvh.primitive_ids.size()),
-             "wide BVH",
-             "choose a traversal that walks the binary tree, or split the scene into instances of several "
-             "meshes"});
+    check_primitive_count(
+        bvh.primitive_ids.size(), uint64_t(WideNode::kMaxLeafFirst) + 1, "wide BVH",
+        "choose a traversal that walks the binary tree, or split the scene into instances of several meshes");
     WideBvh wide;
     wide.bounds = bvh.nodes[0].box();
     const bool has_single_leaves = std::all_of(bvh.nodes.begin(), bvh.nodes.end(),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpu/tracer.h"
+#include "formulas/bounce_lod.h"
 
 namespace relief::cpu {
 

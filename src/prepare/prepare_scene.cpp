@@ -9,6 +9,7 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "formulas/mips.h"
+#include "math/affine.h"
 #include "prepare/editable_scene.h"
 #include "prepare/scene_warnings.h"
 #include "prepare/space_warnings.h"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "math/affine.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 #include "surface/map/gutter.h"

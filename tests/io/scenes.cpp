@@ -9,6 +9,7 @@
 #include "io/test_files.h"
 #include "math/vec.h"
 #include "relief/io.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 

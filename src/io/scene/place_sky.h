@@ -1,6 +1,7 @@
 // How a picture of a sky is turned and scaled to light an object that comes alone.
 #pragma once
 
+#include "relief/image.h"
 #include "relief/types.h"
 
 namespace relief {

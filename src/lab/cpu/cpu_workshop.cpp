@@ -10,6 +10,7 @@
 #include "base/timer.h"
 #include "formulas/object_ray.h"
 #include "lab/walks/trail.h"
+#include "lab/walks/walks.h"
 #include "relief/error.h"
 
 namespace relief::cpu {

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <bit>
 
-#include <fmt/format.h>
-
 #include "base/check.h"
 #include "base/parallel.h"
 #include "formulas/morton.h"
 #include "formulas/tree.h"
 #include "lab/trees/morton_order.h"
-#include "relief/error.h"
 
 namespace relief {
 
@@ -200,20 +197,16 @@ class HeapBuild {
 AxisBvh LbvhBuilder::build(std::span<const Box> boxes, const Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= scalar::kNodeCountMask);
     if (boxes.empty()) return {};
-    if (boxes.size() > kMaxPrimitiveCount)
-        throw Error(ErrorKind::out_of_memory,
-                    {fmt::format("{} primitives are too many, room is for 2^30", boxes.size()), "linear BVH",
-                     "split the scene into instances of several meshes"});
+    check_primitive_count(boxes.size(), kMaxPrimitiveCount, "linear BVH",
+                          "split the scene into instances of several meshes");
     return CompactBuild(boxes, config).run();
 }
 
 DenseHeap LbvhBuilder::build_heap(std::span<const Box> boxes, const HeapConfig& config) {
     DCHECK(config.levels >= 0 && config.levels <= DenseHeap::kMaxLevels);
     if (boxes.empty()) return {};
-    if (boxes.size() > scalar::kNodeCountMask)
-        throw Error(ErrorKind::out_of_memory,
-                    {fmt::format("{} primitives are too many, room is for less than 2^26", boxes.size()),
-                     "linear BVH as a heap", "build it without a heap, or split the mesh"});
+    check_primitive_count(boxes.size(), scalar::kNodeCountMask, "linear BVH as a heap",
+                          "build it without a heap, or split the mesh");
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(boxes.size());
     return HeapBuild(boxes, config.code_bits, levels).run();
 }

@@ -4,8 +4,6 @@
 #include <map>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "base/check.h"
 #include "formulas/tree.h"
 #include "lab/vulkan/lab_shaders.h"
@@ -29,13 +27,7 @@ constexpr std::array<Stage, BuildReport::kPartCount> kStages = {
     Stage::tree_boxes, Stage::tree_codes, Stage::sort, Stage::tree_hierarchy, Stage::tree_refit};
 
 constexpr uint32_t kMostPrimitives = 1u << 30;
-
-void check_count(uint32_t count, uint32_t most, const char* where) {
-    if (count > most)
-        throw Error(ErrorKind::out_of_memory,
-                    {fmt::format("{} primitives are too many, room is for {}", count, most), where,
-                     "build it on the host as another tree, or split the mesh"});
-}
+constexpr const char* kTooManyHint = "build it on the host as another tree, or split the mesh";
 
 /// Kernels that read codes, for one width of them.
 struct CodeKernels {
@@ -230,7 +222,7 @@ DeviceLbvhBuilder::~DeviceLbvhBuilder() = default;
 DeviceTree DeviceLbvhBuilder::build(const DeviceMesh& mesh, const LbvhBuilder::Config& config) {
     DCHECK(config.max_leaf_size >= 1 && config.max_leaf_size <= scalar::kNodeCountMask);
     Implementation& own = *implementation_;
-    check_count(mesh.triangle_count, kMostPrimitives, "linear BVH on the device");
+    check_primitive_count(mesh.triangle_count, kMostPrimitives, "linear BVH on the device", kTooManyHint);
     const uint64_t count = mesh.triangle_count, nodes = count > 0 ? 2 * count - 1 : 0;
     DeviceTree tree =
         make_device_tree(own.device, TreeForm::linked,
@@ -253,7 +245,8 @@ DeviceTree DeviceLbvhBuilder::build(const DeviceMesh& mesh, const LbvhBuilder::C
 DeviceTree DeviceLbvhBuilder::build_heap(const DeviceMesh& mesh, const LbvhBuilder::HeapConfig& config) {
     DCHECK(config.levels >= 0 && config.levels <= DenseHeap::kMaxLevels);
     Implementation& own = *implementation_;
-    check_count(mesh.triangle_count, scalar::kNodeCountMask, "linear BVH as a heap on the device");
+    check_primitive_count(mesh.triangle_count, scalar::kNodeCountMask, "linear BVH as a heap on the device",
+                          kTooManyHint);
     const uint32_t count = mesh.triangle_count;
     const int levels = config.levels > 0 ? config.levels : choose_heap_levels(count);
     const uint64_t slots = count > 0 ? uint64_t(1) << levels : 0;

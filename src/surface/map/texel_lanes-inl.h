@@ -7,6 +7,7 @@
 #endif
 
 #include "formulas/lanes-inl.h"
+#include "relief/image.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {

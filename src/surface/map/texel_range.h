@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "relief/image.h"
+
 namespace relief {
 
 struct ChannelRange {

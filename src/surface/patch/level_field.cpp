@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "formulas/levels.h"
+#include "math/affine.h"
 #include "relief/render.h"
 #include "surface/patch/level_lines.h"
 #include "surface/patch/patch_samples.h"
