@@ -15,8 +15,7 @@ namespace relief {
 namespace {
 
 size_t count_out_of_range(const std::vector<uint32_t>& indices, size_t size) {
-    return size_t(
-        std::count_if(indices.begin(), indices.end(), [size](uint32_t index) { return index >= size; }));
+    return size_t(std::ranges::count_if(indices, [size](uint32_t index) { return index >= size; }));
 }
 
 /// Uv indices that point nowhere; those of a face without uvs do not count where other faces have them.
@@ -53,7 +52,7 @@ std::vector<HalfEdge> list_half_edges(const Mesh& mesh, const std::vector<uint32
         }
         first += size;
     }
-    std::sort(edges.begin(), edges.end());
+    std::ranges::sort(edges);
     return edges;
 }
 
@@ -128,18 +127,16 @@ MeshFaults find_mesh_faults(const Mesh& mesh) {
     const auto has_bad_count = [&](const std::vector<uint32_t>& indices) {
         return !indices.empty() && indices.size() != corners;
     };
-    faults.has_bad_counts =
-        mesh.position_indices.size() != corners || has_bad_count(mesh.uv_indices) ||
-        has_bad_count(mesh.normal_indices) ||
-        std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](uint32_t size) { return size < 3; });
+    faults.has_bad_counts = mesh.position_indices.size() != corners || has_bad_count(mesh.uv_indices) ||
+                            has_bad_count(mesh.normal_indices) ||
+                            std::ranges::any_of(mesh.face_sizes, [](uint32_t size) { return size < 3; });
     faults.bad_indices = count_out_of_range(mesh.position_indices, mesh.positions.size()) +
                          count_bad_uv_indices(mesh) +
                          count_out_of_range(mesh.normal_indices, mesh.normals.size());
-    const auto position = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
+    const auto position = std::ranges::find_if_not(mesh.positions, is_finite);
     if (position != mesh.positions.end()) faults.bad_position = size_t(position - mesh.positions.begin());
-    const auto uv = std::find_if_not(mesh.uvs.begin(), mesh.uvs.end(), [](const Vec2f& value) {
-        return std::isfinite(value.x) && std::isfinite(value.y);
-    });
+    const auto uv = std::ranges::find_if_not(
+        mesh.uvs, [](const Vec2f& value) { return std::isfinite(value.x) && std::isfinite(value.y); });
     if (uv != mesh.uvs.end()) faults.bad_uv = size_t(uv - mesh.uvs.begin());
     return faults;
 }

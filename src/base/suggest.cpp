@@ -29,9 +29,8 @@ constexpr size_t kShortestStem = 3; // shortest prefix, in letters, that identif
 std::string_view find_only_extension(std::string_view word, std::span<const std::string_view> known) {
     const size_t dashes = std::min(word.find_first_not_of('-'), word.size());
     const auto extends = [&](std::string_view candidate) { return candidate.starts_with(word); };
-    if (word.size() - dashes < kShortestStem || std::count_if(known.begin(), known.end(), extends) != 1)
-        return {};
-    return *std::find_if(known.begin(), known.end(), extends);
+    if (word.size() - dashes < kShortestStem || std::ranges::count_if(known, extends) != 1) return {};
+    return *std::ranges::find_if(known, extends);
 }
 
 constexpr size_t kLongestWord = 64; // longer words are not typing mistakes

@@ -83,8 +83,7 @@ FrameCoordinates invert_frame(const TexelFrame& frame, const Vec3f& d) {
     if (is_surely_sound(squares)) return {invert(frame.axes, d), 0};
     const Matrix vectors = diagonalize(squares);
     const Column values{squares[0][0], squares[1][1], squares[2][2]};
-    if (*std::min_element(values.begin(), values.end()) >= kLeastStretch * kLeastStretch)
-        return {invert(frame.axes, d), 0};
+    if (*std::ranges::min_element(values) >= kLeastStretch * kLeastStretch) return {invert(frame.axes, d), 0};
     const Column x = solve_damped(columns, vectors, values, {d.x, d.y, d.z});
     Column rest{d.x, d.y, d.z};
     FrameCoordinates result;

@@ -64,8 +64,7 @@ const LayerKind& find_kind(const std::string& name) {
 }
 
 size_t channel_count(const LayerKind& kind) {
-    return size_t(
-        std::count_if(kind.suffixes.begin(), kind.suffixes.end(), [](const char* s) { return *s != 0; }));
+    return size_t(std::ranges::count_if(kind.suffixes, [](const char* s) { return *s != 0; }));
 }
 
 template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
@@ -136,7 +135,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
     bool needs_hit_counts = false, needs_nearest = false;
     size_t channels = kRadianceSums;
     for (const LayerKind& kind : kLayerKinds) {
-        if (std::find(layers.begin(), layers.end(), kind.name) == layers.end()) continue;
+        if (std::ranges::find(layers, kind.name) == layers.end()) continue;
         layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_});
         stride_ += kind.sum_count;
         channels += channel_count(kind);
@@ -266,9 +265,7 @@ Image Film::resolve() const {
     return image;
 }
 
-uint32_t Film::least_samples() const {
-    return counts_.empty() ? 0 : *std::min_element(counts_.begin(), counts_.end());
-}
+uint32_t Film::least_samples() const { return counts_.empty() ? 0 : *std::ranges::min_element(counts_); }
 
 size_t Film::byte_count() const {
     return sums_.size() * sizeof(double) +

@@ -122,8 +122,7 @@ void gather(const std::vector<Part>& parts, int x, int y, std::vector<PartPixel>
         const double alpha = part.alpha_channel ? double(values[*part.alpha_channel]) : 1.0;
         if (count > 0) found.push_back({values, part.first, count, std::round(alpha * count), part.index});
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const PartPixel& a, const PartPixel& b) { return a.first < b.first; });
+    std::ranges::stable_sort(found, [](const PartPixel& a, const PartPixel& b) { return a.first < b.first; });
     for (size_t k = 1; k < found.size(); ++k)
         if (int64_t(found[k - 1].first) + found[k - 1].count > found[k].first)
             throw_bad(found[k].part,
@@ -166,7 +165,7 @@ double compute_mean_of_hits(const std::vector<PartPixel>& pixels, size_t channel
 
 /// The part whose first hit is nearest; ties go to the lowest id, as in Film.
 const PartPixel& find_nearest(const std::vector<PartPixel>& pixels, size_t depth_channel, size_t id_channel) {
-    return *std::min_element(pixels.begin(), pixels.end(), [&](const PartPixel& a, const PartPixel& b) {
+    return *std::ranges::min_element(pixels, [&](const PartPixel& a, const PartPixel& b) {
         const float x = a.values[depth_channel], y = b.values[depth_channel];
         return x < y || (x == y && a.values[id_channel] < b.values[id_channel]);
     });

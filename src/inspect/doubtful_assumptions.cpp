@@ -100,7 +100,7 @@ void add_convention(const Displacement& map, const MapConvention& convention,
 void add_range(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
     constexpr float kRounding = 1e-3f;
     if (map.is_udim || !map.assumed.wrap) return;
-    const bool is_outside = std::any_of(mesh.uvs.begin(), mesh.uvs.end(), [](const Vec2f& uv) {
+    const bool is_outside = std::ranges::any_of(mesh.uvs, [](const Vec2f& uv) {
         return std::min(uv.x, uv.y) < -kRounding || std::max(uv.x, uv.y) > 1 + kRounding;
     });
     if (is_outside)
@@ -156,9 +156,8 @@ std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
     for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
         const Displacement& map = scene.displacements[index];
         if (map.assumed == AssumedConvention{}) continue;
-        const auto object =
-            std::find_if(scene.objects.begin(), scene.objects.end(),
-                         [index](const Object& candidate) { return candidate.displacement == index; });
+        const auto object = std::ranges::find_if(
+            scene.objects, [index](const Object& candidate) { return candidate.displacement == index; });
         if (object == scene.objects.end()) continue;
         for (Finding& finding : check_map(map, scene.meshes.at(object->mesh))) {
             finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);

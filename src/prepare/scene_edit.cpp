@@ -90,9 +90,9 @@ void SceneEditor::own_maps() {
 size_t SceneEditor::find_map(const MapEdit& edit) const {
     const auto has_name = [&](const PreparedMap& map) { return map.displacement == edit.displacement; };
     const auto is_meant = [&](const PreparedMap& map) { return has_name(map) && map.udim == edit.udim; };
-    const auto found = std::find_if(scene_->maps.begin(), scene_->maps.end(), is_meant);
+    const auto found = std::ranges::find_if(scene_->maps, is_meant);
     if (found == scene_->maps.end()) {
-        if (std::none_of(scene_->maps.begin(), scene_->maps.end(), has_name))
+        if (std::ranges::none_of(scene_->maps, has_name))
             refuse(edit, "there is no such displacement", "name one of the scene's displacements");
         refuse(edit, "there is no such tile", "only tiles that have a file can change");
     }
@@ -165,7 +165,7 @@ std::vector<SurfaceChange> SceneEditor::find_changes(const std::vector<Reading>&
     std::vector<SurfaceChange> changes;
     for (const Reading& reading : readings) {
         const auto is_same = [&](const SurfaceChange& c) { return c.surface == reading.surface; };
-        const auto found = std::find_if(changes.begin(), changes.end(), is_same);
+        const auto found = std::ranges::find_if(changes, is_same);
         const std::vector<uint8_t> touched =
             find_touched_patches(scene_->surfaces[reading.surface], reading.tile, reading.rectangles);
         if (found == changes.end())
@@ -182,10 +182,9 @@ void SceneEditor::extend_reach(uint32_t surface, std::vector<float>& reach) cons
         if (instance.surface != surface) continue;
         for (size_t patch = 0; patch < reach.size(); ++patch) {
             const PatchLevels levels = instance.levels->at(uint32_t(patch));
-            const int coarsest =
-                lod_ == LodRule::ray
-                    ? 0
-                    : std::min<int>(levels.patch, *std::min_element(levels.edge.begin(), levels.edge.end()));
+            const int coarsest = lod_ == LodRule::ray
+                                     ? 0
+                                     : std::min<int>(levels.patch, *std::ranges::min_element(levels.edge));
             reach[patch] = std::max(reach[patch], std::ldexp(1.0f, -coarsest));
         }
     }

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, kValues> kNames = {
 std::vector<size_t> match_properties(const PlyElement& element) {
     std::vector<size_t> places;
     for (const PlyProperty& property : element.properties) {
-        const auto found = std::find(kNames.begin(), kNames.end(), property.name);
+        const auto found = std::ranges::find(kNames, property.name);
         places.push_back(property.count_type ? size_t(kValues) : size_t(found - kNames.begin()));
     }
     return places;
@@ -46,9 +46,7 @@ Affine make_transform(const std::array<double, kValues>& v, const PlyCursor& cur
 void read_points(const PlyElement& element, const std::string& name, size_t material_count, PlyCursor& cursor,
                  InstancePoints& points) {
     const std::vector<size_t> places = match_properties(element);
-    const auto has = [&](size_t value) {
-        return std::find(places.begin(), places.end(), value) != places.end();
-    };
+    const auto has = [&](size_t value) { return std::ranges::find(places, value) != places.end(); };
     if (!has(x) || !has(y) || !has(z))
         throw Error(ErrorKind::bad_input, {"the points have no x, y and z", name, kDamagedPlyHint});
     if (has(material) && material_count == 0)

@@ -59,7 +59,7 @@ void check_size(const PixelHeader& header, const std::string& name, uint64_t fil
 
 void check_extension(const std::string& name) {
     const std::string extension = get_extension(name);
-    if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end())
+    if (std::ranges::find(kExtensions, extension) == kExtensions.end())
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of image '{}'", extension), name,
                                            suggest_word(extension, kExtensions)});
 }
@@ -71,8 +71,7 @@ void check_start(std::istream& stream, const std::string& name) {
     std::string start(4, '\0');
     stream.read(start.data(), std::streamsize(start.size()));
     start.resize(size_t(stream.gcount()));
-    if (std::none_of(kStarts.begin(), kStarts.end(),
-                     [&](std::string_view known) { return start.starts_with(known); }))
+    if (std::ranges::none_of(kStarts, [&](std::string_view known) { return start.starts_with(known); }))
         fail(name, "is no EXR, TIFF, PNG, JPEG or HDR file: it starts otherwise", kDamagedHint);
     stream.clear();
     stream.seekg(0);

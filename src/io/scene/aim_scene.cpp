@@ -72,8 +72,7 @@ void replace_suns(Scene& scene, const std::vector<SunDirection>& suns) {
     Light sun;
     sun.angle_degrees = 3, sun.color = {1.0f, 0.95f, 0.88f}, sun.strength = 2.2f;
     const auto is_sun = [](const Light& light) { return light.type == LightType::sun; };
-    if (const auto found = std::find_if(scene.lights.begin(), scene.lights.end(), is_sun);
-        found != scene.lights.end())
+    if (const auto found = std::ranges::find_if(scene.lights, is_sun); found != scene.lights.end())
         sun = *found; // keeps its colour and strength
     std::erase_if(scene.lights, is_sun);
     for (const SunDirection& direction : suns) {

@@ -20,8 +20,7 @@ void add_crease(const JsonNode& node, Mesh& mesh) {
     const int64_t last = int64_t(mesh.positions.size()) - 1;
     const Crease crease{uint32_t(values[0].as_integer(0, last)), uint32_t(values[1].as_integer(0, last)),
                         values[2].as_float(0)};
-    if (std::find(mesh.creases.begin(), mesh.creases.end(), crease) == mesh.creases.end())
-        mesh.creases.push_back(crease);
+    if (std::ranges::find(mesh.creases, crease) == mesh.creases.end()) mesh.creases.push_back(crease);
 }
 
 void read_creases(const JsonNode& node, Mesh& mesh) {
@@ -38,7 +37,7 @@ void read_subdivision(const JsonNode& node, Mesh& mesh) {
     if (node.is_string()) {
         const std::string scheme = node.as_string();
         const auto& known = kWords<SubdivisionScheme>.words;
-        const bool is_known = std::find(known.begin(), known.end(), scheme) != known.end();
+        const bool is_known = std::ranges::find(known, scheme) != known.end();
         node.fail("must be an object, not a string",
                   fmt::format(R"({{"scheme": "{}"}})", is_known ? scheme : "catmark"));
     }

@@ -95,8 +95,7 @@ class VulkanTreeWorkshop final : public TreeWorkshop {
         report.bytes = tree_->nodes.byte_count() + tree_->primitive_ids.byte_count();
         report.link_bytes = tree_->parents.byte_count();
         report.slots = tree_->nodes.byte_count() / sizeof(TreeNode),
-        report.used =
-            is_heap ? uint64_t(std::count(used_slots_.begin(), used_slots_.end(), true)) : tree_->node_count;
+        report.used = is_heap ? uint64_t(std::ranges::count(used_slots_, true)) : tree_->node_count;
         report.entries = built.primitive_count;
         report.depth = tree_->depth;
         for (size_t part = 0; part < BuildReport::kPartCount; ++part)

@@ -23,8 +23,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsE
 }
 
 bool has_name(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name) {
-    return std::any_of(extensions.begin(), extensions.end(),
-                       [&](const auto& e) { return name == e.extensionName.data(); });
+    return std::ranges::any_of(extensions, [&](const auto& e) { return name == e.extensionName.data(); });
 }
 
 vk::raii::Context load_vulkan() {
