@@ -199,8 +199,7 @@ int find_tile_number(const Texture& texture) {
     return found;
 }
 
-/// A map of a body whose texels nearly all move to one side along two channels: the whole body moves, in
-/// object space. Tangent axes turn from island to island, so only the channel along the normal has a side.
+/// Where nearly all texels move to one side along two channels, the whole body moves: object space.
 std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement& map,
                                                              const MapStatistics& statistics) {
     constexpr double kAllOneSided = 0.9;

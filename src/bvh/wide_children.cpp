@@ -9,8 +9,7 @@ namespace relief {
 
 namespace {
 
-/// What a node costs beside its visits: the root's area four times over, divided among the leaves. Patches
-/// have some ten times that area each: it saves a twentieth of the nodes, and no ray notices.
+/// A node's cost beside its visits: four times the root's area, shared by the leaves. No ray notices.
 constexpr float kNodeCost = 4;
 
 } // namespace

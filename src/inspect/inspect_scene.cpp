@@ -170,8 +170,7 @@ double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int cou
     return all * std::pow(count / whole, power);
 }
 
-/// Estimates a render from about 1.5 seconds of partial renders. Tracing grows with pixels and samples, tree
-/// building for the first sample with the visible part, later with all pixels.
+/// Estimates a render from 1.5 seconds of partial ones: tracing by pixels and samples, trees by what is seen.
 Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
                    const RenderSettings& settings) {
     constexpr double kBudget_s = 1.5;

@@ -17,8 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t kChannels = 4;
 constexpr size_t kMostLanes = 16;
 
-/// Calls extend(values) for vectors of D that cover every row: whole texels, so that each lane belongs to one
-/// channel. The remainder of a row is covered by a vector that overlaps the one before.
+/// Calls extend(values) for vectors of D that cover every row by whole texels; the last two may overlap.
 template <class D, class Value, class Extend>
 HWY_INLINE void visit_registers(D d, const TexelRows<Value>& texels, Extend extend) {
     const size_t count = kChannels * texels.columns, lanes = hn::Lanes(d);

@@ -96,8 +96,8 @@ float find_front(const std::vector<Shape>& shapes, const Box& box) {
     return yz < -kClear * std::sqrt(yy * zz) ? 180.0f : 0.0f;
 }
 
-/// The camera's axes, and how far points reach along them: from distance d on the axis, points with |x| and
-/// |y| at most their tangent times (d - z) are seen: maxima of `tangent z` plus x, -x, y and -y matter.
+/// The camera's axes and the points' reach along them: at distance d on the axis, |x| and |y| up to their
+/// tangent times (d - z) are seen, so maxima of `tangent z` plus x, -x, y and -y matter.
 struct Reach {
     Vec3f right, up, view;
     float tangent_x = 0, tangent_y = 0;

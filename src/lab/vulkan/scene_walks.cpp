@@ -1,5 +1,5 @@
-// Trees of a traversal chosen by name in device memory: nodes among the nodes, all else as words among the
-// primitive ids. Word 0 begins the records (WalkTreeData): that of the instances, then one a surface.
+// Trees of a named traversal on the device: nodes among the nodes, all else as words among the primitive ids,
+// led by the records (WalkTreeData) of the instances and each surface.
 #include "lab/scene_walks.h"
 #include "formulas/tree.h"
 #include "vulkan/layout/device_scene.h"

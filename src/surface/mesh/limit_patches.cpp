@@ -147,8 +147,8 @@ class Cell {
         return face_.evaluate(place_.part, at.x, at.y);
     }
 
-    /// Of the surface at corner k. Where a smooth boundary goes round the corner of a lone quad both
-    /// derivatives have the same direction; the normal is then that of a place nearby.
+    /// At corner k. Where a smooth boundary rounds a lone quad's corner, the normal is that of a place
+    /// nearby.
     Vec3d find_normal(size_t k, const LimitSample& sample) const {
         const Vec3d& exact = refined_.limit_normals[refined_.points[quad_][k]];
         if (!(exact == Vec3d{})) return exact;

@@ -1,5 +1,4 @@
-// End of a round for one ray: commits a nearer hit from the patch trees, advances the cursor beyond the offered
-// candidates, and keeps the ray active while there may be candidates in front of its hit.
+// End of a ray's round: commits nearer hits, advances the cursor, and stays active while candidates may be nearer.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"

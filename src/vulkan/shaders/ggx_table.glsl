@@ -1,5 +1,4 @@
-// The table of formulas/ggx_table.h in a buffer: shader compilers copy a constant array to each place that indexes it,
-// which takes some of them minutes. The table is always bound (vulkan/device/binding_table.cpp).
+// The table of formulas/ggx_table.h in a buffer, always bound: as a constant array it takes minutes to compile.
 #ifndef RELIEF_GGX_TABLE_GLSL
 #define RELIEF_GGX_TABLE_GLSL
 

@@ -1,5 +1,4 @@
-// Rasterised first hits (GRAPP 2019, section 3.3, hybrid shading), made exact:
-// docs/decisions/hybrid-by-exact-raster.md. A wave of items with their vertices, row by row.
+// Rasterised first hits, made exact (docs/decisions/hybrid-by-exact-raster.md): a wave of items and vertices by row.
 #ifndef RELIEF_RASTER_GLSL
 #define RELIEF_RASTER_GLSL
 

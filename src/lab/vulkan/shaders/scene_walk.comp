@@ -127,8 +127,7 @@ float enter_leaf(uint node) {
 #endif
 }
 
-/// In world space, `tree` that of the instances. False: none is left. (lavapipe of Mesa 22.3 loses lanes at
-/// `continue`.)
+/// In world space, `tree` that of the instances. False: none left. (`continue` loses lanes on lavapipe 22.3.)
 bool enter_next_instance() {
     bool is_entered = false;
     while (waiting_count > 0u && !is_entered) {
