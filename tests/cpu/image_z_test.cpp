@@ -22,7 +22,7 @@ Mesh place(Mesh mesh, const Vec3f& center, float radius) {
     return mesh;
 }
 
-/// Three balls on a floor under a small panel, a sun, a lamp and a sky that is brighter at one side.
+/// Three balls on a floor under a small panel, a sun, a point light and a sky that is brighter at one side.
 Scene make_still_life() {
     Scene scene;
     add_object(scene, make_floor(6), make_material({0.7f, 0.6f, 0.5f}, 0.7f, 0));
@@ -38,12 +38,12 @@ Scene make_still_life() {
     sun.direction = {1, -1.5f, -0.6f};
     sun.angle_degrees = 4;
     sun.strength = 1.5f;
-    Light lamp;
-    lamp.type = LightType::point;
-    lamp.position = {1.5f, 1.8f, 1.2f};
-    lamp.radius = 0.2f;
-    lamp.strength = 2;
-    scene.lights = {sun, lamp};
+    Light point;
+    point.type = LightType::point;
+    point.position = {1.5f, 1.8f, 1.2f};
+    point.radius = 0.2f;
+    point.strength = 2;
+    scene.lights = {sun, point};
     auto sky = std::make_shared<Texture>();
     sky->width = 32, sky->height = 16, sky->channel_count = 3;
     for (uint32_t y = 0; y < 16; ++y)

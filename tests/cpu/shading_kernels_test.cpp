@@ -95,14 +95,14 @@ TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
             expect_kernels_of(cpu::EnvironmentLight(make_sky(width, 1 + width / 2, 3, has_halves)));
         expect_kernels_of(cpu::EnvironmentLight(make_sky(64, 32, 1, has_halves)));
     }
-    // Cells of several texels; a lamp, dark rows and columns.
+    // Cells of several texels; a bright texel, dark rows and columns.
     Environment large = make_sky(1500, 750, 3, false);
-    Texture lamps = *large.texture;
-    for (size_t k = 0; k < lamps.floats.size(); ++k)
-        if (k / 6000 % 3 == 0 || k / 4 % 5 == 0) lamps.floats[k] = 0;
-    lamps.floats[4 * (1500 * 200 + 1499)] = 1e6f;
+    Texture lights = *large.texture;
+    for (size_t k = 0; k < lights.floats.size(); ++k)
+        if (k / 6000 % 3 == 0 || k / 4 % 5 == 0) lights.floats[k] = 0;
+    lights.floats[4 * (1500 * 200 + 1499)] = 1e6f;
     expect_kernels_of(cpu::EnvironmentLight(large));
-    large.texture = std::make_shared<Texture>(lamps);
+    large.texture = std::make_shared<Texture>(lights);
     expect_kernels_of(cpu::EnvironmentLight(large));
     Environment plain;
     plain.color = {0.5f, 1, 2};
@@ -233,7 +233,7 @@ TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
     }
 }
 
-/// An environment, a sun, a small and a large lamp, a glowing quad.
+/// An environment, a sun, a small and a large point light, a glowing quad.
 Scene make_lit_scene() {
     Scene scene;
     add_object(scene, make_floor(10), make_matte(0.5f));
@@ -267,7 +267,7 @@ TEST(Lights, are_drawn_for_many_points_as_for_each) {
     std::vector<uint32_t> odd;
     for (uint32_t k = 1; k < kMany; k += 2) odd.push_back(k);
     lights.complete_weight(drawn, odd);
-    std::array<size_t, 4> counts{}; // environment, sun, lamps, quad
+    std::array<size_t, 4> counts{}; // environment, sun, lights, quad
     for (uint32_t k = 0; k < kMany; ++k) {
         cpu::LightSample one;
         const uint32_t first = 0;
