@@ -94,7 +94,8 @@ void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics
     if (!map.is_udim && statistics.bad_count == 0) guess_order_on_plane(map, normal, result);
 }
 
-/// Only the right channel order closes the seams in tangent space; the sign comes from a one-sided mean.
+/// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
+/// normal, not its sign: that is taken from a mean which is far to one side.
 void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& statistics,
                      MapConvention& result) {
     std::array<double, 3> gaps{1e9, 1e9, 1e9};
@@ -199,7 +200,8 @@ int find_tile_number(const Texture& texture) {
     return found;
 }
 
-/// Where nearly all texels move to one side along two channels, the whole body moves: object space.
+/// A map of a body whose texels nearly all move to one side along two channels: the whole body moves, in
+/// object space. Tangent axes turn from island to island, so only the channel along the normal has a side.
 std::optional<Guess<DisplacementSpace>> guess_space_of_tiles(const Displacement& map,
                                                              const MapStatistics& statistics) {
     constexpr double kAllOneSided = 0.9;

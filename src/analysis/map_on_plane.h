@@ -5,7 +5,8 @@
 
 namespace relief {
 
-/// Share of cells between texels whose surface runs backwards along the normal, and its area.
+/// Share of cells between texels whose surface runs backwards as seen along the normal, and its area, both of
+/// a plane two units wide, as sculpting programs have it.
 struct PlaneFolds {
     double share = 0;
     double area = 0; ///< times that of the plane

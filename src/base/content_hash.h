@@ -9,7 +9,8 @@
 
 namespace relief {
 
-/// XXH3 (Collet, xxHash 0.8) of each part, seeded with the hash so far. Parts must have no padding.
+/// XXH3 (Collet, xxHash 0.8) of each part, seeded with the hash of all parts before. Depends on the machine's
+/// byte order only. Parts must have no padding.
 class ContentHash {
   public:
     /// Continues from the value of another hash.

@@ -33,7 +33,8 @@ struct AxisBvh {
     int depth = 0;             ///< of `bvh`
 };
 
-/// Axis of each inner node along which the left child is lower (0: leaf); backward rays go right first.
+/// Axis of each inner node, along which its left child lies below the right one by most; 0 for leaves. Rays
+/// that go backwards along it take the right child first.
 std::vector<uint8_t> compute_axes(const Bvh& bvh);
 
 /// In parallel.

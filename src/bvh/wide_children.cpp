@@ -9,7 +9,8 @@ namespace relief {
 
 namespace {
 
-/// A node's cost beside its visits: four times the root's area, shared by the leaves. No ray notices.
+/// What a node costs beside its visits: the root's area four times over, divided among the leaves. Patches
+/// have some ten times that area each: it saves a twentieth of the nodes, and no ray notices.
 constexpr float kNodeCost = 4;
 
 } // namespace

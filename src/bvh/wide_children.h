@@ -76,7 +76,8 @@ class WideCollapse {
     float node_cost_ = 0;
 };
 
-/// The wide nodes that `collapse` makes of `bvh`; node 0 is the root, children of a node are adjacent.
+/// The wide nodes that `collapse` cuts `bvh` into, node 0 the root; inner children of a node are adjacent and
+/// behind it. make_leaf(binary leaf) gives child words, encode(parts) nodes.
 template <class Nodes, class MakeLeaf, class Encode>
 void make_wide_nodes(const Bvh& bvh, const WideCollapse& collapse, Nodes& nodes, MakeLeaf make_leaf,
                      Encode encode) {

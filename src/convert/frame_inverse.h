@@ -1,4 +1,5 @@
-// Inverse of frames, also nearly singular ones, as blends between opposite tangents are.
+// The way back through frames, also nearly collapsed ones: frames are blended between corners, and where
+// opposite tangents meet, no (t, b, n) of sensible size reaches some directions.
 #pragma once
 
 #include "convert/texel_frames.h"

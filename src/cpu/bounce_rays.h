@@ -18,8 +18,9 @@ struct BounceScratch {
     std::vector<SurfacePoint> points;
 };
 
-/// As Tracer::closest_hits at `depth`: ray k sees M_(lod_bias) up to coarse_from[k], M_(kBounceBias) beyond.
-/// Rays that would change between the surfaces see the fine one. They return with the LOD bias of their hit.
+/// As Tracer::closest_hits at `depth`, where ray k sees M_(lod_bias) up to coarse_from[k] and M_(kBounceBias)
+/// beyond. Where the far part begins between the two surfaces it would meet the coarse one from within: such
+/// rays see the fine one all the way. Rays come back with the LOD bias of what they met. Thread safe.
 void closest_bounce_hits(const Tracer& tracer, std::span<TraceRay> rays, std::span<const float> coarse_from,
                          std::span<TraceHit> hits, int depth, BounceScratch& scratch, PointScratch& points);
 

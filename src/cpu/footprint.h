@@ -36,7 +36,8 @@ class Footprint {
     /// bounds is left out. Rounding may take a place close to a voxel's face for the other side.
     void add_ray(const Vec3f& origin, const Vec3f& direction, float t_end);
 
-    /// The voxels that a box touches, with that margin. False and none added if it leaves the grid.
+    /// The voxels that a box touches, and those so close that rounding might put a ray there. False, with
+    /// nothing added, where it leaves the grid's bounds.
     bool add_box(const Box& box);
 
     void clear();

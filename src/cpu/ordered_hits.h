@@ -20,7 +20,9 @@ using RunCast =
 /// Bytes of all trees of a patch at its levels.
 size_t count_tree_bytes(uint32_t level);
 
-/// Closest hits of rays without LOD bias. False, and no hits, if all trees needed fit into `room_bytes`.
+/// Nearest hits as Kernels::closest_hits finds them, of rays with an LOD bias of 0. If the trees of all
+/// patches that the rays may meet fit into `room_bytes`: false, and `hits` is not to be used. Uses the
+/// threads of the scope.
 bool trace_ordered(const Kernels& kernels, const SceneView& scene, const RunCast& run,
                    std::span<const TraceRay> rays, std::span<TraceHit> hits, size_t room_bytes);
 

@@ -267,7 +267,8 @@ void TileTracer::draw_random() {
     }
 }
 
-/// Vertices of the wave from `first` on. Paths that go on take places from `next` on. Returns the next place.
+/// Vertices of the wave from `first` on. Paths that go on get the places from `next`; what lies before a
+/// block has been shaded, so that its place can be taken. Returns the next place.
 size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     draw_lights(first, count);
     reflect(first, count);

@@ -38,8 +38,9 @@ struct TileReport {
     PictureFootprints* footprints = nullptr; ///< get where rays have been; null: nobody asks
 };
 
-/// Adds samples to the pixels of `tile`; kTileEdge squared is best. Sample k of a pixel depends on (seed,
-/// pixel, k) only. Threads may share a film, but no block of its footprints.
+/// Adds samples to the pixels of `tile` (inside the film's window, any size; kTileEdge squared is best).
+/// Sample k of a pixel depends on (seed, pixel, k) only. Several threads may work on different tiles of one
+/// film, where none shares a block of the footprints with another.
 void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
                 TileReport& report);
 

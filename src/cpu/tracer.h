@@ -75,8 +75,9 @@ class Tracer {
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 
-    /// While this lives, rays stop with StopRequest once `is_asked_for` is true. Made while nothing is
-    /// traced.
+    /// While this lives, rays end with StopRequest (cpu/patch_trees/patch_tree_cache.h) before the next tree
+    /// that they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes
+    /// its time. Any worker asks. To be made and ended while nothing is traced.
     class StopScope {
       public:
         StopScope(const Tracer& tracer, std::function<bool()> is_asked_for);
@@ -88,7 +89,8 @@ class Tracer {
         const Tracer& tracer_;
     };
 
-    /// World-space box of all that is displaced; empty if apply_changes() would return false.
+    /// The box of all that has a displacement, world space; empty where apply_changes() would be false. It
+    /// may become smaller with rebuild_if_worthwhile().
     Box displaced_bounds() const;
 
     /// Nearest hit of each ray, in (t_min, t_max]. Rays that start together or go the same way are traced as
@@ -96,8 +98,9 @@ class Tracer {
     /// them: bounces behind the rays. Instances are met whose visibility mask shares a bit with `mask`.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0,
                       uint32_t mask = kVisibleToAll) const;
-    /// The same for up to kOrderedRays rays without LOD bias: one build per patch tree (ordered_hits.h).
-    /// False, and nothing found, if their trees fit into the cache or ordering does not apply.
+    /// The same of rays without an LOD bias, at most kOrderedRays, on the threads of the scope: each patch
+    /// tree is built once for all of them (ordered_hits.h). False, and nothing is found, where the trees that
+    /// they need fit into the cache, or rays are too few or need another traversal.
     bool ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, uint32_t mask) const;
     /// False where ordered_hits of `count` rays is sure to be.
     bool may_order(size_t count) const;
@@ -122,7 +125,8 @@ class Tracer {
     /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const;
 
-    /// Origin for a ray from `point`: moved off the surface by point.position_error, to the ray's side.
+    /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,
+    /// along the geometric normal, to the side that the direction is on.
     Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) const;
 
     void add_statistics(Statistics& statistics) const;

@@ -19,7 +19,8 @@ class Engine {
     /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
     virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
 
-    /// Adds `spp` samples from first_sample to the film's window. False if the observer cancelled.
+    /// Adds samples [settings.image.first_sample, + spp) of every pixel of the film's window. Returns false
+    /// when the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, RenderObserver* observer) = 0;
 
     /// apply_changes() and refresh() will be called: whatever makes them cheaper may cost a little.

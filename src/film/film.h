@@ -34,7 +34,8 @@ struct FilmSums {
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
 };
 
-/// Accumulates in the order of calls: one thread per pixel at a time, samples in rising order.
+/// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
+/// order. Different pixels may be fed at the same time.
 class Film {
   public:
     /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one,
@@ -50,8 +51,9 @@ class Film {
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 
-    /// R G B A and the layers: means over the samples (normals normalised again, P and uv over hits); depth
-    /// and id of the nearest first hit; variance of the mean. Without samples: 0, depth infinity.
+    /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
+    /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
+    /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
     Image resolve() const;
 
     /// The least number of samples that a pixel has.

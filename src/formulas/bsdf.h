@@ -1,5 +1,7 @@
-// Metallic-roughness surface, local frame: GGX lobe over a diffuse base. Microfacets: Walter et al. 2007,
-// height-correlated Smith shadowing (Heitz 2014). Multiple scattering and coat: Kulla and Conty 2017.
+// Metallic-roughness surface in the local frame (shading normal = z): a GGX lobe over a diffuse base, both
+// energy conserving. Microfacets: Walter et al. 2007 with height-correlated Smith shadowing (Heitz 2014).
+// Multiple-scattering compensation and coupling of coat and base: Kulla and Conty 2017, Revisiting Physically
+// Based Shading; both are reciprocal, and a white surface reflects all light.
 #if !defined(RELIEF_BSDF_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_BSDF_H

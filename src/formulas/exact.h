@@ -1,4 +1,5 @@
-// Vector arithmetic that rounds once per operation in a fixed order; for all surface positions.
+// Vector arithmetic in which every operation rounds once, in a fixed order, in C++ and GLSL alike. Everything
+// that determines surface positions uses it.
 #ifndef RELIEF_EXACT_H
 #define RELIEF_EXACT_H
 #include "formulas/begin.h"

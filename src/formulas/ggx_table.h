@@ -3,9 +3,11 @@
 #define RELIEF_GGX_TABLE_H
 #include "formulas/begin.h"
 
-// Split by Fresnel as in Karis 2013: albedo = f0 scale + f90 bias. Rows: roughness 0, 1/15, ..., 1; columns:
-// square root of the cosine; the averages of the rows last. 400 x 400 stratified samples per entry, checked
-// by tests. Averages are 2 integral(albedo(x) x dx) of the interpolated table, for energy conservation.
+// Split by Fresnel as in Karis 2013, Real Shading in Unreal Engine 4: albedo = f0 scale + f90 bias, with
+// Schlick's Fresnel. Rows: roughness 0, 1/15, ..., 1. Columns: square root of the cosine 0, 1/15, ..., 1. The
+// averages of the rows come last. 400 x 400 stratified samples per entry; the tests recompute the integrals.
+// The averages are 2 integral(albedo(x) x dx) of the linearly interpolated table, not of the lobe itself, so
+// that the table conserves energy exactly.
 #ifdef __cplusplus
 // clang-format off
 const float kGgxScale[272] = {

@@ -17,7 +17,8 @@ FN float sphere_cone_height(float radius, float distance) {
     return distance > radius ? s2 / (1.0f + sqrt(max(0.0f, 1.0f - s2))) : 2.0f;
 }
 
-/// Distance along the unit vector d to a sphere centred at `center`; negative for a miss.
+/// Distance along the unit vector d from a point to a sphere whose centre is at `center` from it: where the
+/// ray enters, or leaves from inside; negative for a miss.
 FN float sphere_distance(Vec3 center, float radius, Vec3 d) {
     float along = dot(center, d);
     Vec3 across = center - d * along;

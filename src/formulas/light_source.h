@@ -86,7 +86,8 @@ FN LightDraw draw_point_light(LightSourceData source, Vec3 position, Vec2 u) {
     return drawn;
 }
 
-/// Density per solid angle at distance `to` of a point on an emissive patch, chosen with `probability`.
+/// Density per solid angle, from a point `to` away, of a point on an emissive patch selected with
+/// `probability`; `area_per_uv` and `normal` are those of its micro-triangle.
 FN float emitter_density(float probability, float area_per_uv, Vec3 normal, Vec3 to) {
     float distance2 = dot(to, to);
     float cosine = abs(dot(normal, to)) / sqrt(distance2);

@@ -1,4 +1,5 @@
-// Morton codes of 30 and 63 bits, x most significant: bit p belongs to axis 2 - p mod 3.
+// Morton codes of 30 and 63 bits: x is the most significant of each triple, so bit p belongs to axis 2 - p
+// mod 3. All devices and the host round these operations alike.
 #ifndef RELIEF_MORTON_H
 #define RELIEF_MORTON_H
 #include "formulas/begin.h"
@@ -19,7 +20,8 @@ FN float invert_mantissa(float m) {
     return third;
 }
 
-/// Cell of `position` of 2^bits in [lower, upper]; 0 if empty or NaN. Quartered, so as not to overflow.
+/// Cell of `position` in [lower, upper] cut into 2^bits cells; 0 where the interval is empty or a value is
+/// NaN. Scaled by a quarter, so that no difference of floats overflows.
 FN uint quantise_position(float position, float lower, float upper, uint bits) {
     EXACT float extent = upper * 0.25f - lower * 0.25f;
     EXACT float offset = position * 0.25f - lower * 0.25f;

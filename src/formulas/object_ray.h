@@ -37,8 +37,9 @@ FN ObjectRay make_object_ray(Vec3 origin, Vec3 direction) {
     ray.direction = direction;
     Vec3 reciprocal = {reciprocal_of_speed(direction.x), reciprocal_of_speed(direction.y),
                        reciprocal_of_speed(direction.z)};
-    // For a zero direction component, instead of 1 / 0: a finite factor and an origin offset outward by more
-    // than rounding, so that such a ray touches the box and misses its neighbours.
+    // For a zero direction component 1 / 0 would give 0 * infinity for an origin exactly on a box face. A
+    // finite factor, and an origin offset outward by more than rounding, make such a ray touch the box and
+    // miss its neighbours.
     Vec3 margin = {margin_of_axis(direction.x, origin.x), margin_of_axis(direction.y, origin.y),
                    margin_of_axis(direction.z, origin.z)};
     ray.reciprocal = reciprocal;
@@ -95,7 +96,8 @@ struct TriangleHit {
     float weight_b, weight_c;
 };
 
-/// `a`, `b`, `c`: sheared corners. Edge functions never have the wrong sign unless operations are fused.
+/// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
+/// as inside. Fused operations would break this.
 FN TriangleHit intersect_sheared(ObjectRay ray, Vec3 a, Vec3 b, Vec3 c, float t_min, float t_max) {
     EXACT float u = c.x * b.y - c.y * b.x;
     EXACT float v = a.x * c.y - a.y * c.x;

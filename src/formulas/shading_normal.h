@@ -35,7 +35,8 @@ struct SurfaceDerivative {
 /// Derivative of a bilinear patch at `s` across: from p to q on the near side, r to t on the far side.
 FN Vec3 blend_difference(Vec3 p, Vec3 q, Vec3 r, Vec3 t, Float s) { return interpolate(q - p, t - r, s); }
 
-/// Ends of a central difference one cell wide about `at`; cut off at a uv seam, where the map ends.
+/// Ends of a central difference one cell wide about `at`. The difference extends into the neighbouring patch,
+/// except at a uv seam, beyond which lies another part of the map.
 FN Vec2 find_difference_ends(Float at, Float half_cell, Bool is_low_seam, Bool is_high_seam) {
     Float low = at - half_cell;
     Float high = at + half_cell;

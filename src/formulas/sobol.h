@@ -1,5 +1,6 @@
-// Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair); each pair is
-// a scrambled (0, 2)-sequence (Burley 2020, JCGT 9, 4). Renders can be extended.
+// Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair). Burley 2020,
+// Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0, 2)-sequence of Sobol,
+// scrambled independently. Samples do not depend on their count, so renders can be extended.
 #if !defined(RELIEF_SOBOL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SOBOL_H
@@ -31,7 +32,8 @@ FN uint reverse_bits(uint x) {
     return x;
 }
 
-/// Owen scrambling of a bit-reversed integer (Laine and Karras 2011, constants of Vegdahl 2021).
+/// Owen scrambling of a bit-reversed integer: each bit is flipped by a hash of the lower ones (Laine and
+/// Karras 2011, with the constants of Vegdahl 2021).
 FN uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;

@@ -69,7 +69,8 @@ FN Vec3 orient_shading_normal(Vec3 interpolated, Vec3 geometric_normal) {
     return select(dot(normal, geometric_normal) < Float(0.0f), -normal, normal);
 }
 
-/// Origin of a ray into `direction`: offset along the normal by the point's error bound.
+/// Origin of a ray spawned into `direction`: offset from the surface by the point's error bound, along the
+/// geometric normal, to the side of the direction.
 FN Vec3 offset_origin(Vec3 position, Vec3 normal, Float position_error, Vec3 direction) {
     Float side = select(dot(direction, normal) < Float(0.0f), Float(-1.0f), Float(1.0f));
     return position + normal * (side * position_error);

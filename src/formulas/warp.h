@@ -31,7 +31,8 @@ FN Vec3 square_to_cosine_hemisphere(Vec2 u) {
 
 FN Float cosine_hemisphere_pdf(Float cos_theta) { return max(cos_theta, Float(0.0f)) * Float(1.0f / kPi); }
 
-/// Uniform directions in the cone about +z of cosine 1 - height, which keeps narrow cones exact.
+/// Uniform directions in the cone about +z whose half angle has cosine 1 - height; height 2 is the whole
+/// sphere. Passing the height instead of the cosine keeps narrow cones exact.
 FN Vec3 square_to_cone(Vec2 u, Float height) {
     Float drop = u.x * height;
     Float sin_theta = sqrt(max(Float(0.0f), drop * (Float(2.0f) - drop)));

@@ -170,7 +170,9 @@ double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int cou
     return all * std::pow(count / whole, power);
 }
 
-/// Estimates a render from 1.5 seconds of partial ones: tracing by pixels and samples, trees by what is seen.
+/// What a render would take: parts of the picture are rendered for about a second and a half with a few
+/// samples. Tracing grows with pixels and samples, building of patch trees for the first sample with the part
+/// of the surfaces that is seen; what later samples build they build for all pixels, as trees were dropped.
 Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
                    const RenderSettings& settings) {
     constexpr double kBudget_s = 1.5;

@@ -22,7 +22,8 @@ bool knows_midlevel(const Displacement& map, MapMeaning meaning);
 /// The midlevel that was said, if any was.
 std::optional<Vec3f> find_known_midlevel(const Displacement& map, MapMeaning meaning);
 
-/// Mistakes that the texels alone show. MapMeaning::declared: midlevel, scale and type are trusted.
+/// What the texels alone show. With MapMeaning::declared midlevel, scale and type of `map` are taken at their
+/// word; otherwise the midlevel of the statistics counts.
 void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                        std::vector<Finding>& findings);
 

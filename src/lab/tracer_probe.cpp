@@ -136,7 +136,8 @@ struct TracerProbe::Implementation {
     void trace_batch(std::span<const Ray> rays, size_t begin, RayGrouping grouping, HitKind kind,
                      ProbeRun& result) {
         BatchBuffers& buffer = buffers[size_t(current_thread_index())];
-        // Only displaced patches see the LOD bias, and packets share one: alternating, plain rays go alone.
+        // Displaced patches alone see a ray's LOD bias, and packets are of one LOD bias: with two in turn,
+        // rays of a scene without displacement go alone and meet the same surface.
         const uint32_t largest_bias = grouping == RayGrouping::single ? 1 : 0;
         buffer.rays.resize(rays.size());
         // Field by field into place: a ray that is put together elsewhere first waits for its own stores.

@@ -92,7 +92,8 @@ class TreeWorkshop;
 /// One tree at a time over one mesh. One thread at a time; all of `settings.device.threads` work.
 class MeshTrees {
   public:
-    /// Of `settings` engine, device, pipeline_cache and threads. Throws Error, as validate_mesh too.
+    /// Of `settings` engine, device, pipeline_cache and threads. Throws Error: device_missing, out_of_memory,
+    /// bad_input for what validate_mesh refuses.
     MeshTrees(const Mesh& mesh, const RenderSettings& settings);
     ~MeshTrees();
 

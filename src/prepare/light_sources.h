@@ -30,7 +30,8 @@ struct EmitterTable {
 
 EmitterTable make_emitter_table(const PreparedScene& scene);
 
-/// Lights to sample, without those of no power: environment, suns and points, the emissive surfaces.
+/// What may be drawn, in this order: the environment of the given mean luminance, suns and point lights, the
+/// emissive surfaces as one. Lights without power are left out.
 std::vector<scalar::LightSourceData>
 make_light_sources(const PreparedScene& scene, float environment_luminance, const EmitterTable& emitters);
 

@@ -67,7 +67,8 @@ SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings)
     own_maps();
 }
 
-/// Textures may be shared with the scene's maker (mips are not), so each is copied, one at a time.
+/// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one
+/// after another, since the last user of the old one is often here.
 void SceneEditor::own_maps() {
     std::map<const Texture*, const Texture*> copy_of;
     for (Surface& surface : scene_->surfaces)

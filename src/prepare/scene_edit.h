@@ -11,7 +11,8 @@
 
 namespace relief {
 
-/// A byte a patch: those displaced anew, and those shaded anew, which shading normals make more.
+/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
+/// which are more: shading normals read beyond the sides of a patch.
 struct SurfaceChange {
     uint32_t surface = 0;
     std::vector<uint8_t> is_changed, looks_different;

@@ -24,7 +24,8 @@ double measure_uv_area(const Surface& surface, const Quad& quad) {
     return std::fabs(area);
 }
 
-/// Heights, other than signed permutations, and maps that repeat on the mesh tell nothing.
+/// Vectors that are no signed permutations of what was read, heights, and maps that are laid over a mesh more
+/// than once, whose sides agree because they are the same texels, tell nothing.
 bool can_be_told(const Surface& surface) {
     if (!surface.derivatives.empty()) return false;
     for (const Vec3f& row : surface.map.matrix)

@@ -9,7 +9,8 @@ namespace relief {
 /// Of a scene that is not tessellated yet, at the levels of its instances.
 TessellationCost estimate_tessellation(const PreparedScene& scene);
 
-/// Replaces displaced surfaces by their micro-quads at each instance's levels. Error{out_of_memory} first.
+/// Replaces every displaced surface by its micro-quads at the levels of each instance (equal ones share
+/// them). Throws Error{out_of_memory} with the byte count beforehand.
 void tessellate_scene(PreparedScene& scene, uint64_t available_bytes);
 
 } // namespace relief

@@ -1,4 +1,5 @@
-// Closed bodies of revolution of quads only: a tube of 4k columns and two caps of k x k quads.
+// Closed bodies of revolution made of quads only: a tube of 4k columns, its two ends closed by k x k quads
+// each, so that no quad and no uv degenerates at the poles.
 #pragma once
 
 #include <vector>

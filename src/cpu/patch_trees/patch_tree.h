@@ -1,5 +1,6 @@
-// What a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over blocks of 4 x
-// 2 micro-quads (16 triangles). Vertices are kept once, in their tile's grid; blocks load three rows of it.
+// Layout of what a patch keeps while rays are inside it: sixteen-wide boxes, two quad levels a step, over
+// blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
+// stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
 // A patch tree covers a tile of at most 64 x 64 cells. Finer patches have a directory, the same tree over the
 // boxes of their tiles' quarters: only the tiles that rays enter are evaluated.
@@ -74,7 +75,8 @@ struct PatchTree : CachedTree {
                : level == 3 ? sizeof(Node8)
                             : 0;
     }
-    /// Vertices a row, and rows, at least a block's: the rest repeats the last ones, without area.
+    /// Vertices a row, and rows: those of a block at least. What a tile has less repeats its last column and
+    /// row, which makes triangles without area that no ray hits.
     static constexpr uint32_t column_count(int level) { return level < 2 ? 5 : (1u << level) + 1; }
     static constexpr uint32_t row_count(int level) { return level < 1 ? 3 : (1u << level) + 1; }
     static constexpr uint32_t vertex_count(int level) { return column_count(level) * row_count(level); }

@@ -106,7 +106,8 @@ class PatchTreeCache {
     TraceContext& acquire();
     void release(TraceContext& context);
 
-    /// While this lives, a context keeps its trees to itself: for one patch and many rays at once.
+    /// While this lives, a context builds and finds trees of its own alone, whatever their bytes: for a
+    /// worker that needs those of one patch for many rays and then never again.
     class OwnedTrees {
       public:
         OwnedTrees(PatchTreeCache& cache, TraceContext& context);
@@ -119,7 +120,8 @@ class PatchTreeCache {
         TraceContext& context_;
     };
 
-    /// Asked before every tree or directory that is built: true makes look-ups throw StopRequest.
+    /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
+    /// StopRequest. Empty: never. Not while a context is taken.
     void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
 
     /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.

@@ -11,8 +11,9 @@
 
 namespace relief::cpu {
 
-/// Boxes of up to eight children: lower x y z, upper x y z, from slot 0; empty slots have lower +inf, upper
-/// -inf. A leaf is one block. Floats, as decoding bytes costs more than the memory of so few nodes saves.
+/// Boxes of up to eight children: lower x y z, upper x y z. They fill the slots from 0; empty slots have
+/// lower +inf, upper -inf. A leaf is one block. Floats, where WideNode has bytes: there are as many triangles
+/// as nodes have room for, not a patch of a thousand a leaf, and a ray's tests need no decoding.
 struct alignas(64) PolygonNode : WideChild {
     float bounds[6][8];
     uint32_t child[8];

@@ -36,8 +36,9 @@ class LightSet {
         uint32_t lod_bias; ///< emitters are sampled on surface M_bias
     };
 
-    /// Draws one light by estimated irradiance, then a direction to it: `u_light` picks the light,
-    /// `u_emitter` the emissive patch, `u` the point. pdf 0: none. It may lie behind the surface.
+    /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
+    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 where nothing could be drawn: all is dark,
+    /// or a light is at the point itself or seen edge on. It may lie behind the surface.
     struct RandomNumbers {
         float u_light, u_emitter;
         Vec2f u;

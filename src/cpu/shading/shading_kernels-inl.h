@@ -1,5 +1,6 @@
-// Shading kernels of one instruction set, RELIEF_TARGET: each has its own source (cmake/Kernels.cmake) and
-// may be left out. Headers below are compiled once and need no toggling guards.
+// The kernels that shade for one instruction set, RELIEF_TARGET: each has a source of its own
+// (cmake/Kernels.cmake), so that processors compile them side by side, and a build may leave some out. The
+// headers below are thus compiled for one target and need no guards that Highway can toggle.
 #include "math/lane_targets.h"
 
 #undef HWY_TARGET_INCLUDE

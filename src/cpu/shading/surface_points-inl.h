@@ -312,7 +312,8 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
                                        wide::displace_derivative_through(along_v, frame, d, normal), normal);
 }
 
-/// Object-space points from `first` on, with shading normals; position_error is written last.
+/// Points of a batch from `first` on, with the surface's own shading normals, object space. Members of
+/// SurfacePoint before position_error are written four floats at a time.
 inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count, const HitLanes& lanes,
                          const CellPointLanes& cell, const WideVec3& smooth, const WideVec2& uv) {
     static_assert(offsetof(cpu::SurfacePoint, position_error) == 48);

@@ -7,8 +7,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-// Box forms of nodes, lower x y z, upper x y z: floats, or bytes (WideNode). load_plane gives a row of them,
-// get_plane one number, mask_children the used slots; empty boxes of floats need no mask.
+// The forms that nodes have their boxes in, lower x y z, upper x y z: floats, or bytes (WideNode) by the
+// decoder that the builder checked with. load_plane gives a row of them, get_plane one number, mask_children
+// the slots that rays may enter: empty boxes of floats they miss.
 
 template <size_t W> HWY_INLINE Lanes<W> load_plane(const float (&bounds)[6][W], int plane, int) {
     return Lanes<W>::load(bounds[plane]);

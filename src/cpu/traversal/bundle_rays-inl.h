@@ -45,7 +45,8 @@ struct BundleRays {
     }
 };
 
-/// Writes what a bundle keeps of sixteen rays. Returns those that may share it, by lod_bias and can_hit.
+/// Writes what a bundle keeps of sixteen rays, repeated where there are fewer. Returns those that may be in
+/// one with others of the lod_bias: can_hit.
 HWY_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& rays) {
     for (int k = 0; k < 3; ++k) {
         lanes.direction[k].store(rays.direction[k] + at);
@@ -126,7 +127,8 @@ inline void pad_inactive_lanes(BundleRays& rays) {
 /// Width of the box of the origins over the distance of neighbours; of a tile of 16 x 16 pixels some 16.
 inline constexpr float kWidestBeam = 64;
 
-/// False for rays whose origins are far apart or mostly the same: a beam about them would be too wide.
+/// False where rays begin on things that lie far apart: a beam about them would hold all that is between.
+/// Also where most neighbours begin in one place. After pad_inactive_lanes.
 inline bool are_neighbours_close(const BundleRays& rays) {
     constexpr uint32_t kSamples = 15; // of the distances of neighbours, for their median
     std::array<float, kSamples> distance;

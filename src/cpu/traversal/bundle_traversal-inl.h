@@ -1,4 +1,5 @@
-// A bundle of rays through the scene: each box, patch and block is visited once for all rays of a tile.
+// A bundle of rays (ray_bundle-inl.h) through the scene: as in a rasteriser of micro-polygons, every box,
+// patch and block is visited once for all rays of a tile, nearest first.
 #pragma once
 
 #include <cstddef>

@@ -8,7 +8,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-/// Children to visit, up to kCapacity (a power of two): distances with the child in the lowest bits.
+/// Entries of children that a ray is to visit: the entry distance with its last bits replaced by the child,
+/// so that whole numbers in rising order are distances in rising order (from t >= 0; below, any order will
+/// do). Up to kCapacity children, a power of two.
 template <uint32_t kCapacity> struct EntryList {
     static constexpr uint32_t kChildMask = kCapacity - 1;
     alignas(64) uint32_t key[kCapacity + 16]; ///< a little more than fits: whole registers are stored

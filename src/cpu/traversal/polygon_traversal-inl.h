@@ -20,7 +20,8 @@ HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
     a = farther, b = nearer;
 }
 
-/// Place on a polygon from the weights of b and c; 0 is added as for patches, since a weight may be -0.
+/// The place of a hit on its polygon from the weights of corners b and c. 0 is added as where the cell of a
+/// patch is: make_hits does the same for both, and a weight may be -0.
 HWY_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
     hit.is_upper = is_upper;
     hit.u = 0.0f + (is_upper ? weight_b : weight_b + weight_c);
@@ -82,8 +83,9 @@ HWY_INLINE uint32_t take_nearest(const Node& node, LaneMask mask, const Lanes8& 
     return stack[--size].child;
 }
 
-/// One ray in a tree of polygons with float nodes: its direction tells which plane of two comes first, and
-/// the far factors contain kBoxSlack.
+/// One ray in a tree of polygons: nodes of floats are tested with what is made ready once. Which of two
+/// planes a ray meets first is known from its direction; the widening by kBoxSlack is part of the far
+/// factors.
 struct PolygonRayWalker {
     using Entry = StackEntry;
 

@@ -58,7 +58,8 @@ HWY_INLINE ProjectedBounds find_bounds(const Lanes<W> (&v)[3], const Bundle& bun
     return bounds;
 }
 
-/// Up to all pairs of rays and eight parts, and a step's rest, each with what its test reads of the ray.
+/// Up to all pairs of a group of rays and eight parts, and what a step left over. With each pair goes what
+/// its test reads of the ray: lanes that look it up elsewhere are slow.
 template <int kValues> struct PairList {
     static constexpr uint32_t kCapacity = 8 * kGroupSize + 16;
     alignas(64) uint32_t code[kCapacity + 16]; ///< ray * 8 + part; a little more, for whole registers
@@ -107,7 +108,8 @@ template <int kValues> struct PairList {
 
 template <class Bundle> using PairsOf = PairList<Bundle::kPairValues>;
 
-/// Appends the pairs of the group's rays `left`, by ray or by part, whichever is fewer. Returns those rays.
+/// Appends the pairs of the rays `left` of a group: ray by ray where they are fewer than the parts that
+/// concern them, else quad by part. Returns the rays that have one.
 template <class Bundle, class GroupLanes>
 HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, uint32_t group,
                                  const GroupLanes& rays, LaneMask left, PairsOf<Bundle>& pairs) {
@@ -183,7 +185,8 @@ HWY_INLINE void shear_corners(const PairLanes<Bundle::kPairValues>& pairs, const
     }
 }
 
-/// The triangles of corners 0, kSecond and kThird on the rays' lines, test.t along the major axis.
+/// The triangles of corners 0, kSecond and kThird, however far along the rays: test.t is the place along the
+/// major axis. False where no ray's line meets one.
 template <int kSecond, int kThird, int kValues, int kCount>
 HWY_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&corner)[3][kCount],
                            TriangleTest<16>& test) {

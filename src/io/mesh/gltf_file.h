@@ -30,7 +30,8 @@ class GltfFile {
     static const JsonNode& resolve(const JsonNode& index, const std::vector<JsonNode>& list,
                                    const char* what);
 
-    /// Values of an accessor, `width` a vertex, normalised where it says so; live as long as the file.
+    /// Values of an accessor, `width` a vertex, integers scaled to [0, 1] or [-1, 1] where it says so.
+    /// They live as long as the file: many parts may share them.
     std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);
 

@@ -26,8 +26,9 @@ struct MeshBlock {
     Error::Parts error;
 };
 
-/// Reads a possibly damaged block, at most `most_bytes`; incomplete ones or bad indices count as nothing.
-/// Values are copied before they are checked. Control characters of error texts become '?'.
+/// Reads a block that whoever wrote it may have damaged, at most `most_bytes` of it. What is not whole or
+/// holds an index out of range counts as nothing. Control characters of error texts become '?'. The values
+/// are copied before they are checked, so that the writer cannot change them afterwards.
 MeshBlock read_mesh_block(int descriptor, uint64_t most_bytes);
 
 } // namespace relief

@@ -9,10 +9,11 @@
 
 namespace relief {
 
-/// `name` is for messages. Throws bad_input with the line for bad numbers, indices out of range, uv on some
-/// corners only and damaged tags. Left out: groups, materials, faces of fewer than 3 corners, and normals
-/// unless all corners have one. Creases are OpenSubdiv's tags ("t crease 2/1/0 4 5 2.5", `crease` or
-/// `corner`), counted from 0, with one sharpness or one each; negative ones count as 0.
+/// `name` is for messages. Throws bad_input with the line for a missing or malformed number, an index out of
+/// range, uv on some corners only and a damaged tag. Faces of fewer than 3 corners, groups and materials are
+/// left out; normals are dropped unless all corners have one. A backslash joins a line to the next. Creases
+/// come from OpenSubdiv's tags ("t crease 2/1/0 4 5 2.5"): `crease` (pairs of positions) and `corner` (single
+/// ones), counted from 0, with one sharpness for all or one each; negative ones count as 0.
 Mesh parse_obj(std::string_view text, const std::string& name);
 
 /// Creases as lines of tags, which read back as they were.

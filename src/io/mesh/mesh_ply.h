@@ -8,10 +8,11 @@
 
 namespace relief {
 
-/// Vertices x y z, normals nx ny nz and uvs s t, u v, texture_u texture_v or texture_s texture_t; faces
-/// vertex_indices or vertex_index, with a list texcoord that wins over uvs of vertices. Any types and orders;
-/// other data and faces of fewer than 3 corners are left out. Equal positions are welded. `name` is for
-/// messages. Throws bad_input with line or byte and element.
+/// Vertices x y z, with normals nx ny nz and uvs s t, u v, texture_u texture_v or texture_s texture_t where
+/// they have them; faces vertex_indices or vertex_index, with a list texcoord of two numbers a corner, which
+/// wins over uvs of the vertices. Types and orders may be any; other properties and elements are left out, as
+/// are faces of fewer than 3 corners. Equal positions are welded.
+/// `name` is for messages. Throws bad_input with line or byte and the number of the element.
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 
 } // namespace relief

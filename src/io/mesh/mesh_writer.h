@@ -10,7 +10,8 @@ namespace relief {
 /// Faces with their corners' indices, uvs and normals, and creases as tags. Names are left out.
 std::string format_obj(const Mesh& mesh);
 
-/// Binary, little endian. uvs are stored at vertices (s, t) if unique there, else as `texcoord` lists.
+/// Binary, little endian; faces as `vertex_indices`. uvs stand at the vertices (s, t) where each vertex has
+/// one only, else at the corners, as `texcoord` lists (MeshLab's way).
 std::string format_ply(const Mesh& mesh);
 
 } // namespace relief

@@ -16,7 +16,8 @@ enum class DisplayTransform { agx, filmic, standard };
 /// Names of all transforms, in the order of the enumeration.
 inline constexpr std::string_view kDisplayTransforms[] = {"agx", "filmic", "standard"};
 
-/// Display of a picture: header entries `relief:display`, `relief:exposure` and `relief:background`.
+/// How a picture is shown: its header entries `relief:display`, `relief:exposure` (EV, or `auto`) and
+/// `relief:background` (`transparent`, or `#rrggbb` in sRGB).
 struct DisplaySettings {
     DisplayTransform transform = DisplayTransform::agx;
     float factor = 1; ///< of linear colours, 2^EV
@@ -30,7 +31,8 @@ DisplaySettings read_display_settings(const Image& image);
 /// sRGB values in [0, 1] of a linear colour. Negative and NaN components count as 0, infinite ones as 1.
 Vec3f show_colour(const Vec3f& linear, const DisplaySettings& settings);
 
-/// EV that maps the geometric mean luminance of hits to middle grey; within [-16, 16], 0 if black.
+/// EV at which the geometric mean of the luminances, of pixels that hit something if there are any, becomes
+/// middle grey (0.18); within [-16, 16], 0 for a black picture.
 float find_exposure(const Image& image);
 
 } // namespace relief

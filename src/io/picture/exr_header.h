@@ -1,5 +1,7 @@
-// Attributes of an EXR header: those that describe colours, and sizes. OpenEXR trusts sizes, so that damaged
-// ones take gigabytes, but reads most types without them: each size is checked against the file and its type.
+// Attributes of an EXR header: their sizes, which OpenEXR believes before it reads them (a damaged one would
+// make it take gigabytes), and those that say something of colours.
+// OpenEXR reads values of most types without a look at their size. Where the two differ it finds the next
+// attribute elsewhere than who goes by sizes, so that a size is checked against its type as well.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,8 @@ class CheckedFile {
     std::string failure_;
 };
 
-/// The file appears whole or not at all. `encode` writes it. Throws Error{failed} or what it throws.
+/// The file appears whole or not at all. `encode` writes it, and may throw std::exception. Throws
+/// Error{failed}, or the std::bad_alloc of `encode`; nothing is left behind then.
 void write_checked(const std::filesystem::path& file, const std::function<void(CheckedFile&)>& encode);
 
 } // namespace relief

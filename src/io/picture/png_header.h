@@ -7,10 +7,12 @@
 
 namespace relief {
 
-/// True where a PNG chunk exceeds the stream of `stream_bytes`; false for other files. The position moves.
+/// True where a chunk of a PNG stream claims to reach beyond the stream; false for other kinds of files.
+/// `stream_bytes` is its whole length; the position moves.
 bool has_oversized_png_chunk(std::istream& stream, uint64_t stream_bytes);
 
-/// The PNG chunk that says colours: "sRGB chunk", iCCP, cHRM, or gAMA but 1; or empty. The position moves.
+/// The chunk of a PNG stream that calls its values colours: "sRGB chunk", or iCCP, cHRM, or gAMA of another
+/// gamma than 1; empty: none, or no PNG. The position moves.
 std::string find_png_colour_tag(std::istream& stream);
 
 } // namespace relief

@@ -6,7 +6,8 @@
 
 namespace relief {
 
-/// "ICC profile" if the first picture of a classic TIFF has tag 34675, else empty. The position moves.
+/// "ICC profile" where the first picture of a TIFF stream (TIFF 6.0, classic, either byte order) has one (tag
+/// 34675); empty: none, or another kind of file. The position moves.
 std::string find_tiff_colour_tag(std::istream& stream);
 
 } // namespace relief

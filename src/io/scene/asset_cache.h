@@ -12,7 +12,8 @@
 
 namespace relief {
 
-/// Decoding of values: `data` none; `colour` integers from sRGB; `radiance` finite and at least 0.
+/// What a texture is for decides what is done to its values: `data` nothing; `colour` decodes integers from
+/// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0.
 enum class TextureUse { data, colour, radiance };
 
 class AssetCache {

@@ -96,8 +96,9 @@ float find_front(const std::vector<Shape>& shapes, const Box& box) {
     return yz < -kClear * std::sqrt(yy * zz) ? 180.0f : 0.0f;
 }
 
-/// The camera's axes and the points' reach along them: at distance d on the axis, |x| and |y| up to their
-/// tangent times (d - z) are seen, so maxima of `tangent z` plus x, -x, y and -y matter.
+/// The camera's axes, and how far points reach along them. A point at x, y, z along right, up and view is in
+/// the picture of a camera at distance d on the axis when |x| and |y| are at most their tangent times (d -
+/// z): so what matters of a set of points is the largest value of `tangent z` plus x, -x, y and -y.
 struct Reach {
     Vec3f right, up, view;
     float tangent_x = 0, tangent_y = 0;
@@ -132,7 +133,8 @@ void extend_by_ring(Reach& reach, const Vec3f& p, const Vec3f& centre, const Vec
         reach.extend(centre + axis * height + side * radius);
 }
 
-/// Rounds up to fifteenths of the mesh's size, so that coding errors rarely move the camera.
+/// Rounds what the displacement adds to the reach of the bare mesh to fifteenths of the mesh's size, which
+/// the margin has room for: so coding errors rarely move the camera.
 void coarsen(Reach& reach, const std::array<float, 4>& bare) {
     const float step = std::max(bare[0] + bare[1], bare[2] + bare[3]) / 15;
     if (!(step > 0)) return;

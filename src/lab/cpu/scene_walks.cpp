@@ -1,4 +1,5 @@
-// Single rays through the trees of instances and patches by a named traversal (lab/walks/traverse_*.h).
+// Single rays through the trees over instances and patches by a traversal chosen by name: the loops of
+// lab/walks/traverse_*.h, which the kernels of a device run too. Not tuned as the wide trees are.
 #include "lab/scene_walks.h"
 
 #include <array>

@@ -13,8 +13,9 @@ std::vector<std::string> peer_scene_names();
 
 enum class PeerWorld { constant, sky };
 
-/// One map of 1024 x 1024 floats, object space, with overhangs up to `roughness` edges of a patch: 1 is a
-/// hard case, 0.3 a usual one. Throws Error{usage} for an unknown name.
+/// One map of 1024 x 1024 texels in floats, object space, with overhangs; its longest vector times
+/// `roughness` is about as long as an edge of a patch at 1 (a hard case), a third of that at 0.3 (a usual
+/// one). Throws Error{usage} for an unknown name.
 Scene make_peer_scene(const std::string& name, float roughness, PeerWorld world);
 
 } // namespace relief

@@ -23,7 +23,8 @@ constexpr size_t kMaxNodeCount = size_t(1) << 30;
 /// A subtree with fewer primitives is built by one thread.
 constexpr size_t kParallelCount = 4096;
 
-/// Relative to the greatest coordinate: planes, origin and hits may be off by some 2^-24 each.
+/// Of the greatest coordinate: the distances of planes, the ray's new origin, and a reported hit may each be
+/// off by some units of 2^-24, and they are compared with one another.
 constexpr float kMargin = 64 * 0x1p-24f;
 constexpr float kLeastMargin = 1e-36f;
 
@@ -70,7 +71,8 @@ Box cut_cell(Box cell, int axis, float lower, float upper) {
     return cell;
 }
 
-/// A ray leaves the tree at its end, which has slack, not at the faces of the root.
+/// A ray leaves the tree at its end, which has slack, and not at the faces of the root: without a plane of
+/// their own there, cells are left where the way down ends them.
 void open_outer_faces(std::span<scalar::KdBox> cells, const Box& bounds) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     parallel_for("outer faces", cells.size(), 4096, [&](size_t begin, size_t end) {

@@ -41,7 +41,8 @@ class SahKdTreeBuilder {
 
     static constexpr int kMaxDepth = 62;
 
-    /// Boxes must be finite and not empty. Deterministic. No boxes: an empty tree. Throws Error if too large.
+    /// Every box must be finite and not empty. The same for any number of threads. No boxes: an empty tree.
+    /// Throws Error where nodes or entries could be more than their words count.
     static KdTree build(std::span<const Box> boxes, const Config& config);
 };
 

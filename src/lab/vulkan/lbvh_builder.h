@@ -42,7 +42,8 @@ class DeviceLbvhBuilder {
     explicit DeviceLbvhBuilder(const Device& device);
     ~DeviceLbvhBuilder();
 
-    /// As LbvhBuilder::build and make_linked_bvh, from finite triangles. Throws Error{out_of_memory}.
+    /// As LbvhBuilder::build and make_linked_bvh, from finite triangles; the buffers have room for a node
+    /// pair a triangle. Throws Error{out_of_memory}.
     DeviceTree build(const DeviceMesh& mesh, const LbvhBuilder::Config& config);
 
     /// As LbvhBuilder::build_heap.

@@ -1,7 +1,9 @@
-// Restart trail with a short stack (after Laine 2010): what the stack lost is found again from the root. Both
-// ways down must agree on boxes and order, whatever hits do to the ray meanwhile: boxes are tested against
-// the whole ray and culled by entry distance afterwards. (The paper's rule for single boxes visits leaves
-// twice where a hit culled a box above.) At most kTrailLevels32 or 64 levels. Included as tree.h says.
+// Restart trail with a short stack (after Laine 2010): no parents, no heap; what the stack has lost is found
+// again from the root. The trail says which child is under way, so both ways down have to agree on which
+// boxes are met and on their order, whatever hits have done to the ray in between: boxes are tested against
+// the whole ray, and culled by the distance of entry afterwards. (The paper's rule, by which a single box
+// that is met on the level of the last pop is the one already done, visits leaves twice where the hit has
+// culled a box further up.) Trees of at most kTrailLevels32 or 64 levels. Included as tree.h says.
 #ifndef RELIEF_TRAVERSE_RESTART_TRAIL_H
 #ifndef __cplusplus
 #define RELIEF_TRAVERSE_RESTART_TRAIL_H

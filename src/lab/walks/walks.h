@@ -1,4 +1,5 @@
-// Reference for the device's traversal kernels, and what the CPU runs when a traversal is named.
+// The walks of lab/walks/traverse_*.h over the trees of this folder: the reference for the kernels of a
+// device, and what the CPU runs when a traversal is named.
 //   closest_hit_from<TraversalKind::trail>(make_walk_view(heap), start, ray, leaf);
 #pragma once
 

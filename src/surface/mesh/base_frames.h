@@ -14,9 +14,10 @@ struct FramedBase {
     std::vector<Vec3d> point_normals; ///< unit, one a position
 };
 
-/// Quads, smooth where the mesh says so, with the frames that `displacement` asks for; `polygons` have uvs.
-/// MikkTSpace sees the mesh's triangles and quads, or the patches. Throws bad_input for missing normals, and
-/// for subdivision or relative lengths with the file's frames.
+/// Quads, smooth where the mesh says so, with the normals and tangents that `displacement` asks for.
+/// `polygons` are those of the mesh, with uvs. MikkTSpace runs on triangles and quads as they are in the
+/// mesh, or on the patches where faces have more corners or the base is smooth. Throws bad_input for missing
+/// normals, and for subdivision or relative lengths with the file's frames.
 FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacement& displacement);
 
 } // namespace relief

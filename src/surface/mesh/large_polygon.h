@@ -21,8 +21,9 @@ struct PolygonCut {
     size_t work = 0;                                ///< corners and cells looked at
 };
 
-/// Clips ears (Meisters 1975) of a counter-clockwise polygon in about n^1.5 steps; any corner if none is
-/// left.
+/// Clips ears (Meisters 1975) of a counter-clockwise polygon of at least three corners. Only reflex corners
+/// can lie in an ear: a grid finds them, so that polygons of n corners as they are drawn take about n^1.5
+/// steps. One that crosses itself may have no ear left: then any corner is taken.
 PolygonCut cut_large_polygon(std::span<const Vec2<double>> polygon);
 
 } // namespace relief

@@ -1,4 +1,5 @@
-// Limit surface as bicubic patches, exact or fitted (docs/decisions/bicubic-base-patches.md).
+// Bicubic patches of the limit surface: exact where it is bicubic, fitted beside irregular points and
+// semi-sharp creases (docs/decisions/bicubic-base-patches.md).
 #pragma once
 
 #include <array>

@@ -7,10 +7,11 @@
 
 namespace relief {
 
-/// Fills `polygons.tangents`, with relative lengths `polygons.bitangents`: corners of equal point, normal and
-/// uv whose triangles join and turn alike share the angle-weighted mean direction of growing u; quads count
-/// as two triangles along the shorter uv diagonal. Zero where no triangle tells. Triangles and quads only.
-/// `point_normals`: unit, one a position; empty: `polygons.normals`.
+/// Fills `polygons.tangents`, and with relative lengths `polygons.bitangents`: corners of equal point, normal
+/// and uv whose triangles join at their edges and turn their uvs the same way share the mean of the
+/// directions of growing u, weighted by angles in the plane of the normal; quads count as the two triangles
+/// on either side of their shorter diagonal in uv. Zero where no triangle tells. Faces are triangles and
+/// quads. `point_normals` holds unit normals, one a position; empty: those are `polygons.normals`.
 void add_mikk_tangents(Polygons& polygons, std::span<const Vec3<double>> point_normals, FrameLengths lengths);
 
 } // namespace relief

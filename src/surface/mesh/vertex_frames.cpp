@@ -35,7 +35,8 @@ Corner make_corner(const Surface& surface, size_t patch, int k) {
                        (to_double(controls[size_t(2 * ((k + 3) & 3) + 1)]) - p) * 3.0);
 }
 
-/// A corner's edges to derivatives: along_u = next * u_next + previous * u_previous, by the determinant.
+/// The map from the edges of a corner to derivatives by u and v: along_u = next * u_next + previous *
+/// u_previous, over the determinant, which is 0 where the uvs do not tell.
 struct CornerUvs {
     double du_next, dv_next, du_previous, dv_previous;
     double determinant() const { return du_next * dv_previous - du_previous * dv_next; }

@@ -29,8 +29,9 @@ enum class SummedNormals { corners, faces };
 /// Unit normals of the points, weighted by the angle of each corner (Thuermer and Wuethrich 1998).
 std::vector<Vec3d> compute_point_normals(const Polygons& polygons, SummedNormals summed);
 
-/// Fills `surface.frames`, for tangent maps with tangents: given, or angle-weighted directions of growing u.
-/// With relative lengths also `surface.derivatives`: given, or the mean of the corners'.
+/// Fills `surface.frames`, for a tangent map with tangents: those given, or the directions of growing u of
+/// the patches' corners, weighted by their angles. With relative lengths `surface.derivatives` as well: those
+/// given, or the mean of the corners' derivatives.
 void compute_vertex_frames(Surface& surface, const VertexSources& sources);
 
 /// Signed area of a patch in the plane of its uvs; negative where the map is mirrored.

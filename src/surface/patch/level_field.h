@@ -19,7 +19,9 @@ struct LevelFieldConfig {
 /// Levels of all patches of one object, packed into one word a patch. Thread safe but for `update`.
 class LevelField {
   public:
-    /// An edge's level depends on the edge alone: cells up to `pixel_error` pixels, one texel, kMaxLevel.
+    /// The level of an edge depends on the edge alone (line, displaced length, transform, view; no map
+    /// filter): the finest such that a cell is at most `pixel_error` pixels at the nearest point, at most one
+    /// cell a texel and at most kMaxLevel. Undisplaced surfaces have level 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 

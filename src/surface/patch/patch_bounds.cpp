@@ -1,6 +1,7 @@
-// Boxes of displaced patches. A sample is a bilinear blend of p_c + F_c d over the corners c, so it lies in
-// the hull of p_c + F_c D, D being all d of the map over the patch's uvs; a bicubic base in that of its
-// control points. In double precision, widened by the float rounding (u = 2^-24 an operation).
+// Boxes of displaced patches. A sample is P = sum of w_c (p_c + F_c d) over the corners c with bilinear
+// weights, so it lies in the hull of the p_c + F_c D, where D holds every d that the map gives over the
+// patch's uvs. A bicubic base lies in the hull of its control points instead of the p_c. All intervals are in
+// double precision and widened by the rounding of the float evaluation (u = 2^-24 an operation).
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -67,7 +67,8 @@ struct DisplacementMap {
 /// Control points of a bicubic patch beside its corners (less 4), bit-equal on shared edges.
 using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
-/// Read by any thread. Only the map's texels, its bounds and `mips` change, by the scene's editor.
+/// Read from any thread. Only the texels and bounds behind `map`, and `mips`, ever change, through the
+/// scene's editor (prepare/scene_edit.h) and while nobody reads.
 struct Surface {
     std::string name;                ///< of the mesh, for messages
     std::vector<Vec3f> positions;    ///< one a dominant vertex; the others have theirs
@@ -103,8 +104,9 @@ struct Surface {
     }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
-    /// The straight line that carries edge k: its own vertices, or the dominant side's at a seam, lower
-    /// dominant first; `is_reversed`: against the patch's own direction.
+    /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a
+    /// seam. Given lower dominant first, so that both sides of an edge run it the same way; `is_reversed`
+    /// tells whether that is against the patch's own direction (corner k to k + 1).
     struct EdgeLine {
         uint32_t first, second;
         bool is_reversed;
@@ -155,11 +157,13 @@ inline PatchLevels unpack_levels(uint32_t packed) {
 
 class PyramidCache;
 
-/// Makes a surface from polygons. Displaced: every face becomes quads (one linear Catmull-Clark step if any
-/// is not one), equal positions one point. Else n-gons and concave quads are cut into triangles. Repeated
-/// corners are dropped. `object_from_world` is for world-space displacement. Surfaces with the same
-/// `pyramids` share texture bounds. Throws bad_input with mesh and face: missing uv, bad index, no area at
-/// all, or a value that is not finite or absurdly large.
+/// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
+/// refinement of the whole mesh where a face is not a quad), and points at exactly equal positions are one
+/// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
+/// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
+/// used by world-space displacement only. Surfaces made with the same `pyramids`
+/// (surface/map/displacement_map.h) share the bounds of their textures. Throws bad_input with mesh and face:
+/// missing uv, index out of range, no face with an area, a value that is not finite or absurdly large.
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
                      PyramidCache* pyramids = nullptr);
 
@@ -171,9 +175,10 @@ Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels&
 /// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile, bilinear.
 Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip = 0);
 
-/// Shading point and derivatives of the displaced patch: map by central differences one cell of `level` wide,
-/// base turned into the plane of the interpolated normal, so that the normal is continuous across cells and
-/// patches of one level. Points to the side of the winding.
+/// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
+/// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex
+/// normal, so that the normal is continuous across cells and across patches of a smooth mesh that have the
+/// same level. The result points to the side of the winding.
 Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, float u, float v);
 
 /// Box of every vertex that the patch has at any level and bias, every ulp included.

@@ -1,4 +1,5 @@
-// Pipelines of one set layout (vulkan/layout/bindings.h): compute shaders, and buffer-writing fragments.
+// Pipelines with one common set layout (vulkan/layout/bindings.h), so that buffers are bound once for all:
+// compute shaders, and fragment shaders that write buffers only.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,8 @@
 
 namespace relief::vulkan {
 
-/// Thread safe, one compilation at a time. Pipelines outlive tracers that run out of memory.
+/// Thread safe, one compilation at a time. Pipelines live as long as the store, so a tracer recreated after
+/// memory ran out reuses them. A template, so that it does not depend on Vulkan.
 template <class Pipeline> class PipelineStore {
   public:
     /// Shader, vertex shader, constants: as in KernelConfig, for shaders of the build.

@@ -1,4 +1,5 @@
-// Path state between the kernels of one depth: path p has ray p and shadow ray capacity + p.
+// Path state on a device, between the kernels of one depth. Path p has ray p; its shadow ray is ray capacity
+// + p. Scalar block layout, members of 4 bytes.
 #ifndef RELIEF_DEVICE_PATHS_H
 #define RELIEF_DEVICE_PATHS_H
 #include "formulas/bounce_lod.h"

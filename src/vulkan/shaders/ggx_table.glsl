@@ -1,4 +1,5 @@
-// The table of formulas/ggx_table.h in a buffer, always bound: as a constant array it takes minutes to compile.
+// The table of formulas/ggx_table.h in a buffer: shader compilers copy a constant array to each place that indexes it,
+// which takes some of them minutes. The table is always bound (vulkan/device/binding_table.cpp).
 #ifndef RELIEF_GGX_TABLE_GLSL
 #define RELIEF_GGX_TABLE_GLSL
 

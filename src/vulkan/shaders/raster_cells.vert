@@ -25,7 +25,8 @@ ObjectCamera enter_camera(InstanceData instance) {
     return make_object_camera(transform_point(m, push.origin), vectors, bounds, bound * scale);
 }
 
-/// In pixels of the drawn region, with a margin: fragments exist only where the centre of a pixel is covered.
+/// In pixels of the drawn region, with a margin: the ray of a pixel may pass through any point of it, but fragments are
+/// generated only where the centre is covered.
 vec4 place_on_window(ScreenBox box) {
     vec2 origin = vec2(float(push.x0), float(push.y0 + push.first_row));
     vec2 size = vec2(float(push.width), float(push.row_count));

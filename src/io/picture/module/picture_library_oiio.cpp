@@ -87,8 +87,9 @@ class MemoryReader final : public OIIO::Filesystem::IOMemReader {
 
 std::string get_first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// Whether a JPEG stream reaches its end marker: decoders silently make up the rest of a truncated file.
-/// Within coded data ff is followed by 00 or a restart marker (ISO 10918-1, B.1.1.5).
+/// Whether a JPEG stream gets to the marker that ends its picture: of a file that is cut before it the
+/// decoder makes up the rest, and says nothing. Among coded samples a byte ff is followed by 00 or a restart
+/// marker (ISO 10918-1, B.1.1.5), all other segments have their length (B.1.1.4).
 bool has_jpeg_end(std::istream& stream) {
     constexpr int kFirstRestart = 0xd0, kStart = 0xd8, kEnd = 0xd9, kTemporary = 0x01;
     std::streambuf& bytes = *stream.rdbuf();

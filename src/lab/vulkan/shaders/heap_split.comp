@@ -1,4 +1,5 @@
-// The heap of Murguia et al. 2013, top down by levels. Empty slots are written too.
+// The heap of Murguia et al. 2013, from the top: nodes of one level are cut, or stay leaves. Slots without a node are
+// written too, so that nothing of an earlier build is left.
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 
