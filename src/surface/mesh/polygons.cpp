@@ -89,9 +89,8 @@ void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t 
 
 struct PositionHash {
     size_t operator()(const Vec3f& p) const {
-        const auto bits = [](float x) { return std::bit_cast<uint32_t>(x + 0.0f); }; // no -0
-        uint64_t hash = bits(p.x) | uint64_t(bits(p.y)) << 32;
-        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + bits(p.z);
+        uint64_t hash = std::bit_cast<uint32_t>(p.x) | uint64_t(std::bit_cast<uint32_t>(p.y)) << 32;
+        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + std::bit_cast<uint32_t>(p.z);
         hash = (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
         return size_t(hash ^ hash >> 32);
     }
