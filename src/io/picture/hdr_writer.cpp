@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "io/picture/image_coders.h"
-#include "relief/types.h"
 
 namespace relief {
 

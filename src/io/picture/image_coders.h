@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/picture/image_output.h"
+#include "math/vec.h"
 #include "relief/image.h"
-#include "relief/types.h"
 
 namespace relief {
 

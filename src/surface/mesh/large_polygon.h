@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/types.h"
+#include "math/vec.h"
 
 namespace relief {
 
