@@ -125,7 +125,8 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     size_t told = 0;
     {
         RenderWatcher watcher(options, told); // its end prints the last line
-        result = render(std::move(scene), settings, &watcher);
+        FilmKeeper keeper(options.checkpoint, output);
+        result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
     return finish_picture(options, settings, output, waiting, result, told);

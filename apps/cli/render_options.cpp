@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,6 +48,15 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--seed", "N", "of the random numbers; default 0", [&o](const std::string& text) {
         o.given.seed = uint32_t(parse_integer("--seed", text, 0, 0xffffffffll));
     });
+    add(verb, "--noise", "F",
+        "no more samples where the error is below this share of the brightness, e.g. 0.02",
+        [&o](const std::string& text) {
+            o.settings.image.noise = float(parse_number("--noise", text, 1e-6, 1));
+        });
+    add(verb, "--time-limit", "S", "no more samples after so many seconds; every pixel gets one",
+        [&o](const std::string& text) {
+            o.settings.image.time_limit_s = parse_number("--time-limit", text, 1e-3, 1e9);
+        });
     add(verb, "--layers", "LIST", fmt::format("of {}", fmt::join(kLayers, ",")),
         [&o](const std::string& text) {
             for (const std::string& layer : split(text, ',')) {
@@ -209,6 +219,11 @@ void check_aim(const RenderOptions& o) {
     check_text_writable(o.aim.saved_scene);
 }
 
+void add_layers(std::span<const char* const> names, std::vector<std::string>& layers) {
+    for (const char* name : names)
+        if (std::find(layers.begin(), layers.end(), name) == layers.end()) layers.emplace_back(name);
+}
+
 } // namespace
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {
@@ -219,6 +234,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
     add_aim_options(verb, o.aim);
     add_part_options(verb, o);
     add_level_options(verb, o);
+    add_checkpoint_options(verb, o.checkpoint);
     add_machine_options(verb, o);
     add_report_options(verb, o);
     add_options_of_meshes(verb, o);
@@ -242,18 +258,21 @@ void complete_render_options(RenderOptions& o) {
     if (o.aim.turntable > 0 && is_mesh_file(o.input) && !aim.view && !aim.from) aim.frame_all = true;
     check_mesh_options(o.mesh);
     check_map_options(o.mesh);
-    if (o.pixel &&
-        (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
-         o.settings.image.crop != Window{} || !o.settings.image.layers.empty() || !o.edits.empty()))
-        throw Error(ErrorKind::usage,
-                    {"--pixel explains one pixel and makes no picture", "--pixel",
-                     "leave out -o, --stats, --crop, --tile, --samples, --layers and --edits"});
+    if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
+                    o.settings.image.crop != Window{} || !o.settings.image.layers.empty() ||
+                    !o.edits.empty() || o.checkpoint.is_on()))
+        throw Error(ErrorKind::usage, {"--pixel explains one pixel and makes no picture", "--pixel",
+                                       "leave out -o, --stats, --crop, --tile, --samples, --layers, --edits, "
+                                       "--checkpoint and --resume"});
     check_aim(o);
     if (o.pixel) return;
+    if (o.checkpoint.is_on() && (!o.edits.empty() || o.aim.turntable > 0))
+        throw Error(ErrorKind::usage, {"the samples of one picture are kept", "--checkpoint, --resume",
+                                       "leave out --edits and --turntable"});
+    if (o.output.empty()) o.output = o.checkpoint.resumed;
     if (o.output.empty()) o.output = o.input.stem().string() + ".exr";
     if (get_lower_extension(o.output) == ".exr") {
-        std::vector<std::string>& layers = o.settings.image.layers;
-        if (std::find(layers.begin(), layers.end(), "samples") == layers.end()) layers.push_back("samples");
+        add_layers(std::array{"samples"}, o.settings.image.layers);
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
@@ -271,6 +290,7 @@ void complete_render_options(RenderOptions& o) {
         throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
                                        o.statistics_file.string(), "name another one for --stats"});
     check_writable(o.output);
+    check_checkpoint(o.checkpoint, o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "aim_options.h"
+#include "checkpoint.h"
 #include "common/cli_app.h"
 #include "common/engine_options.h"
 #include "progress.h"
@@ -32,6 +33,7 @@ struct RenderOptions {
     std::optional<std::pair<int, int>> samples;
     std::optional<Tile> tile;
     std::optional<std::pair<int, int>> pixel;
+    CheckpointOptions checkpoint;
     ProgressStyle progress = ProgressStyle::automatic;
     bool is_quiet = false, is_verbose = false, is_strict = false;
 };

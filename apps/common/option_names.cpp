@@ -12,10 +12,12 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 33> kOptions{{
+constexpr std::array<OptionName, 35> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
+    {"image.noise", "--noise"},
+    {"image.time_limit_s", "--time-limit"},
     {"image.seed", "--seed"},
     {"image.crop", "--crop"},
     {"image.first_sample", "--samples"},

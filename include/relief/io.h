@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -146,6 +147,9 @@ void with_io_threads(int threads, const std::function<void()>& body);
 
 /// Writes a text file, replaced atomically. Throws Error{failed}.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// The same of what `write` writes to a binary stream.
+void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 
 /// Throws what write_text_file to this file would throw because of its folder or permissions.
 void check_text_writable(const std::filesystem::path& file);

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,8 +67,13 @@ struct DeviceSettings {
 /// Size and sampling of the image.
 struct ImageSettings {
     int width = 1280, height = 720; ///< pixels, [1, kMaxPictureSize] each
-    int spp = 64;                   ///< samples per pixel, [1, kMaxSamples]
-    int bounces = 4;                ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
+    int spp = 64;                   ///< samples per pixel, at most, [1, kMaxSamples]
+    /// Above 0: a pixel gets no more samples once its error is below this: of 100 pixels 95 are then to be
+    /// closer to their mean than so much of its brightness, [0, 1]. In blocks of 8 x 8 pixels, after 16
+    /// samples each.
+    float noise = 0;
+    double time_limit_s = 0; ///< above 0: no more samples after so many seconds, but one of each pixel
+    int bounces = 4;         ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     uint32_t seed = 0;
     /// Linear colour that camera rays see where they leave the scene; nullopt: the environment. Black makes
     /// films transparent: colours are then premultiplied by A. Bounces see the environment in any case.
@@ -145,6 +153,19 @@ class RenderObserver {
     virtual void on_warnings(const std::vector<std::string>& warnings) { (void)warnings; }
 };
 
+/// Keeps the sums of all samples, so that a render can go on from them.
+struct Checkpoints {
+    double interval_s = std::numeric_limits<double>::infinity(); ///< between two calls of `save`
+    /// Called while no sample is traced, every interval_s seconds, up to the time that a tile takes, and at
+    /// the end; `write` writes bytes that `resume` takes. May be empty.
+    std::function<void(const std::function<void(std::ostream&)>& write)> save;
+    /// What a render of the same picture wrote: its samples are not traced again, and the result is that of
+    /// one render of all samples, bit for bit; on the Vulkan engine where each ended after 1, 2, 4, 8 or a
+    /// multiple of 16 samples. Null: none. Throws Error{bad_input} for a stream that is damaged or of another
+    /// picture.
+    std::istream* resume = nullptr;
+};
+
 struct RenderResult {
     Image image; ///< R G B A and the requested layers; linear, data window = crop
     Statistics statistics;
@@ -157,7 +178,8 @@ struct RenderResult {
 
 /// Renders `scene`, whose polygons are freed once patches have been built from them. `observer` may be null.
 /// Throws Error (usage for settings out of range, bad_input, device_missing, out_of_memory). Thread safe.
-RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr);
+RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr,
+                    const Checkpoints& checkpoints = {});
 
 /// Traversals of a structure that an engine supports, the default first.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);

@@ -69,13 +69,38 @@ void collect_statistics(const Engine& engine, const Film& film, const PreparedSc
     count_scene(scene, statistics);
 }
 
-void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image) {
+Film make_film(const ImageSettings& image) {
+    return Film(image.width, image.height, image.crop, image.layers,
+                image.noise > 0 ? ErrorEstimate::on : ErrorEstimate::off);
+}
+
+std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {
+    const ImageSettings& image = settings.image;
+    const SurfaceSettings& surface = settings.surface;
+    const Vec3f background = image.background.value_or(Vec3f{-1, -1, -1});
+    return fmt::format("scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, "
+                       "background {},{},{}, layers {}, "
+                       "noise {}, surface {} {} {} {} {} {}, engine {}",
+                       scene_hash, image.width, image.height, image.crop.x0, image.crop.y0, image.crop.x1,
+                       image.crop.y1, image.seed, image.first_sample, image.bounces, background.x,
+                       background.y, background.z, fmt::join(image.layers, ","), image.noise,
+                       int(surface.mode), surface.level, surface.pixel_error, int(surface.lod),
+                       int(surface.bounce_levels), int(surface.leaf),
+                       settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
+}
+
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
+                  Image& image) {
+    // A render that was not cancelled may have fewer samples than it was allowed: of low noise, or for want
+    // of time.
+    const int samples = is_complete ? int(film.most_samples()) : settings.image.spp;
     image.metadata["Software"] = "Relief " RELIEF_VERSION_STRING;
     image.metadata["relief:version"] = RELIEF_VERSION_STRING;
     image.metadata["relief:seed"] = std::to_string(settings.image.seed);
     image.metadata["relief:samples"] =
-        fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + settings.image.spp);
+        fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + samples);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+    if (settings.image.noise > 0) image.metadata["relief:noise"] = fmt::format("{}", settings.image.noise);
     if (!is_complete) image.metadata["relief:interrupted"] = "yes";
 }
 

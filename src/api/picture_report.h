@@ -1,6 +1,8 @@
 // Statistics and metadata common to all pictures.
 #pragma once
 
+#include <string>
+
 #include "engine/engine.h"
 #include "prepare/prepared_scene.h"
 #include "relief/render.h"
@@ -14,7 +16,14 @@ void count_scene(const PreparedScene& scene, Statistics& statistics);
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
                         Statistics& statistics);
 
+/// An empty film for a picture.
+Film make_film(const ImageSettings& image);
+
+/// All that the samples of a picture depend on, as text: films of another are not to be gone on with.
+std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash);
+
 /// Writes version, seed, sample range, scene hash and whether pixels lack samples into the metadata.
-void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, Image& image);
+void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
+                  Image& image);
 
 } // namespace relief

@@ -14,7 +14,8 @@
 
 namespace relief {
 
-RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer) {
+RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer,
+                    const Checkpoints& checkpoints) {
     validate_settings(settings);
     validate_method(settings, scene.camera);
     const uint64_t scene_hash = scene.hash;
@@ -23,23 +24,30 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     const Timer total;
     with_threads(settings.device.threads, [&] {
         // First, so that a picture too large for memory is rejected before the scene is prepared.
-        Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
+        Film film = make_film(settings.image);
+        const std::string identity = describe_samples(settings, scene_hash);
+        if (checkpoints.resume) film.read(*checkpoints.resume, identity);
         std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 
         if (observer) observer->on_warnings(prepared->warnings);
         const Timer timer;
-        result.is_complete = engine->render(film, observer);
+        RenderControl control(observer);
+        control.save_interval_s = checkpoints.interval_s;
+        if (checkpoints.save)
+            control.save = [&] { checkpoints.save([&](std::ostream& s) { film.write(s, identity); }); };
+        result.is_complete = engine->render(film, control);
         statistics.render_s = timer.seconds();
+        if (control.save && film.most_samples() > 0) control.save();
 
         collect_statistics(*engine, film, *prepared, statistics);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
         result.whole_samples = int(film.least_samples());
         result.image = film.resolve();
+        add_metadata(settings, scene_hash, result.is_complete, film, result.image);
     });
-    add_metadata(settings, scene_hash, result.is_complete, result.image);
     statistics.total_s = total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;

@@ -41,8 +41,7 @@ struct Session::Implementation {
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
         if (film) return engine->refresh(*film, observer);
-        auto fresh = std::make_unique<Film>(settings.image.width, settings.image.height, settings.image.crop,
-                                            settings.image.layers);
+        auto fresh = std::make_unique<Film>(make_film(settings.image));
         const bool is_complete = engine->render(*fresh, observer);
         film = std::move(fresh);
         return is_complete;
@@ -88,8 +87,8 @@ RenderResult Session::render(RenderObserver* observer) {
         collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics);
         result.whole_samples = int(self.film->least_samples());
         result.image = self.film->resolve();
+        add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, *self.film, result.image);
     });
-    add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, result.image);
     statistics.total_s = statistics.prepare_s + total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;

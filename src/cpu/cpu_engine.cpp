@@ -3,7 +3,6 @@
 #include "cpu/ordered_hits.h"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -11,12 +10,12 @@
 
 #include "base/machine.h"
 #include "base/parallel.h"
-#include "base/timer.h"
 #include "cpu/patch_trees/patch_tree_cache.h"
 #include "cpu/path_tracer.h"
 #include "cpu/picture_footprints.h"
-#include "cpu/tiles.h"
 #include "cpu/tracer.h"
+#include "engine/picture_windows.h"
+#include "engine/render_passes.h"
 
 namespace relief {
 
@@ -26,48 +25,8 @@ namespace {
 
 /// Rays that one worker traces between two looks at the queue.
 constexpr size_t kBatchSize = 1024;
-constexpr double kReportInterval = 0.1; ///< seconds between two reports of progress
-constexpr int kLongestPass = 16;        ///< samples a pixel between two passes over the picture
 
-/// Tells the observer how far the work is: from whichever worker is free to, never from two at once.
-class Reporter {
-  public:
-    Reporter(RenderObserver* observer, uint64_t total, int samples) : observer_(observer), total_(total) {
-        progress_.samples_total = samples;
-    }
-
-    bool is_cancelled() const { return observer_ && observer_->is_cancelled(); }
-
-    void finish_tile(uint64_t pixel_samples, uint64_t rays) {
-        done_ += pixel_samples, rays_ += rays;
-        const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (lock && timer_.seconds() - progress_.elapsed_s >= kReportInterval) report();
-    }
-
-    void finish_pass(int samples_done) {
-        const std::lock_guard lock(mutex_);
-        progress_.samples_done = samples_done;
-        report();
-    }
-
-  private:
-    void report() {
-        if (!observer_) return;
-        progress_.fraction = total_ > 0 ? double(done_) / double(total_) : 1;
-        progress_.rays = rays_;
-        progress_.elapsed_s = timer_.seconds();
-        observer_->on_progress(progress_);
-    }
-
-    RenderObserver* observer_;
-    uint64_t total_;
-    std::atomic<uint64_t> done_{0}, rays_{0};
-    std::mutex mutex_;
-    Progress progress_;
-    Timer timer_;
-};
-
-class CpuEngine final : public Engine {
+class CpuEngine final : public Engine, private PassTracer {
   public:
     CpuEngine(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings,
               std::unique_ptr<const SceneWalk> walk)
@@ -85,16 +44,17 @@ class CpuEngine final : public Engine {
 
     void expect_changes() override { expects_changes_ = !tracer_.displaced_bounds().is_empty(); }
 
-    bool render(Film& film, RenderObserver* observer) override {
-        // A surface that glows is drawn as a light from everywhere: nothing could be kept.
-        if (!expects_changes_ || lights_.has_emitters())
-            return trace_tiles(film, cut_into_windows(film.window(), kTileEdge), observer);
+    bool render(Film& film, const RenderControl& control) override {
+        // A surface that glows is drawn as a light from everywhere: nothing could be kept. Nor could blocks
+        // whose number of samples depends on others.
+        if (!expects_changes_ || lights_.has_emitters() || settings_.image.noise > 0)
+            return trace_film(film, control);
         footprints_.emplace(film.window(), tracer_.displaced_bounds());
-        return trace_stale_tiles(film, observer);
+        return trace_stale_blocks(film, control);
     }
 
-    bool refresh(Film& film, RenderObserver* observer) override {
-        return footprints_ ? trace_stale_tiles(film, observer) : Engine::refresh(film, observer);
+    bool refresh(Film& film, const RenderControl& control) override {
+        return footprints_ ? trace_stale_blocks(film, control) : Engine::refresh(film, control);
     }
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override {
@@ -128,54 +88,39 @@ class CpuEngine final : public Engine {
     }
 
   private:
-    bool trace_stale_tiles(Film& film, RenderObserver* observer) {
-        const std::vector<Window> tiles = footprints_->start_stale_windows(kTileEdge);
-        for (const Window& tile : tiles) film.clear(tile);
-        const bool is_complete = trace_tiles(film, tiles, observer);
+    bool trace_stale_blocks(Film& film, const RenderControl& control) {
+        for (const Window& window : footprints_->start_stale_windows()) film.clear(window);
+        const bool is_complete = trace_film(film, control);
         if (is_complete) footprints_->finish();
         return is_complete;
     }
 
-    bool trace_tiles(Film& film, const std::vector<Window>& tiles, RenderObserver* observer) {
-        const Timer timer;
-        uint64_t pixels = 0;
-        for (const Window& tile : tiles) pixels += count_pixels(tile);
-        Reporter reporter(observer, pixels * uint64_t(settings_.image.spp), settings_.image.spp);
-        const Tracer::StopScope scope(tracer_, [&] { return reporter.is_cancelled(); });
-        first_image_s_ = 0;
-        int done = 0, length = 1;
-        while (done < settings_.image.spp && !reporter.is_cancelled()) {
-            tracer_.rebuild_if_worthwhile();
-            const SampleRange samples{settings_.image.first_sample + done,
-                                      std::min(length, settings_.image.spp - done)};
-            if (!render_pass(film, tiles, samples, reporter)) break;
-            done += samples.count;
-            if (first_image_s_ == 0) first_image_s_ = timer.seconds();
-            reporter.finish_pass(done);
-            length = std::min(2 * length, kLongestPass);
-        }
-        return done == settings_.image.spp;
+    bool trace_film(Film& film, const RenderControl& control) {
+        const PassReport report = render_passes(film, settings_.image, control, kTileEdge, *this);
+        first_image_s_ = report.first_image_s;
+        return report.is_complete;
     }
 
-    /// Whether all tiles have these samples, which they may have although the render was cancelled meanwhile.
-    bool render_pass(Film& film, const std::vector<Window>& tiles, SampleRange samples, Reporter& reporter) {
+    void start_pass() override { tracer_.rebuild_if_worthwhile(); }
+
+    void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override {
+        const Tracer::StopScope scope(tracer_, [&] { return monitor.is_cancelled(); });
         std::mutex mutex;
-        size_t done = 0;
-        parallel_for("render_pass", tiles.size(), 1, [&](size_t begin, size_t end) {
-            for (size_t k = begin; k < end && !reporter.is_cancelled(); ++k) {
-                const Window& tile = tiles[k];
+        parallel_for("trace_tasks", tasks.size(), 1, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k < end && !monitor.must_stop(); ++k) {
+                const SampleTask& task = tasks[k];
                 TileReport report;
                 if (footprints_) report.footprints = &*footprints_;
                 try {
-                    trace_tile({tracer_, lights_, settings_}, film, tile, samples, report);
+                    trace_tile({tracer_, lights_, settings_}, film, task.window,
+                               {settings_.image.first_sample + task.first, task.count}, report);
                 } catch (const StopRequest&) {
                     return; // the film has the whole samples before it
                 }
                 const TileCounters& counters = report.counters;
-                reporter.finish_tile(count_pixels(tile) * uint64_t(samples.count),
-                                     counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
+                monitor.finish_task(count_pixels(task.window) * uint64_t(task.count),
+                                    counters.camera_rays + counters.shadow_rays + counters.bounce_rays);
                 const std::lock_guard lock(mutex);
-                ++done;
                 counters_.camera_rays += counters.camera_rays;
                 counters_.shadow_rays += counters.shadow_rays;
                 counters_.bounce_rays += counters.bounce_rays;
@@ -183,7 +128,6 @@ class CpuEngine final : public Engine {
                 counters_.film_s += counters.film_s;
             }
         });
-        return done == tiles.size();
     }
 
     bool find_ordered_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const {

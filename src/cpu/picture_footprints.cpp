@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cpu/tiles.h"
+#include "engine/picture_windows.h"
 
 namespace relief::cpu {
 
@@ -39,26 +39,11 @@ bool PictureFootprints::mark_stale(std::span<const Box> places) {
     return true;
 }
 
-std::vector<Window> PictureFootprints::start_stale_windows(int edge) {
-    std::vector<Window> stale;
-    for (const Window& window : cut_into_windows(window_, edge)) {
-        std::vector<Window> blocks = cut_into_windows(window, kBlockEdge);
-        const size_t count = blocks.size();
-        std::erase_if(blocks,
-                      [&](const Window& block) { return !is_stale_[find_block(block.x0, block.y0)]; });
-        for (const Window& block : blocks) at(block.x0, block.y0).clear();
-        if (blocks.size() == count) blocks = {window};
-        for (const Window& block : blocks) {
-            // Rays of neighbours are traced together; those of blocks apart would be in each other's way.
-            Window* const left = stale.empty() ? nullptr : &stale.back();
-            const bool is_next = left && left->x1 == block.x0 && left->y0 == block.y0 && left->y1 == block.y1;
-            if (is_next && block.x1 - left->x0 <= edge && left->x0 >= window.x0)
-                left->x1 = block.x1;
-            else
-                stale.push_back(block);
-        }
-    }
-    return stale;
+std::vector<Window> PictureFootprints::start_stale_windows() {
+    std::vector<Window> blocks = cut_into_windows(window_, kBlockEdge);
+    std::erase_if(blocks, [&](const Window& block) { return !is_stale_[find_block(block.x0, block.y0)]; });
+    for (const Window& block : blocks) at(block.x0, block.y0).clear();
+    return blocks;
 }
 
 void PictureFootprints::finish() { std::fill(is_stale_.begin(), is_stale_.end(), uint8_t(0)); }

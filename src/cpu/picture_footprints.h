@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpu/footprint.h"
+#include "engine/sample_plan.h"
 #include "math/box.h"
 #include "relief/render.h"
 
@@ -14,7 +15,7 @@ namespace relief::cpu {
 class PictureFootprints {
   public:
     /// Edge of a block, pixels; blocks lie at absolute multiples of it.
-    static constexpr int kBlockEdge = 8;
+    static constexpr int kBlockEdge = SamplePlan::kBlockEdge;
 
     /// Of a picture's window and what can change in it; all blocks are stale. `bounds`: finite, not empty.
     PictureFootprints(const Window& window, const Box& bounds);
@@ -26,8 +27,8 @@ class PictureFootprints {
     /// where a box lies outside of what is kept track of: any block may be, and nothing can be kept any more.
     bool mark_stale(std::span<const Box> places);
 
-    /// Stale pixels as windows of at most `edge` a side, a multiple of kBlockEdge; empties their footprints.
-    std::vector<Window> start_stale_windows(int edge);
+    /// Windows of the stale blocks; their footprints are made empty.
+    std::vector<Window> start_stale_windows();
     /// The stale windows have been traced.
     void finish();
 

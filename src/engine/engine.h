@@ -1,6 +1,9 @@
 // The one interface that both engines stand behind.
 #pragma once
 
+#include <functional>
+#include <limits>
+#include <memory>
 #include <span>
 
 #include "film/film.h"
@@ -11,6 +14,15 @@
 
 namespace relief {
 
+/// Who follows a render, and what is called every `save_interval_s` seconds while no sample is traced.
+struct RenderControl {
+    RenderControl(RenderObserver* render_observer = nullptr) : observer(render_observer) {}
+
+    RenderObserver* observer;
+    double save_interval_s = std::numeric_limits<double>::infinity();
+    std::function<void()> save; ///< may be empty
+};
+
 class Engine {
   public:
     virtual ~Engine() = default;
@@ -19,18 +31,18 @@ class Engine {
     /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
     virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
 
-    /// Adds samples [settings.image.first_sample, + spp) of every pixel of the film's window. Returns false
-    /// when the observer cancelled; the film then holds what was done.
-    virtual bool render(Film& film, RenderObserver* observer) = 0;
+    /// Adds those of samples [settings.image.first_sample, + spp) of every pixel of the film's window that it
+    /// lacks. Returns false when the observer cancelled; the film then holds what was done.
+    virtual bool render(Film& film, const RenderControl& control) = 0;
 
     /// apply_changes() and refresh() will be called: whatever makes them cheaper may cost a little.
     virtual void expect_changes() {}
 
     /// The film of the last render() or refresh() becomes what render() would make of an empty one now; what
     /// no change since then can have reached is kept. The rest as for render().
-    virtual bool refresh(Film& film, RenderObserver* observer) {
+    virtual bool refresh(Film& film, const RenderControl& control) {
         film.clear(film.window());
-        return render(film, observer);
+        return render(film, control);
     }
 
     /// Spans of equal length; thread safe. Instances are met whose visibility mask shares a bit with `mask`.

@@ -51,6 +51,8 @@ constexpr std::array<LayerKind, 10> kLayerKinds{{
 }};
 
 constexpr size_t kRadianceSums = 4;
+/// Radiance whose noise counts half: in the dark no relative error is ever small.
+constexpr double kDarkest = 0.01;
 
 /// Of the samples that hit; other means are of all samples.
 bool is_mean_of_hits(Source source) { return source == Source::position || source == Source::uv; }
@@ -128,17 +130,21 @@ void require_memory(double pixels, size_t bytes_per_pixel) {
 
 } // namespace
 
-Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers)
+Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers,
+           ErrorEstimate error)
     : full_width_(full_width), full_height_(full_height), window_(window), stride_(kRadianceSums) {
     for (const std::string& name : layers) find_kind(name);
     if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
     bool needs_hit_counts = false, needs_nearest = false;
     size_t channels = kRadianceSums;
     for (const LayerKind& kind : kLayerKinds) {
-        if (std::ranges::find(layers, kind.name) == layers.end()) continue;
-        layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_});
+        const bool is_requested = std::find(layers.begin(), layers.end(), kind.name) != layers.end();
+        const bool is_needed = error == ErrorEstimate::on && kind.source == Source::variance;
+        if (!is_requested && !is_needed) continue;
+        layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_, !is_requested});
+        if (is_needed) squares_offset_ = stride_;
         stride_ += kind.sum_count;
-        channels += channel_count(kind);
+        if (is_requested) channels += channel_count(kind);
         needs_hit_counts |= is_mean_of_hits(kind.source);
         needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
     }
@@ -195,6 +201,7 @@ void Film::clear(const Window& window) {
         fill(counts_, first, 1, 0u), fill(hit_counts_, first, 1, 0u), fill(ids_, first, 1, 0u);
         fill(depths_, first, 1, std::numeric_limits<float>::infinity());
     }
+    passes = {};
 }
 
 /// Among equal depths the lowest id wins, so that the layer does not depend on which sample came first.
@@ -245,6 +252,7 @@ Image Film::resolve() const {
     image.full_height = full_height_;
     image.channels = {"R", "G", "B", "A"};
     for (const Layer& layer : layers_) {
+        if (layer.is_hidden) continue;
         const LayerKind& kind = kLayerKinds[layer.kind];
         for (size_t k = 0; k < channel_count(kind); ++k)
             image.channels.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
@@ -257,6 +265,7 @@ Image Film::resolve() const {
             write_means(sums_.data() + p * stride_, kRadianceSums, counts_[p], Source::albedo, target);
             target += kRadianceSums;
             for (const Layer& layer : layers_) {
+                if (layer.is_hidden) continue;
                 write_layer(p, layer, target);
                 target += channel_count(kLayerKinds[layer.kind]);
             }
@@ -266,6 +275,30 @@ Image Film::resolve() const {
 }
 
 uint32_t Film::least_samples() const { return counts_.empty() ? 0 : *std::ranges::min_element(counts_); }
+
+uint32_t Film::most_samples() const {
+    return counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end());
+}
+
+double Film::estimate_error(const Window& window) const {
+    DCHECK(squares_offset_);
+    double sum = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const size_t pixel = pixel_index(x, y);
+            const uint32_t n = counts_[pixel];
+            if (n < 2) return std::numeric_limits<double>::infinity();
+            const double* radiance = sums_.data() + pixel * stride_;
+            const double* squares = radiance + *squares_offset_;
+            double variance = 0, mean = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                variance += variance_of_mean(radiance[c], squares[c], n) / 3;
+                mean += radiance[c] / n / 3;
+            }
+            sum += variance / ((mean + kDarkest) * (mean + kDarkest));
+        }
+    return std::sqrt(sum / (double(window.x1 - window.x0) * double(window.y1 - window.y0)));
+}
 
 size_t Film::byte_count() const {
     return sums_.size() * sizeof(double) +

@@ -1,7 +1,9 @@
 // Sums of samples, pixel by pixel, and the layers made from them.
 #pragma once
 
+#include <iosfwd>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,13 +36,22 @@ struct FilmSums {
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
 };
 
+/// How far the passes over a picture are (engine/sample_plan.h).
+struct PassState {
+    int target = 0;                 ///< samples of each active pixel at the end of the current pass
+    std::vector<uint8_t> is_active; ///< blocks that take part in it; empty: all
+};
+
+enum class ErrorEstimate { off, on };
+
 /// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
 /// order. Different pixels may be fed at the same time.
 class Film {
   public:
     /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one,
     /// Error{out_of_memory} when the sums and the resolved image do not fit into the memory that is free.
-    Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers);
+    Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers,
+         ErrorEstimate error = ErrorEstimate::off);
 
     const Window& window() const { return window_; }
     /// (x, y) in pixels of the whole picture, inside the window.
@@ -56,8 +67,23 @@ class Film {
     /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
     Image resolve() const;
 
-    /// The least number of samples that a pixel has.
+    /// The least and the greatest number of samples that a pixel has.
     uint32_t least_samples() const;
+    uint32_t most_samples() const;
+    uint32_t sample_count(int x, int y) const { return counts_[pixel_index(x, y)]; }
+
+    /// Root mean square over the pixels of a window of the standard error of their colour, relative to it.
+    /// With ErrorEstimate::on; infinity where a pixel has fewer than two samples.
+    double estimate_error(const Window& window) const;
+
+    PassState passes;
+
+    /// The sums, as bytes that read() of a film of the same window and layers takes; `identity` names the
+    /// picture. The stream's state says whether they were written.
+    void write(std::ostream& stream, const std::string& identity) const;
+    /// Throws Error{bad_input} for bytes of another picture or layers, or that are damaged; the film is then
+    /// undefined.
+    void read(std::istream& stream, const std::string& identity);
 
     size_t byte_count() const;
 
@@ -71,11 +97,13 @@ class Film {
     struct Layer {
         size_t kind;       ///< index into the table of layers
         size_t sum_offset; ///< of its first sum within a pixel's stride
+        bool is_hidden;    ///< kept for estimate_error() alone
     };
 
     void write_layer(size_t pixel, const Layer& layer, float* target) const;
 
-    std::vector<Layer> layers_; ///< requested, in design order
+    std::vector<Layer> layers_;            ///< requested or needed, in design order
+    std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
     std::vector<uint32_t> counts_;     ///< samples a pixel

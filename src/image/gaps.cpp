@@ -39,6 +39,8 @@ int count_least_samples(const Part& part, const Rectangle& cell) {
     for (int y = cell.y0; y < cell.y1; ++y)
         for (int x = cell.x0; x < cell.x1; ++x)
             least = std::min(least, part.image->at(x, y, *part.count_channel));
+    // Where noise was low enough the samples that are not there are not missing.
+    if (least > 0 && part.image->metadata.contains("relief:noise")) return all;
     return int(std::lround(least));
 }
 

@@ -142,7 +142,7 @@ class TrialRender {
     }
 
   private:
-    static constexpr int kMostSamples = 7; ///< passes of 1, 2 and 4
+    static constexpr int kMostSamples = 8; ///< passes up to 1, 2, 4 and 8
     static constexpr int kTileEdge = cpu::kTileEdge, kTilesOfAThread = 6;
 
     Statistics read_statistics() const {

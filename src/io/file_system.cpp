@@ -134,16 +134,19 @@ void check_text_writable(const fs::path& file) {
     if (!probe) atomic.fail("cannot be written: no file can be made in its folder");
 }
 
-void write_text_file(const fs::path& file, std::string_view text) {
+void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
     AtomicFile atomic(file);
-    std::FILE* stream = std::fopen(atomic.temporary().c_str(), "wb");
-    if (!stream) atomic.fail(fmt::format("cannot be written: {}", std::strerror(errno)));
-    const bool is_written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
-    const int write_error = errno;
-    const bool is_closed = std::fclose(stream) == 0;
-    if (!is_written || !is_closed)
-        atomic.fail(fmt::format("cannot be written: {}", std::strerror(is_written ? errno : write_error)));
+    std::ofstream stream(atomic.temporary(), std::ios::binary);
+    errno = 0;
+    if (stream) write(stream);
+    if (!stream.flush())
+        atomic.fail(fmt::format("cannot be written: {}", std::strerror(errno ? errno : EIO)));
+    stream.close();
     atomic.commit();
+}
+
+void write_text_file(const fs::path& file, std::string_view text) {
+    write_file(file, [&](std::ostream& stream) { stream.write(text.data(), std::streamsize(text.size())); });
 }
 
 } // namespace relief

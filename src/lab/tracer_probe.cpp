@@ -8,9 +8,9 @@
 #include "base/timer.h"
 #include "cpu/path_tracer.h"
 #include "cpu/shading/shading_kernels.h"
-#include "cpu/tiles.h"
 #include "cpu/tracer.h"
 #include "cpu/traversal/kernels.h"
+#include "engine/picture_windows.h"
 #include "formulas/camera.h"
 #include "formulas/path.h"
 #include "formulas/sobol.h"
@@ -36,7 +36,7 @@ struct BatchBuffers {
 std::vector<Vec2f> list_centres(const std::vector<Window>& tiles) {
     std::vector<Vec2f> centres;
     for (const Window& tile : tiles)
-        for (const Window& packet : cpu::cut_into_windows(tile, kPacketEdge))
+        for (const Window& packet : cut_into_windows(tile, kPacketEdge))
             for (int y = packet.y0; y < packet.y1; ++y)
                 for (int x = packet.x0; x < packet.x1; ++x)
                     centres.push_back({float(x) + 0.5f, float(y) + 0.5f});
@@ -122,7 +122,7 @@ struct TracerProbe::Implementation {
         // All rows of tiles above, and the tiles to the left.
         const size_t first =
             size_t(tile.y0) * size_t(settings.image.width) + size_t(tile.y1 - tile.y0) * size_t(tile.x0);
-        const std::span<const Vec2f> positions = std::span(centres).subspan(first, cpu::count_pixels(tile));
+        const std::span<const Vec2f> positions = std::span(centres).subspan(first, count_pixels(tile));
         buffer.hits.resize(positions.size());
         if (frame.aperture_radius == 0) {
             tracer->camera_hits(frame, positions, {}, buffer.hits);
@@ -175,7 +175,7 @@ TracerProbe::TracerProbe(Scene scene, const RenderSettings& settings)
         self.buffers.resize(size_t(thread_count()));
     });
     self.number_patches();
-    self.tiles = cpu::cut_into_windows({0, 0, settings.image.width, settings.image.height}, cpu::kTileEdge);
+    self.tiles = cut_into_windows({0, 0, settings.image.width, settings.image.height}, cpu::kTileEdge);
     self.centres = list_centres(self.tiles);
 }
 

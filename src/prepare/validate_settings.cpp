@@ -56,6 +56,10 @@ void validate_settings(const RenderSettings& s) {
             "the picture size is out of range", fmt::format("1 to {} pixels a side", kMaxPictureSize));
     require(s.image.spp >= 1 && s.image.spp <= kMaxSamples, "the number of samples is out of range",
             fmt::format("1 to {} a pixel", kMaxSamples));
+    require(s.image.noise >= 0 && s.image.noise <= 1, "the noise is out of range",
+            "0: not regarded, or up to 1, as a share of brightness");
+    require(s.image.time_limit_s >= 0 && std::isfinite(s.image.time_limit_s),
+            "the time limit is out of range", "seconds, at least 0 (none)");
     const auto is_colour = [](const Vec3f& c) {
         return std::isfinite(c.x + c.y + c.z) && std::min({c.x, c.y, c.z}) >= 0;
     };
@@ -84,6 +88,9 @@ void validate_settings(const RenderSettings& s) {
     require(s.experiment.method != RenderMethod::hybrid || s.surface.leaf == LeafKind::exact,
             "the hybrid method draws triangles, not their boxes",
             "surface.leaf = exact, or experiment.method = compute or fragment");
+    require(s.experiment.method != RenderMethod::hybrid || s.image.noise == 0,
+            "the hybrid method draws whole windows, not the pixels that are noisy",
+            "image.noise = 0, or experiment.method = compute or fragment");
     require(s.device.engine == EngineKind::cpu || s.device.isa == Isa::best,
             "an instruction set goes with the CPU engine", "device.engine = cpu");
     require_traversal(s);

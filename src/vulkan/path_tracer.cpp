@@ -90,6 +90,7 @@ void PathTracer::make_buffers() {
                                             is_lent ? capacity_ * RasterBuffers::kNearestBytes : 0);
     shadow_list_ =
         make_buffer<uint32_t>(device, "shadow_list", capacity_, is_lent ? RasterBuffers::kLeastItemBytes : 0);
+    pixel_list_ = make_buffer<uint32_t>(device, "pixel_list", capacity_);
     BindingTable& bindings = tracer_.bindings();
     lights_.bind(bindings);
     bindings.bind(scalar::kBindPaths, paths_);
@@ -100,23 +101,34 @@ void PathTracer::make_buffers() {
     bindings.bind(scalar::kBindShadowList, shadow_list_);
 }
 
-void PathTracer::trace_samples(Film& film, PixelRange pixels, SampleRange samples) {
-    for (uint64_t done = 0; done < pixels.count; done += capacity_) {
-        const PixelRange batch{pixels.first + done, std::min<uint64_t>(capacity_, pixels.count - done)};
-        for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
-            trace_batch(film, batch, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)});
+void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples) {
+    DCHECK(!pixels.empty() && (!rasteriser_ || pixels.size() == 1));
+    pixels_.clear();
+    for (const PixelRange& range : pixels) {
+        const Window& window = range.window;
+        for (uint64_t k = range.first; k < range.first + range.count; ++k) {
+            const scalar::PixelPlace place = scalar::place_pixel(uint32_t(k), uint32_t(window.x1 - window.x0),
+                                                                 uint32_t(window.y1 - window.y0));
+            pixels_.push_back(
+                scalar::pack_pixel(uint32_t(window.x0) + place.x, uint32_t(window.y0) + place.y));
+        }
     }
+    DCHECK(pixels_.size() <= capacity_);
+    drawn_ = pixels.front();
+    pixel_list_.upload(pixels_);
+    for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
+        trace_batch(film, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)});
 }
 
-void PathTracer::trace_batch(Film& film, PixelRange pixels, SampleRange samples) {
+void PathTracer::trace_batch(Film& film, SampleRange samples) {
     Commands& commands = tracer_.commands();
     batch_casts_.clear();
     commands.begin_stage(Stage::film);
-    commands.fill(film_sums_, 0, pixels.count * sizeof(scalar::FilmSumsData), 0);
-    for (int k = 0; k < samples.count; ++k) trace_sample(film, pixels, uint32_t(samples.first + k));
+    commands.fill(film_sums_, 0, pixels_.size() * sizeof(scalar::FilmSumsData), 0);
+    for (int k = 0; k < samples.count; ++k) trace_sample(uint32_t(samples.first + k));
     commands.run();
     const Timer timer;
-    add_to_film(film, pixels, samples.count);
+    add_to_film(film, samples.count);
     film_s_ += timer.seconds();
     // Only now: after an error the batch is traced again, and its rays must count once.
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
@@ -134,22 +146,24 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     return push;
 }
 
-void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index) {
+void PathTracer::trace_sample(uint32_t sample_index) {
     Commands& commands = tracer_.commands();
-    const Window& window = film.window();
+    const uint32_t pixel_count = uint32_t(pixels_.size());
+    const Window& window = drawn_.window;
     const scalar::CameraPush camera{camera_,
                                     uint32_t(window.x0),
                                     uint32_t(window.y0),
                                     uint32_t(window.x1 - window.x0),
                                     uint32_t(window.y1 - window.y0),
-                                    uint32_t(pixels.first),
-                                    uint32_t(pixels.count),
+                                    uint32_t(drawn_.first),
+                                    pixel_count,
                                     sample_index,
                                     settings_.image.seed};
     commands.begin_stage(Stage::shade);
-    commands.dispatch(camera_kernel_, pixels.count, camera);
+    commands.copy(pixel_list_, 0, shadow_list_, 0, uint64_t(pixel_count) * sizeof(uint32_t));
+    commands.dispatch(camera_kernel_, pixel_count, camera);
     scalar::PathPush push = make_push(sample_index);
-    push.count = uint32_t(pixels.count);
+    push.count = pixel_count;
     for (; push.count > 0; ++push.depth) {
         CastStatistics cast = push.depth > 0 ? trace_bounces(push)
                               : rasteriser_  ? rasteriser_->first_hits(camera)
@@ -163,8 +177,8 @@ void PathTracer::trace_sample(const Film& film, PixelRange pixels, uint32_t samp
             commands.copy(next_path_list_, 0, path_list_, 0, uint64_t(push.count) * sizeof(uint32_t));
     }
     commands.begin_stage(Stage::film);
-    push.count = uint32_t(pixels.count);
-    commands.dispatch(film_, pixels.count, push);
+    push.count = pixel_count;
+    commands.dispatch(film_, pixel_count, push);
 }
 
 /// Both parts of bounce rays, as cpu/bounce_rays.h; shadow and next-depth lists are free until shade_depth.
@@ -225,15 +239,10 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
     commands.dispatch(shadow_light_, shadow_count, push);
 }
 
-void PathTracer::add_to_film(Film& film, PixelRange pixels, int sample_count) const {
-    const std::vector<scalar::FilmSumsData> sums =
-        film_sums_.download<scalar::FilmSumsData>(size_t(pixels.count));
-    const Window& window = film.window();
-    const uint32_t width = uint32_t(window.x1 - window.x0), height = uint32_t(window.y1 - window.y0);
-    for (size_t k = 0; k < sums.size(); ++k) {
-        const scalar::PixelPlace pixel = scalar::place_pixel(uint32_t(pixels.first + k), width, height);
-        film.add_sums(window.x0 + int(pixel.x), window.y0 + int(pixel.y), make_sums(sums[k], sample_count));
-    }
+void PathTracer::add_to_film(Film& film, int sample_count) const {
+    const std::vector<scalar::FilmSumsData> sums = film_sums_.download<scalar::FilmSumsData>(pixels_.size());
+    for (size_t k = 0; k < sums.size(); ++k)
+        film.add_sums(int(pixels_[k] & 0xffff), int(pixels_[k] >> 16), make_sums(sums[k], sample_count));
 }
 
 void PathTracer::add_statistics(Statistics& statistics) const {

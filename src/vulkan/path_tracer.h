@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "film/film.h"
@@ -16,8 +17,9 @@
 
 namespace relief::vulkan {
 
-/// Pixels [first, first + count) of the film's window, in the order of scalar::place_pixel.
+/// Pixels [first, first + count) of a window of the picture, in the order of scalar::place_pixel.
 struct PixelRange {
+    Window window;
     uint64_t first = 0, count = 0;
 };
 
@@ -35,9 +37,9 @@ class PathTracer {
     /// Paths traced at a time.
     uint32_t capacity() const { return capacity_; }
 
-    /// Adds samples to the film. Sample k of a pixel depends on (seed, pixel, k) only. Any number of pixels
-    /// and samples; multiples of capacity() and kSamplesPerLaunch are most efficient.
-    void trace_samples(Film& film, PixelRange pixels, SampleRange samples);
+    /// Adds samples to the film. Sample k of a pixel depends on (seed, pixel, k) only. Any number of samples,
+    /// and of pixels (not of ranges that are drawn) up to capacity(), which is most efficient.
+    void trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples);
 
     /// Adds rays by kind and casts by depth, of completed batches.
     void add_statistics(Statistics& statistics) const;
@@ -49,16 +51,16 @@ class PathTracer {
     struct NextRays {
         uint32_t path_count, shadow_count;
     };
-    void trace_batch(Film& film, PixelRange pixels, SampleRange samples);
+    void trace_batch(Film& film, SampleRange samples);
     void make_buffers();
-    void trace_sample(const Film& film, PixelRange pixels, uint32_t sample_index);
+    void trace_sample(uint32_t sample_index);
     CastStatistics trace_bounces(scalar::PathPush push);
     NextRays shade_depth(const scalar::PathPush& push);
     NextRays list_rays(const Kernel& kernel, const scalar::PathPush& push);
     void clear_lists();
     NextRays read_lists();
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
-    void add_to_film(Film& film, PixelRange pixels, int sample_count) const;
+    void add_to_film(Film& film, int sample_count) const;
     scalar::PathPush make_push(uint32_t sample_index) const;
 
     Tracer& tracer_;
@@ -68,7 +70,9 @@ class PathTracer {
     DeviceLights lights_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;
-    Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_;
+    Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_, pixel_list_;
+    std::vector<uint32_t> pixels_;                    ///< of the current batch, pack_pixel()
+    PixelRange drawn_;                                ///< what the rasteriser draws of them: all
     std::unique_ptr<Rasteriser> rasteriser_;          ///< hybrid method only
     std::vector<CastStatistics> casts_, batch_casts_; ///< of completed batches; of the current one
     double film_s_ = 0;                               ///< on the host, adding sums to the film

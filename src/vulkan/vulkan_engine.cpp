@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "base/timer.h"
+#include "engine/picture_windows.h"
+#include "engine/render_passes.h"
 #include "relief/error.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/ray_batch.h"
@@ -25,8 +27,11 @@ constexpr uint32_t kMostPaths = 1u << 20;
 constexpr uint32_t kLeastPaths = 1u << 12; ///< with less, the device has too little memory to render
 constexpr uint32_t kRaysOfABatch = 1u << 17;
 constexpr uint32_t kSlots = 4;
+/// Pixels a side of a task: the least number of paths holds one. Of one that is drawn: kMostPaths hold one.
+constexpr int kTaskEdge = 64, kDrawnEdge = 1024;
+static_assert(kTaskEdge * kTaskEdge == kLeastPaths && kDrawnEdge * kDrawnEdge == kMostPaths);
 
-class VulkanEngine final : public Engine {
+class VulkanEngine final : public Engine, private PassTracer {
   public:
     VulkanEngine(std::unique_ptr<Device> device, std::shared_ptr<const PreparedScene> scene,
                  const RenderSettings& settings, const std::optional<SceneWalk>& walk)
@@ -37,7 +42,7 @@ class VulkanEngine final : public Engine {
 
     /// Unsupported: texels and trees on the device are immutable.
     bool apply_changes(std::span<const SurfaceChange>) override { return false; }
-    bool render(Film& film, RenderObserver* observer) override;
+    bool render(Film& film, const RenderControl& control) override;
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override;
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const override;
     void add_statistics(Statistics& statistics) const override;
@@ -47,7 +52,7 @@ class VulkanEngine final : public Engine {
     SizedTracer<RayBatch>& batches() const;
     uint64_t count_rays() const;
     void require_drawable(const Window& window) const;
-    bool render_pass(Film& film, SampleRange samples, RenderObserver* observer);
+    void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override;
 
     std::shared_ptr<const PreparedScene> scene_;
     RenderSettings settings_;
@@ -56,9 +61,7 @@ class VulkanEngine final : public Engine {
     SizedTracer<PathTracer> paths_;
     mutable std::mutex mutex_;
     mutable SizedTracer<RayBatch> batches_;
-    Progress progress_;
-    uint64_t done_ = 0; ///< pixel samples
-    Timer timer_;
+    uint64_t rays_reported_ = 0;
     double set_up_s_ = 0, first_image_s_ = 0;
 };
 
@@ -82,10 +85,10 @@ void VulkanEngine::require_drawable(const Window& window) const {
                  device_->description().name, "image.crop, or experiment.method = compute or fragment"});
 }
 
-bool VulkanEngine::render(Film& film, RenderObserver* observer) {
+bool VulkanEngine::render(Film& film, const RenderControl& control) {
     const Window& window = film.window();
     require_drawable(window);
-    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
+    const uint64_t pixels = count_pixels(window);
     const Timer set_up;
     // Every path has a ray and a shadow ray.
     paths_ = {}; // frees its memory
@@ -94,40 +97,46 @@ bool VulkanEngine::render(Film& film, RenderObserver* observer) {
               [this](uint32_t rays) { return make_tracer(rays, 2); },
               [this](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); }};
     set_up_s_ += set_up.seconds();
-    timer_ = {};
-    progress_ = {};
-    progress_.samples_total = settings_.image.spp;
-    done_ = 0;
-    int done = 0;
-    for (int length = 1; done < settings_.image.spp;
-         length = std::min(2 * length, PathTracer::kSamplesPerLaunch)) {
-        const int count = std::min(length, settings_.image.spp - done);
-        if (!render_pass(film, {settings_.image.first_sample + done, count}, observer)) return false;
-        done += count;
-        progress_.samples_done = done;
-        if (first_image_s_ == 0) first_image_s_ = timer_.seconds();
-    }
-    if (observer) observer->on_progress(progress_);
-    return true;
+    rays_reported_ = 0;
+    const bool draws = settings_.experiment.method == RenderMethod::hybrid;
+    const PassReport report =
+        render_passes(film, settings_.image, control, draws ? kDrawnEdge : kTaskEdge, *this);
+    first_image_s_ = report.first_image_s;
+    return report.is_complete;
 }
 
-/// False if cancelled.
-bool VulkanEngine::render_pass(Film& film, SampleRange samples, RenderObserver* observer) {
-    const Window& window = film.window();
-    const uint64_t pixels = uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
-    for (uint64_t first = 0, count = 0; first < pixels; first += count) {
-        if (observer && observer->is_cancelled()) return false;
+/// Tasks of the same samples together, as many as the device has room for.
+void VulkanEngine::trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) {
+    const bool draws = settings_.experiment.method == RenderMethod::hybrid;
+    for (size_t next = 0; next < tasks.size() && !monitor.must_stop();) {
+        const SampleTask& first = tasks[next];
+        const SampleRange samples{settings_.image.first_sample + first.first, first.count};
+        uint64_t done = 0;
+        size_t end = next;
         paths_.run([&](PathTracer& worker) {
-            count = std::min<uint64_t>(worker.capacity(), pixels - first);
-            worker.trace_samples(film, {first, count}, samples);
+            std::vector<PixelRange> ranges;
+            uint64_t count = 0;
+            for (end = next; end < tasks.size() && tasks[end].first == first.first && (!draws || end == next);
+                 ++end) {
+                const uint64_t pixels = count_pixels(tasks[end].window);
+                if (end > next && count + pixels > worker.capacity()) break;
+                ranges.push_back({tasks[end].window, 0, pixels}), count += pixels;
+            }
+            // One task may be more than a device has room for; what a failed attempt has traced of it stays.
+            if (ranges.size() > 1 || count <= worker.capacity()) {
+                worker.trace_samples(film, ranges, samples);
+                done = count;
+            }
+            for (; done < count; done += ranges[0].count) {
+                ranges[0].first = done, ranges[0].count = std::min<uint64_t>(worker.capacity(), count - done);
+                worker.trace_samples(film, ranges, samples);
+            }
         });
-        done_ += count * uint64_t(samples.count);
-        progress_.fraction = double(done_) / (double(pixels) * settings_.image.spp);
-        progress_.rays = count_rays();
-        progress_.elapsed_s = timer_.seconds();
-        if (observer) observer->on_progress(progress_);
+        next = end;
+        const uint64_t rays = count_rays();
+        monitor.finish_task(done * uint64_t(samples.count), rays - rays_reported_);
+        rays_reported_ = rays;
     }
-    return true;
 }
 
 uint64_t VulkanEngine::count_rays() const {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "cpu/picture_footprints.h"
-#include "cpu/tiles.h"
+#include "engine/picture_windows.h"
 #include "support/box_sets.h"
 
 namespace relief::cpu {
@@ -158,21 +158,21 @@ TEST(Footprint, serves_flat_bounds_and_points) {
 TEST(PictureFootprints, names_the_stale_pixels_once) {
     const Window window{5, 3, 70, 41};
     PictureFootprints picture(window, kBounds);
-    EXPECT_EQ(picture.start_stale_windows(16).size(), cut_into_windows(window, 16).size());
+    EXPECT_EQ(picture.start_stale_windows().size(), cut_into_windows(window, 8).size());
     picture.at(20, 30).add_ray({0, 0, 0}, {0, 0, 1}, 10);
     picture.at(69, 40).add_ray({0, 0, 0}, {0, 0, 1}, 10);
     picture.at(50, 10).add_ray({1, 1, 0}, {0, 0, 1}, 10);
     picture.finish();
-    EXPECT_TRUE(picture.start_stale_windows(16).empty());
+    EXPECT_TRUE(picture.start_stale_windows().empty());
     const Box place[] = {{{-0.01f, -0.01f, 3.4f}, {0.01f, 0.01f, 3.5f}}};
     EXPECT_TRUE(picture.mark_stale(place));
     const std::vector<Window> expected = {{16, 24, 24, 32}, {64, 40, 70, 41}};
-    EXPECT_EQ(picture.start_stale_windows(16), expected);
+    EXPECT_EQ(picture.start_stale_windows(), expected);
     // What was stale has been forgotten, and stays stale until it is finished.
-    EXPECT_EQ(picture.start_stale_windows(16), expected);
+    EXPECT_EQ(picture.start_stale_windows(), expected);
     picture.finish();
     EXPECT_TRUE(picture.mark_stale(place));
-    EXPECT_TRUE(picture.start_stale_windows(16).empty());
+    EXPECT_TRUE(picture.start_stale_windows().empty());
     const Box far[] = {{{100, 0, 0}, {101, 1, 1}}};
     EXPECT_FALSE(picture.mark_stale(far));
 }

@@ -159,7 +159,11 @@ TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
                       {.ray_capacity = rays, .pair_capacity = 3000});
         PathTracer paths(tracer, settings);
         Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
-        paths.trace_samples(film, {0, 43 * 29}, {0, 2});
+        constexpr uint64_t kPixels = 43 * 29;
+        for (uint64_t first = 0; first < kPixels; first += paths.capacity()) {
+            const PixelRange range{film.window(), first, std::min<uint64_t>(paths.capacity(), kPixels - first)};
+            paths.trace_samples(film, {&range, 1}, {0, 2});
+        }
         return film.resolve();
     };
     const Image whole = trace(4096);

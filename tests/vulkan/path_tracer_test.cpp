@@ -78,9 +78,12 @@ class PathTracerTest : public GpuTest {
         Film film = make_film();
         const uint64_t pixels = 27 * 21;
         for (int k = 0; k < settings_.image.spp; k += samples_a_call) {
-            path_tracer.trace_samples(film, {0, 100}, {settings_.image.first_sample + k, samples_a_call});
-            path_tracer.trace_samples(film, {100, pixels - 100},
-                                      {settings_.image.first_sample + k, samples_a_call});
+            const SampleRange samples{settings_.image.first_sample + k, samples_a_call};
+            for (uint64_t first = 0, count = 100; first < pixels; first += count, count = pixels - first) {
+                count = std::min<uint64_t>(count, path_tracer.capacity());
+                const PixelRange range{film.window(), first, count};
+                path_tracer.trace_samples(film, {&range, 1}, samples);
+            }
         }
         Picture picture{film.resolve(), {}};
         path_tracer.add_statistics(picture.statistics);

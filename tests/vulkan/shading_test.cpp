@@ -63,8 +63,14 @@ class ShadingKernels : public GpuTest {
     static inline std::vector<CpuVertex> vertices_;
 };
 
-TEST_F(ShadingKernels, start_the_camera_rays_of_a_window) {
+TEST_F(ShadingKernels, start_the_camera_rays_of_listed_pixels) {
     scalar::CameraPush push{make_camera_frame(*bench().prepared), 7, 3, 19, 40, 5, 512, 9, 4};
+    std::vector<uint32_t> pixels;
+    for (uint32_t k = 0; k < push.count; ++k) {
+        const scalar::PixelPlace place = scalar::place_pixel(5 + k, 19, 40);
+        pixels.push_back(scalar::pack_pixel(7 + place.x, 3 + place.y));
+    }
+    bench().shadow_list.upload(pixels);
     bench().run("camera", push);
     const auto rays = bench().rays.download<scalar::RayData>(push.count);
     const auto paths = bench().paths.download<scalar::PathData>(push.count);

@@ -51,7 +51,12 @@ struct EmitterData {
 
 const float kEmitterParts = 16777216.0f;
 
-/// Pixels [first_pixel, first_pixel + count) of a window in the order of place_pixel; path k is the k-th.
+/// A pixel of the picture in the list of pixels (the list of shadow rays, when a sample begins); coordinates
+/// below 2^16.
+FN uint pack_pixel(uint x, uint y) { return y << 16 | x; }
+
+/// Path k belongs to pixel k of the list. Where they are drawn they are also pixels [first_pixel, first_pixel
+/// + count) of a window in the order of place_pixel.
 struct CameraPush {
     CameraFrame camera;
     uint x0, y0, width, height;

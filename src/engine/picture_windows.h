@@ -7,7 +7,7 @@
 
 #include "relief/render.h"
 
-namespace relief::cpu {
+namespace relief {
 
 inline uint64_t count_pixels(const Window& window) {
     return uint64_t(window.x1 - window.x0) * uint64_t(window.y1 - window.y0);
@@ -23,4 +23,4 @@ inline std::vector<Window> cut_into_windows(const Window& window, int edge) {
     return windows;
 }
 
-} // namespace relief::cpu
+} // namespace relief

@@ -1,0 +1,62 @@
+#include "checkpoint.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "common/values.h"
+#include "relief/io.h"
+
+namespace relief::cli {
+
+namespace {
+
+std::filesystem::path name_film(std::filesystem::path picture) { return picture += ".film"; }
+
+} // namespace
+
+void add_checkpoint_options(CLI::App& verb, CheckpointOptions& options) {
+    verb.add_option_function<std::string>(
+            "--checkpoint",
+            [&options](const std::string& text) {
+                options.minutes = parse_number("--checkpoint", text, 1e-3, 1e5);
+            },
+            "keep what --resume needs in FILE.film: every MIN minutes, and at the end")
+        ->type_name("MIN");
+    verb.add_option_function<std::string>(
+            "--resume", [&options](const std::string& text) { options.resumed = text; },
+            "add samples, up to --spp, to a picture rendered with --checkpoint; default of -o: FILE")
+        ->type_name("FILE");
+}
+
+void check_checkpoint(const CheckpointOptions& options, const std::filesystem::path& output) {
+    if (!options.is_on()) return;
+    check_text_writable(name_film(output));
+    const std::filesystem::path film = name_film(options.resumed);
+    if (!options.resumed.empty() && !std::filesystem::is_regular_file(film))
+        throw Error(ErrorKind::bad_input,
+                    {"the sums of its samples are not beside it: " + film.string(), options.resumed.string(),
+                     "--checkpoint keeps them; without: --samples A:B for what is missing, then "
+                     "relief merge"});
+}
+
+FilmKeeper::FilmKeeper(const CheckpointOptions& options, const std::filesystem::path& output)
+    : options_(options), file_(name_film(output)) {
+    if (!options.resumed.empty()) resumed_.open(name_film(options.resumed), std::ios::binary);
+}
+
+Checkpoints FilmKeeper::checkpoints() {
+    Checkpoints checkpoints;
+    if (!options_.is_on()) return checkpoints;
+    if (options_.minutes > 0) checkpoints.interval_s = 60 * options_.minutes;
+    if (resumed_.is_open()) checkpoints.resume = &resumed_;
+    checkpoints.save = [this](const std::function<void(std::ostream&)>& write) {
+        try {
+            write_file(file_, write);
+        } catch (const Error& error) {
+            fmt::print(stderr, "relief: warning: the samples so far could not be kept: {}\n", error.what());
+        }
+    };
+    return checkpoints;
+}
+
+} // namespace relief::cli

@@ -1,0 +1,70 @@
+// What both engines do around the tracing of samples: passes, progress, cancellation, time limits and
+// checkpoints.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <span>
+
+#include "base/timer.h"
+#include "engine/engine.h"
+#include "engine/sample_plan.h"
+
+namespace relief {
+
+/// Follows one render. Thread safe, apart from what render_passes() calls.
+class PassMonitor {
+  public:
+    PassMonitor(const RenderControl& control, const ImageSettings& image);
+
+    bool is_cancelled() const { return control_.observer && control_.observer->is_cancelled(); }
+    /// Whether tracing is to end before the next task, or within one where that is possible.
+    bool must_stop() const { return is_cancelled() || is_out_of_time() || must_save(); }
+    bool is_out_of_time() const;
+    /// A task is done: so many samples and rays. Reports progress now and then.
+    void finish_task(uint64_t pixel_samples, uint64_t rays);
+
+    void start_pass(double fraction, uint64_t pixel_samples);
+    void finish_pass(int samples_a_pixel);
+    /// Never twice without a task between.
+    bool must_save() const {
+        return control_.save && has_news_ && save_timer_.seconds() >= control_.save_interval_s;
+    }
+    void save();
+    double seconds() const { return timer_.seconds(); }
+
+  private:
+    void report();
+
+    const RenderControl& control_;
+    double time_limit_s_;
+    bool has_first_pass_ = false;
+    std::atomic<bool> has_news_{false};       ///< since the last save()
+    std::atomic<uint64_t> done_{0}, rays_{0}; ///< done: pixel samples of this pass
+    double fraction_ = 0, share_of_sample_ = 0;
+    std::mutex mutex_;
+    Progress progress_;
+    Timer timer_, save_timer_;
+};
+
+/// The part of an engine that traces.
+class PassTracer {
+  public:
+    virtual ~PassTracer() = default;
+    virtual void start_pass() {}
+    /// Traces tasks until all are done or monitor.must_stop(). All pixels of a block of SamplePlan then have
+    /// the same number of samples.
+    virtual void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) = 0;
+};
+
+struct PassReport {
+    bool is_complete = true;  ///< false: cancelled
+    double first_image_s = 0; ///< until each pixel had a sample that lacked one; 0: cancelled before
+};
+
+/// Adds to a film what it lacks, pass by pass, in tasks of at most `task_edge` pixels a side. `image` is that
+/// of the render.
+PassReport render_passes(Film& film, const ImageSettings& image, const RenderControl& control, int task_edge,
+                         PassTracer& tracer);
+
+} // namespace relief
