@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "common/exit_codes.h"
 #include "common/report.h"
 #include "common/values.h"
+#include "denoiser_search.h"
 #include "inputs.h"
 #include "relief/error.h"
 #include "relief/image.h"
@@ -31,7 +33,7 @@ struct CompareOptions {
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string output;
-    bool allows_gaps = false;
+    bool allows_gaps = false, is_denoised = false;
 };
 
 int run_compare(const CompareOptions& options) {
@@ -98,9 +100,11 @@ int run_merge(const MergeOptions& options) {
                     {"parts and an output file are needed", "", "relief merge A.exr B.exr -o OUT.exr"});
     keep_files(options.parts, options.output);
     check_writable(options.output);
+    std::optional<Denoiser> denoiser;
+    if (options.is_denoised) denoiser = load_denoiser(0);
     std::vector<Image> parts;
     for (const std::string& part : options.parts) parts.push_back(read_image(part));
-    const Image merged = merge_images(parts);
+    Image merged = merge_images(parts);
     if (const std::vector<PictureGap> gaps = find_gaps(parts); !gaps.empty()) {
         const std::string message = "the picture is not whole, missing: " + describe_gaps(gaps, merged);
         if (!options.allows_gaps)
@@ -110,6 +114,7 @@ int run_merge(const MergeOptions& options) {
         refuse_black_pixels(gaps, merged, options.output);
         fmt::print(stderr, "relief: warning: {}\n", message);
     }
+    if (denoiser) denoiser->denoise(merged);
     write_image(merged, options.output);
     fmt::print("wrote {}\n", options.output);
     return kExitDone;
@@ -140,6 +145,8 @@ Command add_merge(CLI::App& verb) {
     verb.add_option("-o", options->output, "the joined picture")->type_name("FILE");
     verb.add_flag("--allow-gaps", options->allows_gaps,
                   "join parts of a picture that lack pixels or samples of it, which is refused else");
+    verb.add_flag("--denoise", options->is_denoised,
+                  "denoise the joined picture, by Open Image Denoise 2: parts need the layers albedo and N");
     return [options] { return run_merge(*options); };
 }
 

@@ -20,6 +20,7 @@
 #include "common/mesh_reader.h"
 #include "common/report.h"
 #include "common/values.h"
+#include "denoiser_search.h"
 #include "edit_stream.h"
 #include "inputs.h"
 #include "interrupt.h"
@@ -90,6 +91,15 @@ struct Waiting {
     double start, load_s;
 };
 
+/// Not after an interrupt, which asks for an end.
+void denoise_picture(const RenderOptions& options, RenderResult& result) {
+    const double start = get_seconds();
+    const auto is_interrupted = [] { return get_interrupt() != 0; };
+    if (!options.denoiser->denoise(result.image, is_interrupted))
+        fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
+    result.statistics.denoise_s = get_seconds() - start;
+}
+
 /// `told`: warnings printed before the render.
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const Waiting& waiting, RenderResult& result,
@@ -100,6 +110,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
         if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
         return get_exit_code(result, {});
     }
+    if (options.is_denoised) denoise_picture(options, result);
     const double write_start = get_seconds();
     add_display_entries(options.aim, output, result.image);
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
@@ -250,6 +261,10 @@ Command add_render(CLI::App& verb) {
     return [options] {
         const double start = get_seconds();
         complete_render_options(*options);
+        // Before the scene is read: a render would be in vain without it.
+        if (options->is_denoised)
+            options->denoiser =
+                std::make_shared<const Denoiser>(load_denoiser(options->settings.device.threads));
         int exit_code = kExitDone;
         with_io_threads(options->settings.device.threads, [&] { exit_code = render_input(*options, start); });
         return exit_code;

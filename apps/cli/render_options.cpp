@@ -12,6 +12,7 @@
 #include "inputs.h"
 #include "map_options.h"
 #include "mesh_options.h"
+#include "relief/denoise.h"
 
 namespace relief::cli {
 
@@ -57,6 +58,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
         [&o](const std::string& text) {
             o.settings.image.time_limit_s = parse_number("--time-limit", text, 1e-3, 1e9);
         });
+    verb.add_flag("--denoise", o.is_denoised,
+                  "by Open Image Denoise 2, if it is installed; .exr keeps the noisy colour as a layer");
     add(verb, "--layers", "LIST", fmt::format("of {}", fmt::join(kLayers, ",")),
         [&o](const std::string& text) {
             for (const std::string& layer : split(text, ',')) {
@@ -219,6 +222,13 @@ void check_aim(const RenderOptions& o) {
     check_text_writable(o.aim.saved_scene);
 }
 
+/// Parts of a picture differ at their edges and in their noise, so they are denoised when they are one.
+void check_denoise(const RenderOptions& o) {
+    if (!o.tile && !o.samples) return;
+    throw Error(ErrorKind::usage, {"a part of a picture is not denoised", "--denoise",
+                                   "--layers albedo,N for the parts, then relief merge PARTS --denoise"});
+}
+
 void add_layers(std::span<const char* const> names, std::vector<std::string>& layers) {
     for (const char* name : names)
         if (std::find(layers.begin(), layers.end(), name) == layers.end()) layers.emplace_back(name);
@@ -260,12 +270,14 @@ void complete_render_options(RenderOptions& o) {
     check_map_options(o.mesh);
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
                     o.settings.image.crop != Window{} || !o.settings.image.layers.empty() ||
-                    !o.edits.empty() || o.checkpoint.is_on()))
-        throw Error(ErrorKind::usage, {"--pixel explains one pixel and makes no picture", "--pixel",
-                                       "leave out -o, --stats, --crop, --tile, --samples, --layers, --edits, "
-                                       "--checkpoint and --resume"});
+                    !o.edits.empty() || o.is_denoised || o.checkpoint.is_on()))
+        throw Error(ErrorKind::usage,
+                    {"--pixel explains one pixel and makes no picture", "--pixel",
+                     "leave out -o, --stats, --crop, --tile, --samples, --layers, --denoise, --edits, "
+                     "--checkpoint and --resume"});
     check_aim(o);
     if (o.pixel) return;
+    if (o.is_denoised) check_denoise(o);
     if (o.checkpoint.is_on() && (!o.edits.empty() || o.aim.turntable > 0))
         throw Error(ErrorKind::usage, {"the samples of one picture are kept", "--checkpoint, --resume",
                                        "leave out --edits and --turntable"});
@@ -276,6 +288,7 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
+    if (o.is_denoised) add_layers(kDenoiserGuides, o.settings.image.layers);
     refuse_link_loop(o.edits, ErrorKind::bad_input);
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
         throw Error(ErrorKind::usage,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "common/cli_app.h"
 #include "common/engine_options.h"
 #include "progress.h"
+#include "relief/denoise.h"
 #include "relief/io.h"
 #include "relief/render.h"
 
@@ -34,6 +36,8 @@ struct RenderOptions {
     std::optional<Tile> tile;
     std::optional<std::pair<int, int>> pixel;
     CheckpointOptions checkpoint;
+    bool is_denoised = false;
+    std::shared_ptr<const Denoiser> denoiser; ///< where is_denoised
     ProgressStyle progress = ProgressStyle::automatic;
     bool is_quiet = false, is_verbose = false, is_strict = false;
 };

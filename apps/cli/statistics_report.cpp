@@ -7,7 +7,8 @@ namespace {
 
 Value make_times(const Statistics& s) {
     return {{"load", s.load_s},     {"prepare", s.prepare_s}, {"first_image", s.first_image_s},
-            {"render", s.render_s}, {"write", s.write_s},     {"total", s.total_s}};
+            {"render", s.render_s}, {"denoise", s.denoise_s}, {"write", s.write_s},
+            {"total", s.total_s}};
 }
 
 Value make_stages(const Statistics& s) {

@@ -115,7 +115,8 @@ struct Statistics {
     std::string engine, device, isa;
     int threads = 0;
     uint64_t meshes = 0, instances = 0, patches = 0, triangles = 0, displacement_texels = 0;
-    double load_s = 0, prepare_s = 0, first_image_s = 0, render_s = 0, write_s = 0, total_s = 0;
+    double load_s = 0, prepare_s = 0, first_image_s = 0, render_s = 0, denoise_s = 0, write_s = 0,
+           total_s = 0;
     double top_traversal_s = 0, sort_s = 0, bottom_build_s = 0, bottom_traversal_s = 0, shade_s = 0,
            film_s = 0;
     uint64_t camera_rays = 0, shadow_rays = 0, bounce_rays = 0;

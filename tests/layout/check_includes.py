@@ -12,6 +12,7 @@ ALLOWED = {
     "formulas": ["math"],
     "image": ["math"],
     "film": ["image"],
+    "denoise": ["image"],
     "scene": ["image"],
     "samples": ["scene"],
     "io": ["scene", "formulas"],

@@ -1,0 +1,158 @@
+// Filters a picture three times, as the library's documentation advises for guides with noise of their own:
+// albedo, normals, then the colour with both as clean guides.
+#include "relief/denoise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "denoise/oidn_library.h"
+#include "relief/error.h"
+
+namespace relief {
+
+namespace {
+
+using Channels = std::array<const char*, 3>;
+constexpr Channels kColour = {"R", "G", "B"}, kNoisy = {"noisy.R", "noisy.G", "noisy.B"};
+constexpr Channels kAlbedo = {"albedo.R", "albedo.G", "albedo.B"}, kNormal = {"N.X", "N.Y", "N.Z"};
+
+std::array<size_t, 3> find_channels(const Image& picture, const Channels& names) {
+    std::array<size_t, 3> found;
+    for (size_t k = 0; k < 3; ++k) {
+        const std::optional<size_t> channel = picture.find_channel(names[k]);
+        if (!channel)
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("a picture without the channel {} cannot be denoised", names[k]), "",
+                         "render it with the layers albedo and N"});
+        found[k] = *channel;
+    }
+    return found;
+}
+
+/// Interleaved, three floats a pixel. NaN and infinity, of depths alone, do not come here.
+std::vector<float> take_channels(const Image& picture, const Channels& names) {
+    const std::array<size_t, 3> channels = find_channels(picture, names);
+    const size_t width = picture.channels.size(), count = picture.pixels.size() / width;
+    std::vector<float> taken(3 * count);
+    for (size_t p = 0; p < count; ++p)
+        for (size_t k = 0; k < 3; ++k) taken[3 * p + k] = picture.pixels[p * width + channels[k]];
+    return taken;
+}
+
+void put_channels(const std::vector<float>& values, const std::array<size_t, 3>& channels, Image& picture) {
+    const size_t width = picture.channels.size();
+    for (size_t p = 0; p < values.size() / 3; ++p)
+        for (size_t k = 0; k < 3; ++k) picture.pixels[p * width + channels[k]] = values[3 * p + k];
+}
+
+void append_channels(const Channels& names, Image& picture) {
+    const size_t before = picture.channels.size(), after = before + names.size();
+    std::vector<float> pixels(picture.pixels.size() / before * after);
+    for (size_t p = 0; p < pixels.size() / after; ++p)
+        std::copy_n(picture.pixels.begin() + ptrdiff_t(p * before), before,
+                    pixels.begin() + ptrdiff_t(p * after));
+    picture.pixels = std::move(pixels);
+    picture.channels.insert(picture.channels.end(), names.begin(), names.end());
+}
+
+} // namespace
+
+struct Denoiser::Library {
+    oidn::Functions call;
+    oidn::Device device = nullptr;
+
+    explicit Library(const DenoiserSettings& settings) : call(oidn::load_functions(settings.libraries)) {
+        device = call.NewDevice(oidn::kDeviceCpu);
+        if (device) {
+            if (settings.threads > 0) call.SetDeviceInt(device, "numThreads", settings.threads);
+            call.CommitDevice(device);
+        }
+        const char* message = nullptr;
+        if (call.GetDeviceError(device, &message) == oidn::kErrorNone && device) return;
+        const std::string reason = message ? message : "no device";
+        if (device) call.ReleaseDevice(device);
+        throw Error(ErrorKind::device_missing,
+                    {"the denoiser cannot be started: " + reason, "Open Image Denoise", ""});
+    }
+    ~Library() { call.ReleaseDevice(device); }
+    Library(const Library&) = delete;
+    Library& operator=(const Library&) = delete;
+
+    struct Input {
+        const char* name;
+        std::vector<float>* pixels;
+    };
+
+    /// Filters the first input into `output`, which may be its own pixels. False: cancelled.
+    bool filter(const std::vector<Input>& inputs, std::vector<float>& output, const Image& picture,
+                const std::function<bool()>& is_cancelled) const {
+        const auto release = [this](oidn::Filter f) { call.ReleaseFilter(f); };
+        const std::unique_ptr<oidn::FilterHandle, decltype(release)> filter(call.NewFilter(device, "RT"),
+                                                                            release);
+        const auto set_image = [&](const char* name, std::vector<float>& pixels) {
+            call.SetSharedFilterImage(filter.get(), name, pixels.data(), oidn::kFormatFloat3,
+                                      size_t(picture.width), size_t(picture.height), 0, 0, 0);
+        };
+        for (const Input& input : inputs) set_image(input.name, *input.pixels);
+        set_image("output", output);
+        const bool has_guides = inputs.size() > 1;
+        if (has_guides) call.SetFilterBool(filter.get(), "hdr", true);
+        if (has_guides) call.SetFilterBool(filter.get(), "cleanAux", true);
+        const auto goes_on = [](void* user, double) {
+            const auto& asked = *static_cast<const std::function<bool()>*>(user);
+            return !asked || !asked();
+        };
+        call.SetFilterProgressMonitorFunction(filter.get(), goes_on,
+                                              const_cast<std::function<bool()>*>(&is_cancelled));
+        call.CommitFilter(filter.get());
+        call.ExecuteFilter(filter.get());
+        return check();
+    }
+
+    /// False: cancelled. Throws for any other error since the last call.
+    bool check() const {
+        const char* message = nullptr;
+        const int error = call.GetDeviceError(device, &message);
+        if (error == oidn::kErrorNone) return true;
+        if (error == oidn::kErrorCancelled) return false;
+        if (error == oidn::kErrorOutOfMemory) throw std::bad_alloc();
+        throw Error(ErrorKind::failed,
+                    {std::string("the denoiser failed: ") + (message ? message : "no reason given"),
+                     "Open Image Denoise", ""});
+    }
+};
+
+Denoiser::Denoiser(const DenoiserSettings& settings) : library_(std::make_unique<Library>(settings)) {}
+Denoiser::~Denoiser() = default;
+Denoiser::Denoiser(Denoiser&&) noexcept = default;
+Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;
+
+std::string Denoiser::version() const {
+    const int version = library_->call.GetDeviceInt(library_->device, "version"); // 20501: 2.5.1
+    return fmt::format("{}.{}.{}", version / 10000, version / 100 % 100, version % 100);
+}
+
+bool Denoiser::denoise(Image& picture, const std::function<bool()>& is_cancelled) const {
+    if (picture.find_channel(kNoisy[0]))
+        throw Error(ErrorKind::bad_input, {"the picture is denoised already", "", ""});
+    const std::array<size_t, 3> colour = find_channels(picture, kColour);
+    std::vector<float> noisy = take_channels(picture, kColour), clean(noisy.size());
+    std::vector<float> albedo = take_channels(picture, kAlbedo), normal = take_channels(picture, kNormal);
+    if (!library_->filter({{"albedo", &albedo}}, albedo, picture, is_cancelled) ||
+        !library_->filter({{"normal", &normal}}, normal, picture, is_cancelled) ||
+        !library_->filter({{"color", &noisy}, {"albedo", &albedo}, {"normal", &normal}}, clean, picture,
+                          is_cancelled))
+        return false;
+    append_channels(kNoisy, picture);
+    put_channels(clean, colour, picture);
+    put_channels(noisy, find_channels(picture, kNoisy), picture);
+    picture.metadata["relief:denoiser"] = "Open Image Denoise " + version();
+    return true;
+}
+
+} // namespace relief
