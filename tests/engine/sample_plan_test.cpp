@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/picture_windows.h"
+#include "math/vec.h"
 #include "relief/error.h"
 
 namespace relief {

@@ -11,16 +11,16 @@
 namespace relief::vulkan::tests {
 namespace {
 
-/// Cancels at the n-th query.
+/// Cancels after passes of so many samples.
 class Canceller final : public RenderObserver {
   public:
-    explicit Canceller(int count) : count_(count) {}
+    explicit Canceller(int samples) : samples_(samples) {}
     void on_progress(const Progress& progress) override { progress_ = progress; }
-    bool is_cancelled() const override { return --count_ < 0; }
+    bool is_cancelled() const override { return progress_.samples_done >= samples_; }
     const Progress& progress() const { return progress_; }
 
   private:
-    mutable int count_;
+    int samples_;
     Progress progress_;
 };
 
