@@ -1,6 +1,7 @@
 // The whole pipeline: scene -> surfaces and levels -> trees -> rays -> film -> image.
 #include "relief/render.h"
 
+#include <ostream>
 #include <utility>
 
 #include "api/make_engine.h"

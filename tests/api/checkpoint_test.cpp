@@ -1,6 +1,7 @@
 // Renders that end early or go on: by noise, by time, from the sums of another render.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <sstream>
 
@@ -28,7 +29,8 @@ Scene make_torus_scene() {
 
 RenderSettings make_settings(int spp) {
     RenderSettings settings;
-    settings.image.width = 60, settings.image.height = 44, settings.image.spp = spp, settings.image.bounces = 2;
+    settings.image.width = 60, settings.image.height = 44, settings.image.spp = spp,
+    settings.image.bounces = 2;
     settings.surface.pixel_error = 3;
     settings.image.layers = {"depth", "N", "samples", "variance"};
     return settings;
@@ -101,7 +103,8 @@ TEST(Checkpoints, come_while_a_picture_is_traced_and_change_nothing) {
     const Image whole = render(make_torus_scene(), make_settings(20)).image;
     Keeper keeper;
     keeper.checkpoints.interval_s = 1e-9;
-    EXPECT_EQ(render(make_torus_scene(), make_settings(20), nullptr, keeper.checkpoints).image.pixels, whole.pixels);
+    EXPECT_EQ(render(make_torus_scene(), make_settings(20), nullptr, keeper.checkpoints).image.pixels,
+              whole.pixels);
     EXPECT_GT(keeper.saves, 20);
 }
 

@@ -1,4 +1,5 @@
-// What is said where Open Image Denoise is missing or is something else; the real library is tested by `make peers`.
+// What is said where Open Image Denoise is missing or is something else; the real library is tested by `make
+// peers`.
 #include "relief/denoise.h"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,9 @@ namespace {
 
 constexpr Window kWindow{5, 3, 45, 30};
 
-Film make_film(ErrorEstimate error = ErrorEstimate::off) { return Film(64, 48, kWindow, {"depth", "P"}, error); }
+Film make_film(ErrorEstimate error = ErrorEstimate::off) {
+    return Film(64, 48, kWindow, {"depth", "P"}, error);
+}
 
 /// A sample whose radiance is 1, and noisy right of column 24.
 FilmSample make_sample(int x, int y, int index) {
@@ -58,7 +60,8 @@ TEST(SamplePlan, ends_passes_at_powers_of_two_and_multiples_of_sixteen) {
     while (plan.start_pass()) {
         ends.push_back(plan.target());
         const std::vector<SampleTask> tasks = plan.list_tasks(16);
-        EXPECT_EQ(tasks.size(), cut_into_windows(kWindow, 16).size()) << "whole tiles where all lack the same";
+        EXPECT_EQ(tasks.size(), cut_into_windows(kWindow, 16).size())
+            << "whole tiles where all lack the same";
         for (const SampleTask& task : tasks) trace(film, task);
         EXPECT_TRUE(plan.list_tasks(16).empty());
     }

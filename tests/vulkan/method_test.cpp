@@ -161,7 +161,8 @@ TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
         Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
         constexpr uint64_t kPixels = 43 * 29;
         for (uint64_t first = 0; first < kPixels; first += paths.capacity()) {
-            const PixelRange range{film.window(), first, std::min<uint64_t>(paths.capacity(), kPixels - first)};
+            const PixelRange range{film.window(), first,
+                                   std::min<uint64_t>(paths.capacity(), kPixels - first)};
             paths.trace_samples(film, {&range, 1}, {0, 2});
         }
         return film.resolve();
