@@ -17,7 +17,7 @@ namespace relief {
 
 namespace {
 
-/// Sets of faces that hang together.
+/// Connected sets of faces (union-find).
 class FaceSets {
   public:
     explicit FaceSets(size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0u); }
@@ -40,7 +40,7 @@ class Coverage {
     double measure_overlap() const;
 
   private:
-    static constexpr size_t kSquares = 256; ///< so many are looked at
+    static constexpr size_t kSquares = 256; ///< at most
 
     int64_t find_square(int64_t cell) const {
         return cell >= 0 ? cell / side_ : -((-cell + side_ - 1) / side_);
@@ -61,7 +61,7 @@ class Coverage {
     std::map<std::pair<int64_t, int64_t>, std::vector<uint8_t>> squares_;
 };
 
-constexpr double kMostCells = 1 << 24; ///< looked at or a little more, so that no mesh takes long
+constexpr double kMostCells = 1 << 24; ///< about: bounds the time of large meshes
 
 struct UvBox {
     Vec2f low, high;

@@ -19,7 +19,7 @@ uint8_t encode_lower(float value, float origin, float scale) {
     return uint8_t(result);
 }
 
-/// Smallest code that decodes to `value` or more; find_exponent has seen to it that 255 does.
+/// Smallest code that decodes to `value` or more; find_exponent ensures that 255 does.
 uint8_t encode_upper(float value, float origin, float scale) {
     const double code = std::ceil((double(value) - origin) / scale);
     int result = int(std::clamp(code, 0.0, 255.0));

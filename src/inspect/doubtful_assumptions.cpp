@@ -1,4 +1,4 @@
-// Maps whose convention nobody stated, against what their values look like.
+// Assumed conventions of maps, compared with what their values look like.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -47,7 +47,7 @@ std::shared_ptr<const Texture> thin_out(const Texture& texture, uint32_t step) {
     return result;
 }
 
-/// The map, with fewer texels where it has more than can be looked at in a moment.
+/// The map, thinned out where it has more texels than can be read in a moment.
 Displacement thin_out(const Displacement& map) {
     Displacement result = map;
     const uint64_t count = count_texels(map);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kColumns = 12, kRows = 24; ///< of a tile; rows lie half a column's width apart
 constexpr float kDiscRadius = 0.72f;     ///< of a scale, in widths of a column: discs cover the plane
-constexpr float kTileLength = 2.15f;     ///< of the torus that wears the map, object units
+constexpr float kTileLength = 2.15f;     ///< of the torus under the map, object units
 
 /// Where a place lies on the scale that shows there.
 struct ScaleHit {

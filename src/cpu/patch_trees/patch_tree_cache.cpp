@@ -298,7 +298,7 @@ void PatchTreeCache::free_retired(TraceContext& context) {
     for (const TraceContext* other = contexts_.load(); other; other = other->next)
         if (const uint64_t epoch = other->epoch.load()) oldest = std::min(oldest, epoch);
     free_older(context, oldest);
-    // Idle workers cannot free what they retired last: whoever needs the room does it for them.
+    // Idle workers cannot free what they retired last: a worker that needs the memory does it for them.
     for (TraceContext* other = contexts_.load(); other; other = other->next) {
         if (other->is_taken.load() || other->is_taken.exchange(true)) continue;
         free_older(*other, oldest);

@@ -124,7 +124,7 @@ class GltfBuilder {
         }
     }
 
-    /// The roots of the file's scene; of a file without one, all nodes that are nobody's children.
+    /// The roots of the file's scene; of a file without one, all nodes without a parent.
     std::vector<const JsonNode*> find_roots() const {
         std::vector<const JsonNode*> roots;
         const std::vector<JsonNode> scenes = file_.list("scenes");

@@ -81,7 +81,7 @@ class SceneWriter {
     }
 
   private:
-    /// Writes a texture once, whoever uses it, and returns its path relative to the scene.
+    /// Writes a texture once, however often it is used; returns its path relative to the scene.
     std::string add_map(const std::shared_ptr<const Texture>& texture, const std::string& name) {
         std::string& file = files_[texture.get()];
         if (file.empty()) {

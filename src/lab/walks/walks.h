@@ -36,7 +36,7 @@ struct WalkCounts {
     uint64_t bytes = 0; ///< of nodes, links and directories; not of primitives
 };
 
-/// Where nobody counts.
+/// Without counting.
 struct NoCounts {};
 
 namespace scalar {

@@ -1,4 +1,4 @@
-// Boxes from the leaves upwards: whoever brings a pair's second child goes on with the parent. Nobody waits.
+// Boxes from the leaves upwards: the invocation of the second child of a pair goes on with the parent, without waiting.
 #include "vulkan/shaders/kernel.glsl"
 #include "lab/vulkan/shaders/lbvh.glsl"
 
