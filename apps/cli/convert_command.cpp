@@ -117,7 +117,11 @@ MapSamples choose_samples(const ConvertOptions& options, const Displacement& fro
 int convert_map_file(const ConvertOptions& options) {
     if (options.level) refuse("--level goes with a mesh to be written", options.output, "-o MESH.ply");
     std::vector<std::string> warnings;
-    const Displacement from = load_map(options.input, options.from, warnings);
+    if (options.from.filter)
+        refuse("--filter goes with --vdm MAP", options.input, "texels are converted one by one");
+    MapOptions meaning = options.from;
+    if (meaning.dequantize) meaning.filter = "cubic"; // dequantize asks for a smooth one
+    const Displacement from = load_map(options.input, meaning, warnings);
     print_warnings(warnings);
     warnings.clear();
     std::optional<Mesh> mesh;
@@ -198,6 +202,15 @@ void add_surface_options(CLI::App& verb, ConvertOptions& options) {
     };
     add("--vdm", "MAP", "the map of a mesh",
         [&](const std::string& text) { options.displacement_map = text; });
+    verb.add_option_function<std::string>(
+            "--filter",
+            [&](const std::string& text) {
+                options.from.filter = text;
+                options.from_given.push_back("--filter");
+            },
+            "of the map: cubic, bspline, mip, none (default)")
+        ->type_name("NAME")
+        ->group(kGroup);
     add("--level", "N", fmt::format("2^N quads a side of each displaced patch; default {}", kUsualLevel),
         [&](const std::string& text) { options.level = int(parse_integer("--level", text, 0, kMaxLevel)); });
     add("--subdivision", "NAME", "of a mesh: catmark, bilinear, none (default)",
@@ -228,6 +241,13 @@ Command add_convert(CLI::App& verb) {
             "--samples", [options](const std::string& text) { set_samples(*options, text); },
             "of the map written: half, float, uint16; default by file")
         ->type_name("NAME");
+    verb.add_flag_callback(
+        "--dequantize",
+        [options] {
+            options->from.dequantize = true;
+            options->from_given.push_back("--dequantize");
+        },
+        "smooth the steps of a map of 8 or 16-bit integers");
     add_surface_options(verb, *options);
     add_map_options(verb, options->from, {"What the map means", "--from,--preset", "", &options->from_given});
     add_map_options(verb, options->to, {"What the new map shall mean", "--to", "to-", &options->to_given});

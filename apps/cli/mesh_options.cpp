@@ -44,43 +44,52 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
             options.subdivision_level =
                 int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
         });
-    add("--filter", "NAME", "of the map where cells are larger than texels: mip, none (default)",
+    add("--filter", "NAME", "of the map: cubic or bspline up close, mip from afar, none (default)",
         [&options](const std::string& text) { options.map.filter = text; });
+    add_flag("--dequantize", "smooth the steps of 8 and 16-bit maps; filter cubic or bspline",
+             options.map.dequantize, true);
     add_flag("--autobump", "shade the map's detail that is finer than the cells", options.map.autobump, true);
     add_flag("--no-dilate", "leave texels between uv islands as the map has them", options.map.dilate, false);
 }
+
+namespace {
+
+using GivenOption = std::pair<bool, const char*>;
+
+void refuse_without_map(const MeshSceneOptions& options, const std::vector<GivenOption>& given) {
+    if (!options.displacement_map.empty()) return;
+    for (const auto& [is_given, name] : given)
+        if (is_given)
+            throw Error(ErrorKind::usage,
+                        {fmt::format("{} says nothing without a map", name), "", "--vdm MAP"});
+}
+
+} // namespace
 
 void check_mesh_options(const MeshSceneOptions& options) {
     if (options.subdivision_level && !options.subdivision)
         throw Error(ErrorKind::usage, {"--subdivision-level says nothing without a scheme",
                                        "--subdivision-level", "--subdivision catmark"});
-    const bool has_use = options.map.filter || options.map.autobump || !options.map.dilate;
-    if (has_use && options.displacement_map.empty())
-        throw Error(ErrorKind::usage,
-                    {fmt::format("{} says nothing without a map", options.map.filter     ? "--filter"
-                                                                  : options.map.autobump ? "--autobump"
-                                                                                         : "--no-dilate"),
-                     "", "--vdm MAP"});
+    const MapOptions& map = options.map;
+    refuse_without_map(options, {{map.filter.has_value(), "--filter"},
+                                 {map.dequantize, "--dequantize"},
+                                 {map.autobump, "--autobump"},
+                                 {!map.dilate, "--no-dilate"}});
 }
 
 void check_map_options(const MeshSceneOptions& options) {
-    if (!options.displacement_map.empty()) return;
     const MapOptions& map = options.map;
-    const std::pair<bool, const char*> given[] = {{!map.preset.empty(), "--preset"},
-                                                  {map.type.has_value(), "--type"},
-                                                  {map.space.has_value(), "--space"},
-                                                  {map.axes.has_value(), "--axes"},
-                                                  {map.frame.has_value(), "--frame"},
-                                                  {map.lengths.has_value(), "--lengths"},
-                                                  {map.encoding.has_value(), "--encoding"},
-                                                  {map.wrap.has_value(), "--wrap"},
-                                                  {map.midlevel.has_value(), "--midlevel"},
-                                                  {map.scale.has_value(), "--vdm-scale"},
-                                                  {map.flip_v, "--flip-v"}};
-    for (const auto& [is_given, name] : given)
-        if (is_given)
-            throw Error(ErrorKind::usage,
-                        {fmt::format("{} says nothing without a map", name), "", "--vdm MAP"});
+    refuse_without_map(options, {{!map.preset.empty(), "--preset"},
+                                 {map.type.has_value(), "--type"},
+                                 {map.space.has_value(), "--space"},
+                                 {map.axes.has_value(), "--axes"},
+                                 {map.frame.has_value(), "--frame"},
+                                 {map.lengths.has_value(), "--lengths"},
+                                 {map.encoding.has_value(), "--encoding"},
+                                 {map.wrap.has_value(), "--wrap"},
+                                 {map.midlevel.has_value(), "--midlevel"},
+                                 {map.scale.has_value(), "--vdm-scale"},
+                                 {map.flip_v, "--flip-v"}});
 }
 
 } // namespace relief::cli

@@ -251,8 +251,8 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
     for (const char* name : {"--surface", "--lod", "--bounce-levels", "--leaf", "--bottom", "--isa",
                              "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name : {"--filter", "--subdivision-level", "--autobump", "--no-dilate", "--type",
-                             "--frame", "--lengths", "--encoding", "--wrap"})
+    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
+                             "--type", "--frame", "--lengths", "--encoding", "--wrap"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 

@@ -10,7 +10,8 @@ namespace relief {
 
 /// Re-encodes `from` in the convention of `to`: its type, space, axes, frame, lengths, midlevel, scale and
 /// flip_v; its tiles are ignored. The result keeps the name, is_udim, wrap, dilate, filter and autobump of
-/// `from`, and holds three channels of 32-bit floats, neither rounded nor clipped. Conversions between
+/// `from`, and holds three channels of 32-bit floats, neither rounded nor clipped; the steps of a map with
+/// dequantize are smoothed then. Conversions between
 /// tangent and object space, or between tangent frames, need `mesh`, which supplies the frames: texels
 /// outside its faces take the frame of the nearest texel inside, up to eight texels away; texels beyond that
 /// hold no displacement. Where a tangent frame is nearly singular (tangents of opposite directions meet

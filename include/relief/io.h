@@ -46,7 +46,7 @@ struct MapOptions {
     std::optional<std::string> type, space, axes, frame, lengths, encoding, wrap, filter;
     std::optional<Vec3f> midlevel, scale; ///< one per channel; of decoded values
     bool flip_v = false;
-    bool dilate = true, autobump = false; ///< see Displacement
+    bool dilate = true, autobump = false, dequantize = false; ///< see Displacement
 };
 
 /// Reads the tiles of a map. `file` may contain `<UDIM>`, `<UVTILE>` or `<uvtile>`. Non-finite values are

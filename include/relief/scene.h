@@ -76,9 +76,12 @@ enum class FrameKind { mikk, dpdu, file };
 /// Unit of tangential displacements: scene units along unit axes, or units of dP/du and dP/dv, so that they
 /// scale with the faces. Displacements along the normal are always in scene units.
 enum class FrameLengths { absolute, relative };
-/// Texel filter of surface samples: bilinear on the map itself, or on the mip level whose texels are as large
-/// as the cells.
-enum class MapFilter { none, mip };
+/// Filter of texels. `none` is bilinear; `mip` bilinear on the mip level whose texels are as large as the
+/// cells of the surface, for displacements alone. Smooth ones, for close-ups: `cubic` is the bicubic spline
+/// through the texels; `bspline` has them as coefficients of a uniform bicubic B-spline, which smooths a
+/// little.
+enum class MapFilter { none, mip, cubic, bspline };
+inline bool is_smooth(MapFilter filter) { return filter == MapFilter::cubic || filter == MapFilter::bspline; }
 
 /// Signed permutation: channel c of the map moves along axis[c] (0, 1, 2 = t, b, n or x, y, z) times sign[c].
 struct AxisMap {
@@ -119,6 +122,8 @@ struct Displacement {
     /// nearest texel inside.
     bool dilate = true;
     MapFilter filter = MapFilter::none;
+    /// Texels of maps of 8 or 16-bit integers are smoothed, each within half a step; a smooth filter only.
+    bool dequantize = false;
     /// Shading normals include detail of the map that is finer than the cells.
     bool autobump = false;
     std::vector<MapTile> tiles;
@@ -135,6 +140,7 @@ struct Material {
     Vec3f emission{0, 0, 0};                           ///< radiance, >= 0
     std::shared_ptr<const Texture> base_color_texture; ///< linear values (the reader decodes sRGB)
     std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
+    MapFilter base_color_filter = MapFilter::none, roughness_filter = MapFilter::none; ///< not mip
 };
 
 /// Visibility mask with all bits set. Renders ignore masks and show all objects.

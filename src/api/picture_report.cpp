@@ -35,6 +35,10 @@ void count_scene(const PreparedScene& scene, Statistics& statistics) {
             statistics.displacement_bytes += tile.texture->byte_count() + tile.pyramid->byte_count();
         }
     }
+    // Texels that a session keeps beside the coefficients made of them.
+    for (const PreparedMap& map : scene.maps)
+        if (map.coefficients && is_new(map.texture.get()))
+            statistics.displacement_bytes += map.texture->byte_count();
 }
 
 namespace {

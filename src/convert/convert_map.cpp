@@ -12,6 +12,7 @@
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "scene/displacement_conventions.h"
+#include "surface/map/spline_coefficients.h"
 #include "surface/map/texels.h"
 
 namespace relief {
@@ -183,11 +184,20 @@ std::shared_ptr<const Texture> encode_all(const Displacement& to, const Texture&
     return texture;
 }
 
+/// Texels that a surface with `dequantize` would show, whatever its filter.
+std::shared_ptr<const Texture> smooth_steps(const Displacement& map,
+                                            const std::shared_ptr<const Texture>& texture) {
+    SplineForm form = make_spline_form(map);
+    form.is_interpolating = false;
+    return make_spline(texture, form);
+}
+
 /// The surface with the frames of `meant` and the tiles of `map`.
 Surface make_framed_surface(const Displacement& map, const Displacement& meant, const Mesh& mesh) {
     Displacement framed = map;
     framed.frame = meant.frame, framed.lengths = meant.lengths;
     framed.space = DisplacementSpace::tangent;
+    framed.filter = MapFilter::none, framed.dequantize = false; // only frames are asked for
     // Tangents are of no use to a height, and not every mesh can have those that are requested.
     if (meant.type == DisplacementType::vector) framed.type = DisplacementType::vector;
     return make_surface(mesh, &framed, Affine{});
@@ -209,9 +219,11 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
     if (turns && uses_frames(from)) source_frames = make_framed_surface(from, from, *mesh);
     if (turns && uses_frames(to)) target_frames = make_framed_surface(from, to, *mesh);
     for (size_t k = 0; k < from.tiles.size(); ++k) {
-        const Texture& source = *from.tiles[k].texture;
-        const TexelRectangle all{0, 0, source.width - 1, source.height - 1};
-        if (!find_texel_range(source, all)) refuse_bad_texel(source, all);
+        const Texture& stored = *from.tiles[k].texture;
+        const TexelRectangle all{0, 0, stored.width - 1, stored.height - 1};
+        if (!find_texel_range(stored, all)) refuse_bad_texel(stored, all);
+        const std::shared_ptr<const Texture> texels = smooth_steps(from, from.tiles[k].texture);
+        const Texture& source = *texels;
         Field field = decode_all(from, source);
         if (source_frames) field = change_to_object(*source_frames, uint8_t(k), field);
         Misses misses;

@@ -335,8 +335,10 @@ PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) cons
     PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
                     material.ior};
     if (material.base_color_texture)
-        m.base_color = m.base_color * fetch_texture(*material.base_color_texture, uv);
-    if (material.roughness_texture) m.roughness *= fetch_texture(*material.roughness_texture, uv).x;
+        m.base_color =
+            m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);
+    if (material.roughness_texture)
+        m.roughness *= fetch_texture(*material.roughness_texture, material.roughness_filter, uv).x;
     m.base_color = scalar::limit_color(m.base_color);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
     return m;

@@ -43,6 +43,20 @@ FN Float blend_cubic(Float p0, Float p1, Float p2, Float p3, CubicWeights weight
     return r;
 }
 
+/// Weights at s in [0, 1) of the coefficients at -1, 0, 1 and 2 of a uniform cubic B-spline (de Boor 1978):
+/// none is negative and their sum is 1, both up to rounding.
+FN CubicWeights weigh_spline(Float s) {
+    const Float sixth = Float(0.16666667163372039794921875f);
+    const Float two_thirds = Float(0.66666668653488159179687500f);
+    EXACT Float r = Float(1.0f) - s;
+    EXACT Float first = r * r * r * sixth;
+    EXACT Float second = two_thirds - s * s * (Float(1.0f) - Float(0.5f) * s);
+    EXACT Float third = two_thirds - r * r * (Float(1.0f) - Float(0.5f) * r);
+    EXACT Float fourth = s * s * s * sixth;
+    CubicWeights weights = {first, second, third, fourth};
+    return weights;
+}
+
 /// Derivative at s of the cubic curve whose neighbouring control points differ by d0 d1 d2.
 FN Float blend_slope(Float d0, Float d1, Float d2, Float s) {
     Float r = Float(1.0f) - s;

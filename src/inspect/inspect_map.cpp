@@ -33,6 +33,20 @@ SampleTypeName describe_type(SampleType type) {
     return kTypes[size_t(type)];
 }
 
+/// What a smooth filter takes beside the file's own texels.
+Fact describe_filter(const Displacement& map) {
+    const char* name = map.filter == MapFilter::cubic ? "cubic" : "bspline";
+    if (map.filter == MapFilter::bspline && !map.dequantize)
+        return {"filter", "bspline: the texels are the coefficients", {{"", 0, "bytes"}}};
+    double bytes = 0;
+    for (const MapTile& tile : map.tiles)
+        bytes += double(tile.texture->width) * tile.texture->height * 4 * sizeof(float);
+    return {"filter",
+            fmt::format("{}{}: coefficients of 32-bit floats in place of the texels, {:.0f} bytes", name,
+                        map.dequantize ? ", dequantised" : "", bytes),
+            {{"", bytes, "bytes"}}};
+}
+
 void describe_files(const Displacement& map, const MapStatistics& statistics, std::vector<Fact>& facts) {
     const Texture& first = *map.tiles.front().texture;
     size_t bytes = 0;
@@ -55,6 +69,7 @@ void describe_files(const Displacement& map, const MapStatistics& statistics, st
     const SampleTypeName type = describe_type(statistics.type);
     facts.push_back({"type", type.name, {{"", type.bits, "bits"}}});
     facts.push_back({"memory", fmt::format("{} bytes", bytes), {{"", double(bytes), "bytes"}}});
+    if (is_smooth(map.filter)) facts.push_back(describe_filter(map));
     for (size_t c = 0; c < std::min<size_t>(3, statistics.channel_count); ++c) {
         const ChannelStatistics& channel = statistics.channels[c];
         facts.push_back(

@@ -69,10 +69,10 @@ void find_unsigned(const Displacement& map, MapMeaning meaning, const MapStatist
 
 void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                         std::vector<Finding>& findings) {
-    if (statistics.type == SampleType::uint8)
+    if (statistics.type == SampleType::uint8 && !map.dequantize)
         add_warning(findings, "W-8BIT",
                     "8-bit map: one step is {:.3g} scene units at scale {:g}, which shows as stairs; export "
-                    "16 or 32 bit float EXR",
+                    "16 or 32 bit float EXR, or smooth them by dequantize under filter cubic",
                     get_largest_scale(map) / 255, get_largest_scale(map));
     const bool is_wide = statistics.type == SampleType::uint16 || statistics.type == SampleType::uint32;
     if (is_wide && !knows_midlevel(map, meaning))

@@ -73,8 +73,42 @@ std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) 
     return list;
 }
 
-/// Lists the maps and their smaller copies, dilated: in copies, since textures of the scene may be shared.
+/// Coefficients in place of texels, once for each form of an image. Keeps the images alive.
+class SplineCache {
+  public:
+    std::shared_ptr<const Texture> get_or_make(const std::shared_ptr<const Texture>& texels,
+                                               const SplineForm& form) {
+        if (!texels || form.keeps_texels()) return texels;
+        Entry& entry = entries_[{texels.get(), form}];
+        if (!entry.coefficients) entry = {texels, make_spline(texels, form)};
+        return entry.coefficients;
+    }
+
+  private:
+    struct Entry {
+        std::shared_ptr<const Texture> texels, coefficients;
+    };
+    std::map<std::pair<const Texture*, SplineForm>, Entry> entries_;
+};
+
+/// Textures of materials with a smooth filter become coefficients.
+void prepare_textures(std::vector<Material>& materials) {
+    SplineCache splines;
+    const auto prepare = [&](std::shared_ptr<const Texture>& texture, MapFilter& filter) {
+        if (!is_smooth(filter)) return;
+        texture = splines.get_or_make(texture, make_spline_form(filter));
+        filter = MapFilter::bspline;
+    };
+    for (Material& material : materials) {
+        prepare(material.base_color_texture, material.base_color_filter);
+        prepare(material.roughness_texture, material.roughness_filter);
+    }
+}
+
+/// Lists the maps and their smaller copies, dilated, smooth ones as coefficients: in copies, since textures
+/// of the scene may be shared.
 void prepare_maps(Scene& scene, EditableScene& prepared) {
+    SplineCache splines;
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         Displacement& displacement = scene.displacements[k];
         const std::vector<const Mesh*> meshes = list_meshes(scene, k);
@@ -95,10 +129,19 @@ void prepare_maps(Scene& scene, EditableScene& prepared) {
                 if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
                 mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
             }
-            prepared.scene->maps.push_back(
-                {displacement.name, tile.udim, tile.texture, std::move(gutter), mips, source});
+            PreparedMap map;
+            map.displacement = displacement.name, map.udim = tile.udim;
+            map.texture = tile.texture, map.gutter = std::move(gutter), map.mips = mips;
+            map.form = make_spline_form(displacement);
+            map.source = source;
+            if (!map.form.keeps_texels() && !meshes.empty())
+                tile.texture = map.coefficients = splines.get_or_make(tile.texture, map.form);
+            prepared.scene->maps.push_back(std::move(map));
             prepared.mips.push_back(std::move(mips));
         }
+        // What the surfaces get are coefficients now.
+        if (is_smooth(displacement.filter) && !meshes.empty())
+            displacement.filter = MapFilter::bspline, displacement.dequantize = false;
     }
 }
 
@@ -169,6 +212,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     // Before anything else is moved out of the scene.
     for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
     prepared->materials = std::move(scene.materials);
+    prepare_textures(prepared->materials);
     prepared->materials.emplace_back();
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
@@ -208,7 +252,10 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
 }
 
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
-    return prepare_editable_scene(std::move(scene), settings).scene;
+    const std::shared_ptr<PreparedScene> prepared = prepare_editable_scene(std::move(scene), settings).scene;
+    for (PreparedMap& map : prepared->maps)
+        if (map.coefficients) map.texture = nullptr;
+    return prepared;
 }
 
 } // namespace relief

@@ -12,6 +12,7 @@
 #include "relief/scene.h"
 #include "surface/map/gutter.h"
 #include "surface/map/mip_chain.h"
+#include "surface/map/spline_coefficients.h"
 #include "surface/patch/level_field.h"
 #include "surface/patch/surface.h"
 
@@ -32,9 +33,12 @@ struct Instance {
 struct PreparedMap {
     std::string displacement;
     int udim = 1001;
-    std::shared_ptr<const Texture> texture;
-    GutterFill gutter;                    ///< worked into the texture already
-    std::shared_ptr<const MipChain> mips; ///< of that texture; null: not filtered
+    std::shared_ptr<const Texture> texture; ///< null: no editor needs it, or no object uses it
+    GutterFill gutter;                      ///< worked into the texture already
+    std::shared_ptr<const MipChain> mips;   ///< of that texture; null: not filtered
+    std::shared_ptr<const Texture>
+        coefficients;             ///< of a smooth filter, in place of the texture; null: that itself
+    SplineForm form;              ///< what they are
     const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -47,6 +48,11 @@ uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
     return sum.value();
 }
 
+/// What surfaces read of a map.
+const Texture* get_image(const PreparedMap& map) {
+    return map.coefficients ? map.coefficients.get() : map.texture.get();
+}
+
 void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {
     for (size_t k = 0; k < all.size(); ++k) all[k] |= added[k];
 }
@@ -83,8 +89,21 @@ void SceneEditor::own_maps() {
             tile.texture = textures_[place->second].texture, tile.pyramid = textures_[place->second].pyramid;
         }
     for (PreparedMap& map : scene_->maps) {
-        const auto found = copy_of.find(map.texture.get());
-        map.texture = found == copy_of.end() ? nullptr : textures_[found->second].texture;
+        const auto found = copy_of.find(get_image(map));
+        if (found == copy_of.end()) {
+            map.texture = nullptr;
+            continue;
+        }
+        if (map.coefficients) {
+            map.coefficients = textures_[found->second].texture;
+            const auto [place, is_new] = copy_of.try_emplace(map.texture.get());
+            if (is_new) {
+                EditableMap texels{std::make_shared<Texture>(*map.texture), nullptr};
+                place->second = texels.texture.get();
+                textures_[place->second] = std::move(texels);
+            }
+        }
+        map.texture = textures_[copy_of.at(map.texture.get())].texture;
     }
 }
 
@@ -136,7 +155,8 @@ CheckedEdit SceneEditor::check(const MapEdit& edit) const {
     checked.maps_ = find_copies(edit);
     for (const size_t map : checked.maps_) {
         check_rectangle(edit, *scene_->maps[map].texture);
-        check_values(edit, *scene_->maps[map].texture);
+        for (const PreparedMap& user : scene_->maps)
+            if (user.texture == scene_->maps[map].texture) check_values(edit, *get_image(user));
     }
     return checked;
 }
@@ -147,7 +167,7 @@ void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>&
     copy_texels(edit.texels, *map.texture, edit.x, edit.y);
     const TexelRectangle changed = prepared.gutter.follow(
         *map.texture, {edit.x, edit.y, edit.x + edit.texels.width - 1, edit.y + edit.texels.height - 1});
-    map.pyramid->update(*map.texture, changed);
+    if (map.pyramid) map.pyramid->update(*map.texture, changed);
     std::map<const MipChain*, std::vector<TexelRectangle>> rectangles{{nullptr, {changed}}};
     for (size_t user = 0; user < scene_->maps.size(); ++user) {
         MipChain* mips = mips_[user].get();
@@ -159,6 +179,23 @@ void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>&
     visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
         readings.push_back({index, tile, rectangles.at(surface.map.tiles[tile].mips.get())});
     });
+    update_splines(prepared.texture, changed, readings);
+}
+
+/// Of the maps whose coefficients were made of `texels`.
+void SceneEditor::update_splines(const std::shared_ptr<const Texture>& texels, const TexelRectangle& changed,
+                                 std::vector<Reading>& readings) {
+    std::set<const Texture*> done;
+    for (const PreparedMap& map : scene_->maps) {
+        if (map.texture != texels || !map.coefficients || !done.insert(map.coefficients.get()).second)
+            continue;
+        EditableMap& image = textures_.at(map.coefficients.get());
+        const TexelRectangle reached = update_spline(*texels, map.form, changed, *image.texture);
+        image.pyramid->update(*image.texture, reached);
+        visit_users(*image.texture, [&](uint32_t index, const Surface&, uint8_t tile) {
+            readings.push_back({index, tile, {reached}});
+        });
+    }
 }
 
 /// One a surface.

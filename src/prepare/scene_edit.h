@@ -53,7 +53,7 @@ class SceneEditor {
     };
     struct EditableMap {
         std::shared_ptr<Texture> texture;
-        std::shared_ptr<BoundsPyramid> pyramid;
+        std::shared_ptr<BoundsPyramid> pyramid; ///< null: no surface reads the texture itself
     };
 
     void own_maps();
@@ -62,6 +62,8 @@ class SceneEditor {
     template <class Visit> void visit_users(const Texture& texture, const Visit& visit) const;
     void check_values(const MapEdit& edit, const Texture& map) const;
     void paint(const MapEdit& edit, size_t named, std::vector<Reading>& readings);
+    void update_splines(const std::shared_ptr<const Texture>& texels, const TexelRectangle& changed,
+                        std::vector<Reading>& readings);
     std::vector<SurfaceChange> find_changes(const std::vector<Reading>& readings) const;
     void extend_reach(uint32_t surface, std::vector<float>& reach) const;
     void find_different_patches(const std::vector<Reading>& readings, const std::vector<float>& reach,

@@ -7,6 +7,7 @@
 
 #include "base/suggest.h"
 #include "relief/error.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -55,6 +56,31 @@ const MapPreset& find_preset(std::string_view name) {
                      "which are nowhere listed: give the axes, as an inspection of the map names them"});
     throw Error(ErrorKind::bad_input,
                 {fmt::format("unknown preset '{}'", name), "", suggest_word(name, get_preset_names())});
+}
+
+MapFilter parse_texture_filter(std::string_view text) {
+    const auto filter = parse_word<MapFilter>(text);
+    if (filter == MapFilter::mip)
+        throw Error(ErrorKind::bad_input,
+                    {"filter mip is for displacement maps", "", "none, cubic or bspline"});
+    return filter;
+}
+
+void check_dequantize(const Displacement& map) {
+    if (!map.dequantize) return;
+    const std::string where = fmt::format("displacement '{}'", map.name);
+    if (!is_smooth(map.filter))
+        throw Error(ErrorKind::bad_input,
+                    {"dequantize needs a smooth filter: between texels a bilinear one keeps "
+                     "the stairs",
+                     where, "filter = cubic"});
+    for (const MapTile& tile : map.tiles)
+        if (tile.texture && tile.texture->source_type != SampleType::uint8 &&
+            tile.texture->source_type != SampleType::uint16)
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("dequantize is for maps of 8 or 16-bit integers, which {} is not",
+                                     tile.texture->file),
+                         where, "leave it out: floats have no steps"});
 }
 
 AxisText parse_axes(std::string_view text) {

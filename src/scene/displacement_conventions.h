@@ -31,4 +31,10 @@ std::span<const std::string_view> get_preset_names();
 /// Throws bad_input for an unknown name, and for ZBrush, whose codes say no order by themselves.
 const MapPreset& find_preset(std::string_view name);
 
+/// Of a material's texture: any filter but mip.
+MapFilter parse_texture_filter(std::string_view text);
+/// Throws bad_input where `dequantize` is set but the filter is not smooth, or a tile is not of integers of 8
+/// or 16 bits.
+void check_dequantize(const Displacement& map);
+
 } // namespace relief

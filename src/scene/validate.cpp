@@ -9,6 +9,7 @@
 #include "math/box.h"
 #include "relief/error.h"
 #include "relief/scene.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 
@@ -164,8 +165,9 @@ void check_displacement(const Displacement& map, size_t index) {
     }
     if (used != 7) fail(where, "axes are no permutation");
     if (map.type > DisplacementType::height || map.space > DisplacementSpace::world ||
-        map.wrap > WrapMode::black || map.filter > MapFilter::mip)
+        map.wrap > WrapMode::black || map.filter > MapFilter::bspline)
         fail(where, "type, space, wrap or filter is none of those there are");
+    check_dequantize(map);
     check_frame(where, map);
     check_range(where, "midlevel", map.midlevel, -kHuge, kHuge);
     check_range(where, "scale", map.scale, -kHuge, kHuge);
@@ -178,6 +180,9 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "metallic", material.metallic, 0, 1);
     check_range(where, "ior", material.ior, 1, kHuge);
     check_range(where, "emission", material.emission, 0, kHuge);
+    for (const MapFilter filter : {material.base_color_filter, material.roughness_filter})
+        if (filter == MapFilter::mip || filter > MapFilter::bspline)
+            fail(where, "a filter of its textures is neither none, cubic nor bspline");
     if (material.base_color_texture)
         check_texture(where + ", base_color_texture", *material.base_color_texture);
     if (material.roughness_texture) check_texture(where + ", roughness_texture", *material.roughness_texture);

@@ -21,7 +21,7 @@ struct EnumWords {
 template <class Value> inline constexpr EnumWords kWords{};
 template <> inline constexpr EnumWords kWords<DisplacementType>{"type", {"vector", "height"}};
 template <> inline constexpr EnumWords kWords<DisplacementSpace>{"space", {"tangent", "object", "world"}};
-template <> inline constexpr EnumWords kWords<MapFilter>{"filter", {"none", "mip"}};
+template <> inline constexpr EnumWords kWords<MapFilter>{"filter", {"none", "mip", "cubic", "bspline"}};
 template <> inline constexpr EnumWords kWords<WrapMode>{"wrap", {"clamp", "repeat", "mirror", "black"}};
 template <> inline constexpr EnumWords kWords<MapEncoding>{"encoding", {"float", "signed"}};
 template <> inline constexpr EnumWords kWords<FrameKind>{"frame", {"mikk", "dpdu", "file"}};

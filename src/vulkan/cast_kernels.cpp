@@ -59,7 +59,7 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
     commit_round = Kernel(device, {"commit_round", {kGroup}});
-    finish_hits = Kernel(device, {"finish_hits", {kGroup, is_box}});
+    finish_hits = Kernel(device, {"finish_hits", scene.add_filter({kGroup, is_box})});
 
     const std::array<uint32_t, scalar::kBuildBinCount> lanes = choose_lanes(is_cpu);
     const uint32_t build_group = is_cpu ? 8 : 64;
@@ -68,7 +68,8 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {
         if (!is_fused && has_trees(scene.tree_levels(), is_coarser, bin))
             bottom_build[bin].emplace(
-                device, KernelConfig{"bottom_build", {build_group, lanes[bin], kDeepest[bin], bin}});
+                device, KernelConfig{"bottom_build",
+                                     scene.add_filter({build_group, lanes[bin], kDeepest[bin], bin})});
         arguments_push.builds_per_group[bin] = build_group / lanes[bin];
     }
     if (!is_fused) {
@@ -82,8 +83,8 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
                         : is_cpu                     ? kAll
                                                      : device.resident_group_count() * 256 / kGroup;
     bottom_fused =
-        Kernel(device, {"bottom_fused",
-                        {kGroup, kGroup, scalar::kTreeLevels, 0, is_box, most_pairs, fused_jobs_per_group}});
+        Kernel(device, {"bottom_fused", scene.add_filter({kGroup, kGroup, scalar::kTreeLevels, 0, is_box,
+                                                          most_pairs, fused_jobs_per_group})});
     has_leftover = most_pairs != kAll;
     if (has_leftover) leftover = Kernel(device, {"patch_traversal", {kGroup, 0, 0, 0, is_box, most_pairs}});
 }

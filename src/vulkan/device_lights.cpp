@@ -28,10 +28,14 @@ Buffer make_table(const Device& device, const char* name, TexelFormat format, co
 std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                                                  const DeviceScene& device_scene) {
     std::vector<scalar::MaterialData> result;
+    const auto find_index = [&](const std::shared_ptr<const Texture>& texture, MapFilter filter) {
+        const uint32_t index = device_scene.texture_index(texture.get());
+        return texture && is_smooth(filter) ? index | scalar::kSplineTexture : index;
+    };
     for (const Material& material : scene.materials)
         result.push_back({material.base_color, material.roughness, material.emission, material.metallic,
-                          material.ior, device_scene.texture_index(material.base_color_texture.get()),
-                          device_scene.texture_index(material.roughness_texture.get())});
+                          material.ior, find_index(material.base_color_texture, material.base_color_filter),
+                          find_index(material.roughness_texture, material.roughness_filter)});
     return result;
 }
 

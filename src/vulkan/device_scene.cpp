@@ -83,6 +83,13 @@ uint32_t DeviceScene::texture_index(const Texture* texture) const {
     return texture ? texture_indices_.at(texture) : kNone;
 }
 
+std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) const {
+    if (!has_smooth_) return constants;
+    constants.resize(scalar::kSmoothConstant + 1);
+    constants[scalar::kSmoothConstant] = 1;
+    return constants;
+}
+
 void DeviceScene::add_textures(const Device& device, const PreparedScene& scene) {
     TexelStore store;
     const auto add = [&](const std::shared_ptr<const Texture>& texture) {
@@ -99,6 +106,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     for (const Material& material : scene.materials) {
         add(material.base_color_texture);
         add(material.roughness_texture);
+        has_smooth_ |= is_smooth(material.base_color_filter) || is_smooth(material.roughness_filter);
     }
     if (scene.environment) add(scene.environment->texture);
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
@@ -113,6 +121,8 @@ void DeviceScene::add_map(const Surface& surface) {
     data.wrap = uint32_t(map.wrap);
     data.flip_v = map.flip_v;
     data.is_tangent = map.is_tangent;
+    data.is_smooth = map.is_smooth;
+    has_smooth_ |= map.is_smooth;
     // Tiles of a map must be consecutive, so tiles shared with another map are listed again.
     data.first_tile = uint32_t(tables_.textures.size());
     data.tile_count = uint32_t(map.tiles.size());

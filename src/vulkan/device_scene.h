@@ -35,6 +35,9 @@ class DeviceScene {
     const Buffer& nodes() const { return nodes_; }
     /// Index into the table of textures; scalar::kNone for null.
     uint32_t texture_index(const Texture* texture) const;
+    /// Constants of a kernel that reads maps or textures, with scalar::kSmoothConstant where the scene needs
+    /// it.
+    std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
 
   private:
     struct Tables {
@@ -58,6 +61,7 @@ class DeviceScene {
     TraversalKernel traversal_kernel_{"scene_traversal", {}, {}};
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
     size_t node_count_ = 0;
+    bool has_smooth_ = false;
     struct Binding {
         uint32_t number;
         Buffer buffer;

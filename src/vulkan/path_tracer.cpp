@@ -30,6 +30,12 @@ Kernel make_kernel(const Device& device, const char* shader) {
     return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
 }
 
+/// One that reads maps or textures.
+Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
+    return Kernel(tracer.device(),
+                  {.shader = shader, .constants = tracer.device_scene().add_filter({kGroupSize})});
+}
+
 template <class T>
 Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint64_t least_bytes = 0) {
     return Buffer(device, {.name = name,
@@ -63,12 +69,12 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
     background_ = make_kernel(device, "background");
-    surface_point_ = make_kernel(device, "surface_point");
-    shading_normal_ = make_kernel(device, "shading_normal");
-    light_sample_ = make_kernel(device, "light_sample");
-    bounce_ = make_kernel(device, "bounce");
+    surface_point_ = make_reading_kernel(tracer, "surface_point");
+    shading_normal_ = make_reading_kernel(tracer, "shading_normal");
+    light_sample_ = make_reading_kernel(tracer, "light_sample");
+    bounce_ = make_reading_kernel(tracer, "bounce");
     far_rays_ = make_kernel(device, "far_rays");
-    inner_hits_ = make_kernel(device, "inner_hits");
+    inner_hits_ = make_reading_kernel(tracer, "inner_hits");
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
     make_buffers();

@@ -39,7 +39,7 @@ Rasteriser::Rasteriser(Tracer& tracer, const RasterBuffers& buffers)
     : tracer_(tracer),
       buffers_(buffers),
       start_(make_kernel(tracer.device(), "raster_start")),
-      vertices_(make_kernel(tracer.device(), "raster_vertices")),
+      vertices_(tracer.device(), {"raster_vertices", tracer.device_scene().add_filter({kGroupSize})}),
       cells_(tracer.device(), {"raster_rays", {kGroupSize}, {}, "raster_cells"}),
       resolve_(make_kernel(tracer.device(), "raster_resolve")) {
     DCHECK(buffers.vertices->byte_count() >= RasterBuffers::kLeastVertexBytes);

@@ -30,7 +30,8 @@ RayHit make_ray_hit(const scalar::HitData& found, const scalar::SurfacePointData
 RayBatch::RayBatch(Tracer& tracer)
     : tracer_(tracer),
       capacity_(tracer.config().ray_capacity),
-      geometric_normal_(tracer.device(), {.shader = "geometric_normal", .constants = {kGroupSize}}),
+      geometric_normal_(tracer.device(), {.shader = "geometric_normal",
+                                          .constants = tracer.device_scene().add_filter({kGroupSize})}),
       list_(tracer.device(), {.name = "ray list", .bytes = uint64_t(capacity_) * sizeof(uint32_t)}),
       points_(tracer.device(),
               {.name = "points of rays", .bytes = uint64_t(capacity_) * sizeof(scalar::SurfacePointData)}) {

@@ -108,6 +108,35 @@ TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
     }
 }
 
+TEST(Session, edits_reach_the_coefficients_of_a_smooth_map) {
+    for (const bool is_dequantized : {false, true})
+        for (const MapFilter filter : {MapFilter::cubic, MapFilter::bspline}) {
+            Scene fresh =
+                make_torus_scene(is_dequantized ? DisplacementSpace::object : DisplacementSpace::tangent);
+            fresh.displacements[0].filter = filter;
+            if (is_dequantized) {
+                auto stairs = std::make_shared<Texture>(*fresh.displacements[0].tiles[0].texture);
+                stairs->source_type = SampleType::uint16;
+                fresh.displacements[0].tiles[0].texture = stairs;
+                fresh.displacements[0].dequantize = true;
+            }
+            const RenderSettings settings = make_settings();
+            Session session(fresh, settings);
+            Image before = session.render().image;
+            expect_same(before, render(fresh, settings).image);
+            for (const MapEdit& edit : {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f)}) {
+                EXPECT_GT(session.edit(edit).patches, 0u);
+                bake(fresh, edit);
+                Image after = session.render().image;
+                expect_same(after, render(fresh, settings).image);
+                EXPECT_GT(count_differing(before, after), 100u);
+                before = after;
+            }
+            fresh.displacements[0].filter = MapFilter::none, fresh.displacements[0].dequantize = false;
+            EXPECT_GT(count_differing(before, render(fresh, settings).image), 100u) << "nothing was smooth";
+        }
+}
+
 TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
     const auto expect_follows = [](const RenderSettings& settings) {
         Scene fresh = make_torus_scene(DisplacementSpace::tangent);

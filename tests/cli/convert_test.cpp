@@ -58,6 +58,25 @@ TEST_F(Convert, integers_take_a_scale_that_fits_and_say_it) {
     EXPECT_FALSE(exists("s.png"));
 }
 
+TEST_F(Convert, steps_of_integers_are_smoothed_where_that_is_asked_for) {
+    ASSERT_EQ(run({"convert", "bump.exr", "--from", "genvdm", "-o", "w.png"}).exit_code, 0);
+    const std::vector<std::string> same = {"convert", "w.png", "--midlevel", "0.5", "--vdm-scale", "65535"};
+    const auto write = [&](const std::string& file, std::vector<std::string> options) {
+        options.insert(options.begin(), same.begin(), same.end());
+        options.insert(options.end(), {"-o", file});
+        return run(options);
+    };
+    ASSERT_EQ(write("stairs.exr", {}).exit_code, 0);
+    ASSERT_EQ(write("smooth.exr", {"--dequantize"}).exit_code, 0);
+    EXPECT_GT(compare("stairs.exr", "smooth.exr"), 0.1);
+    EXPECT_LT(compare("stairs.exr", "smooth.exr"), 0.51) << "steps";
+    const CommandResult floats = run({"convert", "bump.exr", "--dequantize", "-o", "f.exr"});
+    EXPECT_EQ(floats.exit_code, 3);
+    EXPECT_TRUE(contains(floats.errors, "maps of 8 or 16-bit integers")) << floats.errors;
+    expect_refused({"convert", "bump.exr", "--filter", "cubic", "-o", "f.exr"},
+                   "--filter goes with --vdm MAP");
+}
+
 TEST_F(Convert, samples_and_tiles_are_as_asked_for) {
     ASSERT_EQ(run({"convert", "bump.exr", "--samples", "half", "-o", "h.exr"}).exit_code, 0);
     EXPECT_EQ(read_texture(folder_ / "h.exr").source_type, SampleType::float16);

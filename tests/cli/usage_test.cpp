@@ -100,6 +100,9 @@ TEST_F(Usage, options_that_say_how_a_map_is_read_need_one) {
     expect_refused({"render", "plane.obj", "--no-dilate"}, "--no-dilate says nothing without a map");
     expect_refused({"render", "plane.obj", "--filter", "mip"}, "--filter says nothing without a map");
     expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--filter", "mipp"}, "did you mean 'mip'", 3);
+    expect_refused({"render", "plane.obj", "--dequantize"}, "--dequantize says nothing without a map");
+    expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--dequantize"},
+                   "dequantize needs a smooth filter", 3);
     expect_refused({"render", "plane.obj", "--preset", "nonsense"}, "--preset says nothing without a map");
     for (const char* option : {"--type", "--space", "--axes", "--frame", "--lengths", "--encoding", "--wrap"})
         expect_refused({"render", "plane.obj", option, "x"}, std::string(option) + " says nothing");

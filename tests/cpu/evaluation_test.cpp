@@ -141,6 +141,23 @@ TEST(Evaluation, is_the_definition_of_filtered_maps) {
         }
 }
 
+TEST(Evaluation, is_the_definition_of_smooth_maps) {
+    for (const MapFilter filter : {MapFilter::cubic, MapFilter::bspline})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat, WrapMode::mirror, WrapMode::black})
+            for (const uint32_t width : {37u, 150u}) { // many and few samples a texel
+                auto map = test::make_random_map(width, width - 14, 0.1f, 3);
+                if (wrap == WrapMode::mirror) map = to_halves(*map);
+                Displacement displacement = test::make_displacement(
+                    map, wrap == WrapMode::repeat ? DisplacementSpace::object : DisplacementSpace::tangent);
+                displacement.wrap = wrap, displacement.filter = filter;
+                displacement.midlevel = {0.01f, -0.02f, 0.03f};
+                displacement.flip_v = width == 150;
+                expect_definition(displacement,
+                                  width == 37 ? SubdivisionScheme::none : SubdivisionScheme::catmark);
+                if (testing::Test::HasFatalFailure()) return;
+            }
+}
+
 TEST(Evaluation, is_the_definition_on_bicubic_patches) {
     for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
         for (const WrapMode wrap : {WrapMode::clamp, WrapMode::black}) {

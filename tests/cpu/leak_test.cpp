@@ -24,7 +24,7 @@ constexpr uint64_t kDefaultRays = 10000000;
 constexpr uint64_t kBatch = 4096;
 
 enum class Body { sphere, torus, creased };
-enum class Uvs { everywhere, missing_on_some_faces };
+enum class Uvs { everywhere, missing_on_some_faces, in_two_tiles };
 enum class Placement { single, instances };
 
 struct Case {
@@ -77,6 +77,21 @@ const Case kCases[] = {
     {"smooth_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::object, kAutoLevel,
      Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::mip,
      Uvs::missing_on_some_faces},
+    {"cubic_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic},
+    {"cubic_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute,
+     MapFilter::cubic},
+    {"cubic_torus_object_level6", Body::torus, DisplacementSpace::object, 6, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic},
+    {"bspline_creased_cube_tangent_auto", Body::creased, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute,
+     MapFilter::bspline},
+    {"cubic_torus_in_two_tiles_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic, Uvs::in_two_tiles},
+    {"cubic_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic,
+     Uvs::missing_on_some_faces},
 };
 
 uint64_t ray_count() {
@@ -125,6 +140,8 @@ Scene make_scene(const Case& c) {
                 : c.body == Body::creased ? test::make_shape(test::Shape::tangled_cube)
                                           : test::make_torus(8, 14);
     if (c.uvs == Uvs::missing_on_some_faces) test::remove_uvs(mesh, 5);
+    if (c.uvs == Uvs::in_two_tiles)
+        for (Vec2f& uv : mesh.uvs) uv.x *= 2;
     mesh.subdivision.scheme = c.scheme;
     mesh.subdivision.level = c.body == Body::sphere ? 1 : c.body == Body::creased ? 2 : 0;
     Scene scene = test::make_body_scene(
@@ -132,6 +149,10 @@ Scene make_scene(const Case& c) {
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::torus ? 0.06f : 0.12f, 21),
                                 c.space));
     scene.displacements[0].filter = c.filter;
+    if (c.uvs == Uvs::in_two_tiles) {
+        scene.displacements[0].is_udim = true;
+        scene.displacements[0].tiles.push_back({1002, test::make_random_map(160, 224, 0.06f, 22)});
+    }
     test::set_frames(scene, c.frame, c.lengths);
     // Close to one side: levels differ from patch to patch, and many edges are coarser than their patches.
     scene.camera.from = c.body == Body::torus ? Vec3f{1.2f, 0.1f, 0.1f} : Vec3f{0.75f, 0.1f, 0.2f};

@@ -132,6 +132,18 @@ TEST(SurfacePoints, are_the_same_on_filtered_maps_with_detail_in_the_normals) {
         }
 }
 
+TEST(SurfacePoints, are_the_same_on_smooth_maps) {
+    for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
+        for (const MapFilter filter : {MapFilter::cubic, MapFilter::bspline}) {
+            Displacement displacement =
+                test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), space);
+            displacement.filter = filter;
+            displacement.wrap = filter == MapFilter::cubic ? WrapMode::clamp : WrapMode::repeat;
+            expect_same_points(displacement);
+            if (testing::Test::HasFailure()) return;
+        }
+}
+
 TEST(SurfacePoints, are_the_same_through_derivatives) {
     Displacement displacement =
         test::make_displacement(test::make_random_map(64, 48, 0.02f, 3), DisplacementSpace::tangent);

@@ -74,6 +74,14 @@ TEST(ThreeWays, bark_is_the_same_direct_and_tessellated) {
     for (const int level : {3, 4}) expect_same_hits(scene, level);
 }
 
+TEST(ThreeWays, smooth_bark_is_the_same_direct_and_tessellated) {
+    Scene scene = make_sample_scene("bark", Instancing::none);
+    for (const MapFilter filter : {MapFilter::cubic, MapFilter::bspline}) {
+        for (Displacement& displacement : scene.displacements) displacement.filter = filter;
+        for (const int level : {3, 4}) expect_same_hits(scene, level);
+    }
+}
+
 } // namespace
 
 } // namespace relief

@@ -101,6 +101,7 @@ struct Case {
     int level;
     uint32_t bias;
     SubdivisionScheme scheme = SubdivisionScheme::none;
+    MapFilter filter = MapFilter::none;
 };
 
 void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
@@ -116,6 +117,7 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
         test::make_cube_sphere(2), test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), c.space));
     scene.meshes[0].subdivision.scheme = c.scheme;
     scene.meshes[0].subdivision.level = 1;
+    scene.displacements[0].filter = c.filter;
     scene.camera.from = {2.5f, 0.4f, 0.6f};
     scene.camera.to = {0, 0, 0};
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
@@ -158,7 +160,10 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1},
         Case{"smooth_tangent2", DisplacementSpace::tangent, 2, 0, SubdivisionScheme::catmark},
         Case{"smooth_object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1,
-             SubdivisionScheme::catmark}),
+             SubdivisionScheme::catmark},
+        Case{"cubic_tangent5", DisplacementSpace::tangent, 5, 0, SubdivisionScheme::none, MapFilter::cubic},
+        Case{"bspline_object7_bias2", DisplacementSpace::object, 7, 2, SubdivisionScheme::catmark,
+             MapFilter::bspline}),
     [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& settings) {
@@ -223,17 +228,21 @@ TEST(Tracer, tessellated_surfaces_give_the_hits_of_direct_ones) {
     Object second = scene.objects[0];
     second.world_from_object = compose(make_translation({1, 0.2f, -0.5f}), make_scale({0.5f, 0.7f, 0.6f}));
     scene.objects.push_back(second);
-    const auto direct = prepare_scene(scene, settings);
-    settings.surface.mode = SurfaceMode::tessellated;
-    const auto tessellated = prepare_scene(scene, settings);
-    const std::vector<cpu::TraceRay> rays = make_rays(3200, 0, 13);
-    std::vector<cpu::TraceHit> a(rays.size()), b(rays.size());
-    cpu::Tracer(direct, settings).closest_hits(rays, a);
-    cpu::Tracer(tessellated, settings).closest_hits(rays, b);
-    for (size_t k = 0; k < rays.size(); ++k) {
-        EXPECT_EQ(a[k].is_hit(), b[k].is_hit());
-        EXPECT_EQ(a[k].t, b[k].t);
-        EXPECT_EQ(a[k].instance, b[k].instance);
+    for (const MapFilter filter : {MapFilter::none, MapFilter::cubic, MapFilter::bspline}) {
+        scene.displacements[0].filter = filter;
+        settings.surface.mode = SurfaceMode::direct;
+        const auto direct = prepare_scene(scene, settings);
+        settings.surface.mode = SurfaceMode::tessellated;
+        const auto tessellated = prepare_scene(scene, settings);
+        const std::vector<cpu::TraceRay> rays = make_rays(3200, 0, 13);
+        std::vector<cpu::TraceHit> a(rays.size()), b(rays.size());
+        cpu::Tracer(direct, settings).closest_hits(rays, a);
+        cpu::Tracer(tessellated, settings).closest_hits(rays, b);
+        for (size_t k = 0; k < rays.size(); ++k) {
+            EXPECT_EQ(a[k].is_hit(), b[k].is_hit());
+            EXPECT_EQ(a[k].t, b[k].t);
+            EXPECT_EQ(a[k].instance, b[k].instance);
+        }
     }
 }
 

@@ -1,4 +1,5 @@
 // Each mistake of a map that inspection tells, and that a good map shows none of them.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,6 +36,15 @@ TEST(MapMistakes, eight_bits_are_told_with_their_step_in_scene_units) {
     const Inspection inspection = inspect_map(map, MapMeaning::declared);
     EXPECT_HAS_PART(find_text(inspection, "W-8BIT"), "0.01 scene units");
     EXPECT_EQ(count_severe(inspection), 1u);
+    map.filter = MapFilter::cubic, map.dequantize = true;
+    const Inspection smooth = inspect_map(map, MapMeaning::declared);
+    EXPECT_EQ(count_severe(smooth), 0u);
+    const auto is_filter = [](const Fact& fact) { return fact.name == "filter"; };
+    const auto fact = std::find_if(smooth.facts.begin(), smooth.facts.end(), is_filter);
+    ASSERT_NE(fact, smooth.facts.end());
+    EXPECT_HAS_PART(fact->value, "cubic, dequantised");
+    const Texture& texels = *map.tiles[0].texture;
+    EXPECT_EQ(fact->numbers.at(0).value, 16.0 * texels.width * texels.height);
 }
 
 TEST(MapMistakes, sixteen_bits_without_a_midlevel_are_told_with_their_range) {

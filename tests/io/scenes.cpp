@@ -55,7 +55,8 @@ TEST_F(SceneFiles, every_field_is_read) {
       "camera": {"from": [0, 0, 4], "to": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 50, "aperture_radius": 0.5},
       "environment": {"file": "env.exr", "color": [1, 1, 0.5], "strength": 2, "rotate_degrees": 40}, /* more */
       "materials": {"clay": {"base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metallic": 1, "ior": 1.3,
-        "emission": [1, 2, 3], "base_color_texture": "color.png", "roughness_texture": "color.png"}},
+        "emission": [1, 2, 3], "base_color_texture": "color.png",
+        "roughness_texture": {"file": "color.png", "filter": "cubic"}}},
       "displacements": {"ear": {"type": "vector", "file": "map.exr", "preset": "mudbox", "midlevel": 0.25,
         "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror", "dilate": false, "filter": "mip",
         "autobump": true, "frame": "dpdu", "lengths": "relative"}},
@@ -71,6 +72,8 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
     EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
     EXPECT_EQ(scene.materials[0].roughness_texture->floats.at(1), 128 / 255.f);
+    EXPECT_EQ(scene.materials[0].base_color_filter, MapFilter::none);
+    EXPECT_EQ(scene.materials[0].roughness_filter, MapFilter::cubic);
     const Displacement& map = scene.displacements.at(0);
     EXPECT_EQ(map.axes.axis, (std::array<uint8_t, 3>{0, 2, 1}));
     EXPECT_EQ(map.midlevel, (Vec3f{.25f, .25f, .25f}));
@@ -86,6 +89,31 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.objects[0].world_from_object.rows[0], (Vec3f{0, 0, 2}));
     EXPECT_EQ(scene.lights.at(1).radius, 0.5f);
     EXPECT_NE(scene.hash, 0u);
+}
+
+TEST_F(SceneFiles, smooth_filters_are_read_and_refused_where_they_make_no_sense) {
+    write_pixels<uint8_t>("steps.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});
+    const auto read = [&](const std::string& text) { return parse(with_map(text)).displacements.at(0); };
+    const Displacement map =
+        read(R"("file": "steps.png", "midlevel": 0.5, "filter": "bspline", "dequantize": true)");
+    EXPECT_EQ(map.filter, MapFilter::bspline);
+    EXPECT_TRUE(map.dequantize);
+    EXPECT_FALSE(read(R"("file": "map.exr", "filter": "cubic")").dequantize);
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "filter": "cubi")")), "did you mean 'cubic'?");
+    EXPECT_HAS(error_of(with_map(R"("file": "map.exr", "filter": "cubic", "dequantize": true)")),
+               "maps of 8 or 16-bit integers, which");
+    EXPECT_HAS(error_of(with_map(R"("file": "steps.png", "midlevel": 0.5, "dequantize": true)")),
+               "dequantize needs a smooth filter");
+    EXPECT_HAS(
+        error_of(R"({"materials": {"a": {"base_color_texture": {"file": "steps.png", "filter": "mip"}}}})"),
+        "filter mip is for displacement maps");
+    EXPECT_HAS(error_of(R"({"materials": {"a": {"base_color_texture": {"filter": "cubic"}}}})"), "'file'");
+    EXPECT_HAS(
+        error_of(R"({"materials": {"a": {"base_color_texture": {"file": "steps.png", "fliter": "cubic"}}}})"),
+        "did you mean 'filter'?");
+    Scene scene =
+        parse(with_map(R"("file": "steps.png", "midlevel": 0.5, "filter": "cubic", "dequantize": true)"));
+    EXPECT_HAS(message_of([&] { save_scene(scene, folder_ / "out"); }), "maps are written as floats");
 }
 
 TEST_F(SceneFiles, broken_text_is_located) {
@@ -216,11 +244,12 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
     for (const char* name : {"h.1001.exr", "h.1002.exr"})
         write_pixels<uint16_t>(name, 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c01, 1, 0x8000});
     Scene scene = parse(R"({"render": {"seed": 3}, "environment": {"file": "env.exr", "strength": 0.1},
-        "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3, "base_color_texture": "env.exr"}},
+        "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3,
+            "base_color_texture": {"file": "env.exr", "filter": "bspline"}}},
         "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file",
                                 "filter": "mip", "autobump": true, "dilate": false},
                           "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black", "frame": "dpdu",
-                                "lengths": "relative"}},
+                                "lengths": "relative", "filter": "cubic"}},
         "meshes": {"p/q": {"file": "plane.obj"}}, "lights": [{"type": "point", "strength": 0.3}],
         "objects": [{"mesh": "p/q", "displacement": "a", "material": "m n",
                      "transform": {"rotate_degrees": [10, 20, 30], "scale": 0.3}}, {"mesh": "p/q", "displacement": "z"}]})");
@@ -256,6 +285,7 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         EXPECT_EQ(read.objects.at(i).world_from_object, scene.objects[i].world_from_object);
         EXPECT_EQ(read.objects[i].material, scene.objects[i].material);
     }
+    EXPECT_EQ(read.materials.at(0).base_color_filter, MapFilter::bspline);
     EXPECT_EQ(read.camera.from, scene.camera.from);
     EXPECT_EQ(read.environment->strength, 0.1f);
     EXPECT_EQ(read.environment->texture->floats, scene.environment->texture->floats);

@@ -118,6 +118,13 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].frame = FrameKind(7); }), "frame is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].filter = MapFilter(9); }), "is none of");
+    EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].dequantize = true; }), "needs a smooth filter");
+    EXPECT_HAS(complaint([](Scene& s) {
+                   s.displacements[0].dequantize = true, s.displacements[0].filter = MapFilter::cubic;
+               }),
+               "8 or 16-bit integers");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].base_color_filter = MapFilter::mip; }),
+               "neither none, cubic nor bspline");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].wrap = WrapMode(9); }), "is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].type = DisplacementType(9); }), "is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].space = DisplacementSpace(9); }), "is none of");

@@ -27,7 +27,7 @@ namespace {
 
 static_assert(sizeof(scalar::InstanceData) == 31 * 4);
 static_assert(sizeof(scalar::SurfaceData) == 14 * 4);
-static_assert(sizeof(scalar::MapData) == 17 * 4);
+static_assert(sizeof(scalar::MapData) == 18 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);
 static_assert(sizeof(scalar::MaterialData) == 11 * 4);
 static_assert(sizeof(scalar::TileRecord) == 5 * 4);

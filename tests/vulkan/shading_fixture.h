@@ -78,6 +78,7 @@ inline Scene make_shading_scene() {
     Material colored = make_matte(0.9f), shiny, glowing;
     colored.base_color_texture = make_colors(17, 9, 1.2f, 1);
     shiny.roughness_texture = make_half_greys(8, 5);
+    colored.base_color_filter = MapFilter::cubic, shiny.roughness_filter = MapFilter::bspline;
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
     glowing.emission = {4, 3, 1};
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
@@ -162,7 +163,7 @@ class ShadingBench {
     }
 
     template <class Push> void run(const char* shader, const Push& push) {
-        const Kernel kernel(device_, {.shader = shader, .constants = {64}});
+        const Kernel kernel(device_, {.shader = shader, .constants = device_scene.add_filter({64})});
         commands.dispatch(kernel, push.count, push);
         commands.run();
     }
@@ -248,8 +249,10 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     v.material = scene.materials[scene.instances[c.hit.instance].material];
     Material& m = v.material;
     if (m.base_color_texture)
-        m.base_color = m.base_color * cpu::fetch_texture(*m.base_color_texture, v.point.uv);
-    if (m.roughness_texture) m.roughness *= cpu::fetch_texture(*m.roughness_texture, v.point.uv).x;
+        m.base_color =
+            m.base_color * cpu::fetch_texture(*m.base_color_texture, m.base_color_filter, v.point.uv);
+    if (m.roughness_texture)
+        m.roughness *= cpu::fetch_texture(*m.roughness_texture, m.roughness_filter, v.point.uv).x;
     m.base_color = scalar::limit_color(m.base_color);
     const Vec3f wo = -c.ray.direction;
     v.is_flipped = dot(v.point.geometric_normal, wo) < 0;

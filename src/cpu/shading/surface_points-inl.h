@@ -194,7 +194,7 @@ struct MapLanes {
 HWY_INLINE WideVec3 fetch_decoded(const DisplacementMap& map, const MapImage& image,
                                   const CornerLanes& corners, const WideVec2& at) {
     Lanes16 raw[3];
-    fetch_raw(map, image, corners.blend(kUv, at), corners.blend(kUv + 1, at), raw);
+    fetch_channels<Spacing::wide>(map, image, corners.blend(kUv, at), corners.blend(kUv + 1, at), raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
     raw[2] = raw[2] - Lanes16(map.midlevel.z);

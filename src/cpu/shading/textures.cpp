@@ -53,6 +53,18 @@ Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
         texture, find_footprint(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat));
 }
 
+Vec3f fetch_spline(const Texture& texture, const Vec2f& uv) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
+    const Vec2f at = scalar::locate_texture_uv(uv, size_of(texture));
+    const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
+    const auto read = [&](size_t i, size_t j) {
+        return read_channels(texture,
+                             wrap_index(int64_t(whole_x) - 1 + int64_t(i), texture.width, WrapMode::repeat),
+                             wrap_index(int64_t(whole_y) - 1 + int64_t(j), texture.height, WrapMode::repeat));
+    };
+    return make_color(texture, filter_spline(read, at.x - whole_x, at.y - whole_y));
+}
+
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
     return fetch_bilinear(texture, find_latlong(texture, position));
 }

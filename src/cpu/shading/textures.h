@@ -1,7 +1,7 @@
-// Look-ups of colour textures and environments: bilinear, on the raw texels.
+// Look-ups of colour textures and environments: bilinear on the raw texels, or by a B-spline.
 #pragma once
 
-#include "relief/image.h"
+#include "relief/scene.h"
 #include "relief/types.h"
 
 namespace relief::cpu {
@@ -11,6 +11,12 @@ Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y);
 
 /// Bilinear value at uv, repeated both ways; row 0 is v = 1. Texel (0, 0) for a uv that is not finite.
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv);
+
+/// The same of a texture whose texels are coefficients of a uniform bicubic B-spline.
+Vec3f fetch_spline(const Texture& texture, const Vec2f& uv);
+inline Vec3f fetch_texture(const Texture& texture, MapFilter filter, const Vec2f& uv) {
+    return is_smooth(filter) ? fetch_spline(texture, uv) : fetch_texture(texture, uv);
+}
 
 /// Bilinear value of a latitude-longitude image at [0, 1]^2 from the top left: repeated in x, clamped in y.
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position);

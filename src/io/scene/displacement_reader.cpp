@@ -71,10 +71,10 @@ void complete_midlevel(const DisplacementRequest& request, Displacement& map, As
         is_integer |= type != SampleType::float16 && type != SampleType::float32;
         is_eight_bit |= type == SampleType::uint8;
     }
-    if (is_eight_bit)
+    if (is_eight_bit && !map.dequantize)
         assets.warnings().push_back(fmt::format(
             "displacement '{}': 8-bit map, one step is {:.3g} scene units: stairs will show; "
-            "export half or float EXR",
+            "export half or float EXR, or smooth them by displacement.dequantize under filter = cubic",
             request.name,
             std::max({std::fabs(map.scale.x), std::fabs(map.scale.y), std::fabs(map.scale.z)}) / 255));
     if (!is_integer || says_zero(request.options, map)) return;
@@ -99,6 +99,7 @@ Displacement make_displacement_values(const MapOptions& options) {
     map.flip_v = options.flip_v;
     map.dilate = options.dilate;
     if (options.filter) map.filter = parse_word<MapFilter>(*options.filter);
+    map.dequantize = options.dequantize;
     map.autobump = options.autobump;
     map.has_midlevel = options.midlevel.has_value();
     if (options.midlevel)
@@ -120,6 +121,7 @@ Displacement read_displacement_map(const DisplacementRequest& request, AssetCach
     map.tiles = assets.load_displacement(request.file);
     map.type = decide_type(request, map, assets);
     complete_midlevel(request, map, assets);
+    check_dequantize(map);
     return map;
 }
 

@@ -60,6 +60,7 @@ uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
     for (const std::optional<Vec3f>& value : {map.midlevel, map.scale})
         hash.add(value ? fmt::format("{} {} {}", value->x, value->y, value->z) : std::string("-"));
     for (const bool value : {map.flip_v, map.dilate, map.autobump}) hash.add(value ? "yes" : "no");
+    if (map.dequantize) hash.add(std::string("dequantize"));
     add_scene_content(hash, scene);
     return hash.value();
 }

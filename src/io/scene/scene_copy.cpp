@@ -62,6 +62,7 @@ Json write_map_options(const MapOptions& map, const std::string& file) {
     if (map.scale) node["scale"] = to_json(*map.scale);
     if (map.flip_v) node["flip_v"] = true;
     if (!map.dilate) node["dilate"] = false;
+    if (map.dequantize) node["dequantize"] = true;
     if (map.autobump) node["autobump"] = true;
     return node;
 }

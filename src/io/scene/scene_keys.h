@@ -18,9 +18,10 @@ inline constexpr auto kCamera =
 inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees");
 inline constexpr auto kMaterial = make_keys("base_color", "base_color_texture", "roughness",
                                             "roughness_texture", "metallic", "ior", "emission");
+inline constexpr auto kTexture = make_keys("file", "filter");
 inline constexpr auto kDisplacement =
     make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
-              "flip_v", "wrap", "dilate", "filter", "autobump");
+              "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");
 inline constexpr auto kMesh = make_keys("file", "uv_set", "subdivision");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
 inline constexpr auto kObject =

@@ -41,6 +41,31 @@ std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::strin
     return found->with_place([&] { return assets.load(file, use); });
 }
 
+struct FilteredTexture {
+    std::shared_ptr<const Texture> texture;
+    MapFilter filter = MapFilter::none;
+
+    void move_to(std::shared_ptr<const Texture>& target, MapFilter& target_filter) {
+        target = std::move(texture), target_filter = filter;
+    }
+};
+
+/// The name of a file, or an object with it.
+FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key, TextureUse use,
+                                      AssetCache& assets) {
+    const auto found = node.find(key);
+    if (!found || found->is_string()) return {read_texture_key(node, key, use, assets), MapFilter::none};
+    found->check_keys(scene_keys::kTexture);
+    FilteredTexture result;
+    if (const auto filter = found->find("filter")) {
+        const std::string name = filter->as_string();
+        result.filter = filter->with_place([&] { return parse_texture_filter(name); });
+    }
+    found->get("file");
+    result.texture = read_texture_key(*found, "file", use, assets);
+    return result;
+}
+
 Affine read_matrix(const JsonNode& node) {
     const std::vector<JsonNode> values = node.elements();
     if (values.size() != 16) node.fail(fmt::format("must be 16 numbers, row by row, not {}", values.size()));
@@ -149,8 +174,10 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
     read_float(node, "metallic", material.metallic, 0, 1);
     read_float(node, "ior", material.ior, 1);
     read_vec3(node, "emission", material.emission, 0);
-    material.base_color_texture = read_texture_key(node, "base_color_texture", TextureUse::colour, assets);
-    material.roughness_texture = read_texture_key(node, "roughness_texture", TextureUse::data, assets);
+    read_filtered_texture(node, "base_color_texture", TextureUse::colour, assets)
+        .move_to(material.base_color_texture, material.base_color_filter);
+    read_filtered_texture(node, "roughness_texture", TextureUse::data, assets)
+        .move_to(material.roughness_texture, material.roughness_filter);
     return material;
 }
 
@@ -176,6 +203,7 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     read_optional(node, "flip_v", options.flip_v, as_bool);
     read_optional(node, "dilate", options.dilate, as_bool);
     read_optional(node, "filter", options.filter, as_text);
+    read_optional(node, "dequantize", options.dequantize, as_bool);
     read_optional(node, "autobump", options.autobump, as_bool);
     return node.with_place([&] { return make_displacement(request, assets); });
 }

@@ -61,6 +61,15 @@ void check_tangents(const Scene& scene, const Object& object) {
                  fmt::format("mesh '{}'", mesh.name), "use frame mikk, or write the scene file by hand"});
 }
 
+/// Maps are saved as floats, which have no steps to smooth.
+void check_steps(const Displacement& map) {
+    if (map.dequantize)
+        throw Error(ErrorKind::bad_input,
+                    {"a map that is dequantised cannot be saved: maps are written as floats",
+                     fmt::format("displacement '{}'", map.name),
+                     "convert the map with dequantize first, or name its file in a scene file by hand"});
+}
+
 class SceneWriter {
   public:
     SceneWriter(const Scene& scene, std::filesystem::path folder)
@@ -91,6 +100,13 @@ class SceneWriter {
         return file;
     }
 
+    Json add_texture(const std::shared_ptr<const Texture>& texture, MapFilter filter,
+                     const std::string& name) {
+        const std::string file = add_map(texture, name);
+        if (filter == MapFilter::none) return file;
+        return {{"file", file}, {"filter", get_word(filter)}};
+    }
+
     void add_picture() {
         if (Json node = write_picture(scene_.picture); !node.empty()) root_["render"] = std::move(node);
     }
@@ -117,10 +133,11 @@ class SceneWriter {
             node["emission"] = to_json(material.emission);
             if (material.base_color_texture)
                 node["base_color_texture"] =
-                    add_map(material.base_color_texture, material_names_.back() + "_color");
+                    add_texture(material.base_color_texture, material.base_color_filter,
+                                material_names_.back() + "_color");
             if (material.roughness_texture)
-                node["roughness_texture"] =
-                    add_map(material.roughness_texture, material_names_.back() + "_roughness");
+                node["roughness_texture"] = add_texture(material.roughness_texture, material.roughness_filter,
+                                                        material_names_.back() + "_roughness");
         }
     }
 
@@ -209,6 +226,7 @@ class SceneWriter {
 void save_scene(const Scene& scene, const std::filesystem::path& folder) {
     validate_scene(scene);
     for (const Object& object : scene.objects) check_tangents(scene, object);
+    for (const Displacement& map : scene.displacements) check_steps(map);
     SceneWriter(scene, folder).write();
 }
 

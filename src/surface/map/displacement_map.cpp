@@ -6,6 +6,7 @@
 
 #include "relief/error.h"
 #include "surface/map/mip_chain.h"
+#include "surface/map/spline_coefficients.h"
 
 namespace relief {
 
@@ -97,6 +98,7 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     map.flip_v = displacement.flip_v;
     map.is_filtered = displacement.filter == MapFilter::mip;
     map.has_autobump = displacement.autobump;
+    map.is_smooth = is_smooth(displacement.filter);
     map.is_tangent =
         displacement.type == DisplacementType::height || displacement.space == DisplacementSpace::tangent;
     if (displacement.type == DisplacementType::height) map.midlevel = {displacement.midlevel.x, 0, 0};
@@ -107,7 +109,9 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     for (const MapTile& tile : displacement.tiles) {
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
-        map.tiles.push_back({tile.udim, tile.texture, pyramids.get_or_build(tile.texture), nullptr});
+        const std::shared_ptr<const Texture> texture =
+            make_spline(tile.texture, make_spline_form(displacement));
+        map.tiles.push_back({tile.udim, texture, pyramids.get_or_build(texture), nullptr});
     }
     check_reach(displacement.name, map);
     return map;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 
 #include "surface/map/texels.h"
 #include "surface/mesh/uv_islands.h"
@@ -33,7 +35,8 @@ class GutterFinder {
         });
     }
 
-    GutterFill run() const {
+    /// `spread`: texels beyond those that bilinear fetches read.
+    GutterFill run(int spread) const {
         std::vector<std::array<uint32_t, 2>> gutter;
         TexelCensus census;
         for (uint32_t y = 0; y < texture_.height; ++y)
@@ -46,6 +49,7 @@ class GutterFinder {
         if (2 * size_t(census.most()) <= gutter.size()) return fill;
         fill.background = census.value();
         for (const auto& [x, y] : gutter) add_nearest(x, y, fill);
+        if (spread > 0) extend(spread, fill);
         return fill;
     }
 
@@ -87,6 +91,52 @@ class GutterFinder {
                     copy.from_x = uint32_t(i), copy.from_y = uint32_t(j);
                 });
         if (copy.from_x != x || copy.from_y != y) fill.copies.push_back(copy);
+    }
+
+    /// Further texels outside, ring by ring, each with the value of the nearest one that a neighbour has. A
+    /// ring does not pass an island: what is known to be covered lies all along its border.
+    void extend(int spread, GutterFill& fill) const {
+        struct Front {
+            int64_t x, y, to_x, to_y; ///< in the image; from there to the texel that its value is from
+        };
+        std::vector<Front> front;
+        TexelMask taken(texture_);
+        for (const GutterFill::Copy& copy : fill.copies) {
+            taken.set(copy.to_x, copy.to_y);
+            front.push_back({copy.to_x, copy.to_y, find_step(copy.to_x, copy.from_x, texture_.width),
+                             find_step(copy.to_y, copy.from_y, texture_.height)});
+        }
+        for (int ring = 0; ring < spread; ++ring) {
+            std::map<std::array<int64_t, 2>, Front> next; // by row, so that texels come in a fixed order
+            for (const Front& from : front)
+                for (int64_t dy = -1; dy <= 1; ++dy)
+                    for (int64_t dx = -1; dx <= 1; ++dx)
+                        visit_texel(from.x + dx, from.y + dy, [&](int64_t x, int64_t y) {
+                            if (taken.has(x, y) || covered_.has(x, y)) return;
+                            const Front candidate{x, y, from.to_x - dx, from.to_y - dy};
+                            const auto [place, is_new] = next.try_emplace({y, x}, candidate);
+                            Front& best = place->second;
+                            if (!is_new && candidate.to_x * candidate.to_x + candidate.to_y * candidate.to_y <
+                                               best.to_x * best.to_x + best.to_y * best.to_y)
+                                best = candidate;
+                        });
+            front.clear();
+            for (const auto& [place, reached] : next) {
+                const Front& at = reached;
+                taken.set(at.x, at.y);
+                front.push_back(at);
+                visit_texel(at.x + at.to_x, at.y + at.to_y, [&](int64_t x, int64_t y) {
+                    fill.copies.push_back({uint32_t(at.x), uint32_t(at.y), uint32_t(x), uint32_t(y)});
+                });
+            }
+        }
+    }
+
+    /// From one index to another the shorter way, where the map repeats.
+    int64_t find_step(uint32_t from, uint32_t to, uint32_t size) const {
+        const int64_t step = int64_t(to) - from;
+        if (wrap_ != WrapMode::repeat || 2 * std::abs(step) <= int64_t(size)) return step;
+        return step > 0 ? step - size : step + size;
     }
 
     const Texture& texture_;
@@ -138,7 +188,10 @@ GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
     UvIslands islands(displacement, tile);
     for (const Mesh* mesh : meshes) islands.add(*mesh);
     if (islands.is_all_covered()) return {};
-    return GutterFinder(*tile.texture, displacement.wrap, islands).run();
+    const int spread = displacement.filter == MapFilter::cubic     ? GutterFill::kCubicSpread
+                       : displacement.filter == MapFilter::bspline ? GutterFill::kSplineSpread
+                                                                   : 0;
+    return GutterFinder(*tile.texture, displacement.wrap, islands).run(spread);
 }
 
 } // namespace relief

@@ -49,6 +49,20 @@ inline std::array<float, 4> filter_channels(const std::array<float, 4>& t00, con
     return value;
 }
 
+/// Value at (fx, fy) of a bicubic B-spline between coefficients; `read` gets their column and row, 0 to 3.
+template <class Read> std::array<float, 4> filter_spline(const Read& read, float fx, float fy) {
+    const scalar::CubicWeights along = scalar::weigh_spline(fx), across = scalar::weigh_spline(fy);
+    std::array<std::array<float, 4>, 4> rows;
+    for (size_t j = 0; j < 4; ++j) {
+        const std::array<float, 4> t0 = read(0, j), t1 = read(1, j), t2 = read(2, j), t3 = read(3, j);
+        for (size_t c = 0; c < 4; ++c) rows[j][c] = scalar::blend_cubic(t0[c], t1[c], t2[c], t3[c], along);
+    }
+    std::array<float, 4> value;
+    for (size_t c = 0; c < 4; ++c)
+        value[c] = scalar::blend_cubic(rows[0][c], rows[1][c], rows[2][c], rows[3][c], across);
+    return value;
+}
+
 /// First three channels of the texel in column x and row y, both inside the texture.
 inline std::array<float, 3> read_texel(const Texture& texture, int64_t x, int64_t y) {
     const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));

@@ -15,12 +15,13 @@ namespace relief {
 namespace {
 
 constexpr double kBicubicCells = 32; // a side, that bicubic patches may have on any map
+constexpr double kSmoothCells = 8;   // a texel, where the surface is curved between texels
 
-/// Level of a displaced line from its points, object space; `texels` is its length on the map.
+/// Level of a displaced line from its points, object space; `cells` as count_cells() finds them.
 template <size_t N>
-int choose_level(const std::array<Vec3f, N>& line, double texels, const Affine& world_from_object,
+int choose_level(const std::array<Vec3f, N>& line, double cells, const Affine& world_from_object,
                  const LevelFieldConfig& config) {
-    const int cap = std::clamp(int(std::ceil(std::log2(std::max(texels, 1.0)))), 0, kMaxLevel);
+    const int cap = std::clamp(int(std::ceil(std::log2(std::max(cells, 1.0)))), 0, kMaxLevel);
     double line_length = 0;
     Box box;
     std::array<Vec3f, N> points;
@@ -40,14 +41,16 @@ int choose_level(const std::array<Vec3f, N>& line, double texels, const Affine& 
     return std::min(cap, int(std::clamp(std::ceil(std::log2(line_length / cell)), 0.0, double(kMaxLevel))));
 }
 
-/// Texels that a line runs over; a bicubic base bends where the map is smooth, too.
-double count_texels(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
+/// Cells that a line is worth: one a texel, or more where the filter is smooth; a bicubic base bends where
+/// the map is smooth, too.
+double count_cells(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
     const DisplacementMap& map = surface.map;
     const double least = surface.controls.empty() ? 0 : kBicubicCells;
     if (tile >= map.tiles.size()) return least;
     const Texture& texture = *map.tiles[tile].texture;
-    return std::max(least,
-                    std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height));
+    const double texels =
+        std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
+    return std::max(least, map.is_smooth ? kSmoothCells * texels : texels);
 }
 
 /// Of an edge, and of lines through the middle: the map may stretch the inside more than the edges.
@@ -62,15 +65,15 @@ PatchLevels choose_levels(const Surface& surface, uint32_t patch, const Affine& 
                                   : blend_corners(samples.corners(), 0.5f, s);
         };
         const VertexData a = blend(0), b = blend(1);
-        const int level = choose_level(lines.middles[direction], count_texels(surface, a.tile, a.uv, b.uv),
+        const int level = choose_level(lines.middles[direction], count_cells(surface, a.tile, a.uv, b.uv),
                                        world_from_object, config);
         levels.patch = std::max(levels.patch, uint8_t(level));
     }
     for (int edge = 0; edge < 4; ++edge) {
         const VertexData &first = samples.first_of_line(edge), &second = samples.second_of_line(edge);
-        const double texels = count_texels(surface, first.tile, first.uv, second.uv);
+        const double cells = count_cells(surface, first.tile, first.uv, second.uv);
         levels.edge[edge] =
-            uint8_t(choose_level(lines.edges[size_t(edge)], texels, world_from_object, config));
+            uint8_t(choose_level(lines.edges[size_t(edge)], cells, world_from_object, config));
         levels.patch = std::max(levels.patch, levels.edge[edge]);
     }
     return levels;

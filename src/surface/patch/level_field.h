@@ -21,7 +21,8 @@ class LevelField {
   public:
     /// The level of an edge depends on the edge alone (line, displaced length, transform, view; no map
     /// filter): the finest such that a cell is at most `pixel_error` pixels at the nearest point, at most one
-    /// cell a texel and at most kMaxLevel. Undisplaced surfaces have level 0.
+    /// cell a texel (eight where the filter is smooth) and at most kMaxLevel. Undisplaced surfaces have level
+    /// 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
 

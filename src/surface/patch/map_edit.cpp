@@ -15,8 +15,8 @@ namespace relief {
 
 namespace {
 
-/// Beyond what bilinear fetches reach, whatever they round to.
-constexpr int64_t kSlackTexels = 2;
+/// Beyond what fetches reach, bilinear ones or those of a spline, whatever they round to.
+constexpr int64_t kSlackTexels = 2, kSmoothSlackTexels = 3;
 
 bool overlaps(const WrappedRange& range, int64_t first, int64_t last) {
     for (int part = 0; part < range.count; ++part)
@@ -59,8 +59,9 @@ class MapReads {
     }
 
     bool reads(double low, double high, int64_t size, int64_t first, int64_t last) const {
-        const WrappedRange range = wrap_range(int64_t(std::floor(low)) - kSlackTexels,
-                                              int64_t(std::ceil(high)) + kSlackTexels, size, map_.wrap);
+        const int64_t slack = map_.is_smooth ? kSmoothSlackTexels : kSlackTexels;
+        const WrappedRange range =
+            wrap_range(int64_t(std::floor(low)) - slack, int64_t(std::ceil(high)) + slack, size, map_.wrap);
         return overlaps(range, first, last);
     }
 

@@ -82,11 +82,13 @@ struct Footprint {
     }
 };
 
-/// Texels [first, last] that bilinear fetches read between two local coordinates.
-std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, double size) {
+/// Texels [first, last] that fetches read between two local coordinates: bilinear ones the two beside a
+/// place, a spline two on each side.
+std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, double size, bool is_smooth) {
     const double slack = 16 * kUnit * ((1 + largest) * size + 1);
-    return {int64_t(std::floor(coordinate.low * size - 0.5 - slack)),
-            int64_t(std::floor(coordinate.high * size - 0.5 + slack)) + 1};
+    const int64_t further = is_smooth ? 1 : 0;
+    return {int64_t(std::floor(coordinate.low * size - 0.5 - slack)) - further,
+            int64_t(std::floor(coordinate.high * size - 0.5 + slack)) + 1 + further};
 }
 
 /// Raw channel range of a texel rectangle: from texels if few, as the pyramid's blocks would widen it.
@@ -126,14 +128,16 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     if (footprint.tile >= map.tiles.size()) return {nothing, nothing, nothing};
     const DisplacementMap::ImageView image = map.image(footprint.tile, footprint.mip);
     const Interval row = map.flip_v ? v : Interval{1 - v.high, 1 - v.low};
-    const auto columns = find_texels(u, footprint.largest_u, image.texture.width);
-    const auto rows = find_texels(row, footprint.largest_v, image.texture.height);
+    const auto columns = find_texels(u, footprint.largest_u, image.texture.width, map.is_smooth);
+    const auto rows = find_texels(row, footprint.largest_v, image.texture.height, map.is_smooth);
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
     const ChannelRange range = find_range(map, image, columns, rows);
     std::array<Interval, 3> values;
     for (int c = 0; c < 3; ++c) {
         const Interval raw{range.low[c], range.high[c]};
-        const Interval filtered = raw.widened(8 * kUnit * raw.size() + kUnderflow);
+        // Weights of a spline err by 10 units together, and each of its two blends by 3 more.
+        const double units = map.is_smooth ? 32 : 8;
+        const Interval filtered = raw.widened(units * kUnit * raw.size() + kUnderflow);
         const Interval value{filtered.low - middle[c], filtered.high - middle[c]};
         values[c] = value.widened(kUnit * value.size() + kUnderflow);
     }

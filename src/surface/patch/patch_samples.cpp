@@ -29,17 +29,21 @@ Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& 
     const float y = (map.flip_v ? uv.y : 1.0f - uv.y) * float(texture.height) - 0.5f;
     const float x0 = floor_texel(x), y0 = floor_texel(y);
     const float fx = x - x0, fy = y - y0;
-    const int64_t columns[2] = {wrap_index(int64_t(x0), texture.width, map.wrap),
-                                wrap_index(int64_t(x0) + 1, texture.width, map.wrap)};
-    const int64_t rows[2] = {wrap_index(int64_t(y0), texture.height, map.wrap),
-                             wrap_index(int64_t(y0) + 1, texture.height, map.wrap)};
     const std::array<float, 4> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z, 0};
-    const auto read = [&](int64_t column, int64_t row) {
+    const auto read = [&](int64_t i, int64_t j) {
+        const int64_t column = wrap_index(int64_t(x0) + i, texture.width, map.wrap),
+                      row = wrap_index(int64_t(y0) + j, texture.height, map.wrap);
         return column < 0 || row < 0 ? middle : read_channels(texture, column, row);
     };
-    const auto t00 = read(columns[0], rows[0]), t10 = read(columns[1], rows[0]);
-    const auto t01 = read(columns[0], rows[1]), t11 = read(columns[1], rows[1]);
-    std::array<float, 4> value = filter_channels(t00, t10, t01, t11, fx, fy);
+    std::array<float, 4> value;
+    if (map.is_smooth) {
+        const auto read_coefficient = [&](size_t i, size_t j) {
+            return read(int64_t(i) - 1, int64_t(j) - 1);
+        };
+        value = filter_spline(read_coefficient, fx, fy);
+    } else {
+        value = filter_channels(read(0, 0), read(1, 0), read(0, 1), read(1, 1), fx, fy);
+    }
     for (size_t c = 0; c < 4; ++c) value[c] -= middle[c];
     const auto decode = [&](const Vec3f& row) {
         return scalar::decode_row(value[0], value[1], value[2], row.x, row.y, row.z);

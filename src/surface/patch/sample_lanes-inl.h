@@ -133,8 +133,112 @@ HWY_INLINE bool fetch_run(const DisplacementMap& map, const MapImage& image, con
     return true;
 }
 
+/// Places of sixteen samples between the texels of an image.
+struct TexelLanes {
+    Lanes16 x0, y0, fx, fy;
+
+    HWY_INLINE TexelLanes(const DisplacementMap& map, const Texture& texture, const Lanes16& u,
+                          const Lanes16& v) {
+        const Lanes16 half(0.5f);
+        const Lanes16 x = u * Lanes16(float(texture.width)) - half;
+        const Lanes16 y = (map.flip_v ? v : Lanes16(1.0f) - v) * Lanes16(float(texture.height)) - half;
+        x0 = floor(x), y0 = floor(y);
+        fx = x - x0, fy = y - y0;
+    }
+};
+
+/// The four weights of each lane, lane after lane.
+HWY_INLINE void weigh_lanes(const Lanes16& fraction, LaneQuads& weights) {
+    const wide::CubicWeights w = wide::weigh_spline(fraction);
+    weights.set(w.first, w.second, w.third, w.fourth);
+}
+
+HWY_INLINE texel::CubicWeights broadcast_weights(const float (&weights)[4]) {
+    return {Lanes4(weights[0]), Lanes4(weights[1]), Lanes4(weights[2]), Lanes4(weights[3])};
+}
+
+/// Raw channels of a smooth map at sixteen places, texel by texel.
+HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const Texture& texture,
+                                          const TexelLanes& place, Lanes16 (&raw)[3]) {
+    const int32_t width = int32_t(texture.width), height = int32_t(texture.height);
+    alignas(64) int32_t column[16], row[16];
+    place.x0.store_as_integers(column), place.y0.store_as_integers(row);
+    LaneQuads along, across, values;
+    weigh_lanes(place.fx, along), weigh_lanes(place.fy, across);
+    for (int lane = 0; lane < 16; ++lane) {
+        const bool is_inside =
+            column[lane] >= 1 && column[lane] + 2 < width && row[lane] >= 1 && row[lane] + 2 < height;
+        size_t columns[4], rows[4];
+        for (int k = 0; k < 4; ++k) {
+            const int32_t x = column[lane] + k - 1, y = row[lane] + k - 1;
+            columns[k] = size_t(is_inside ? x : wrap_index(x, width, map.wrap));
+            rows[k] = size_t(is_inside ? y : wrap_index(y, height, map.wrap)) * size_t(width);
+        }
+        const texel::CubicWeights weights = broadcast_weights(along.lane[lane]);
+        Lanes4 point[4];
+        for (int k = 0; k < 4; ++k)
+            point[k] = texel::blend_cubic(load_texel(texture, rows[k] + columns[0]),
+                                          load_texel(texture, rows[k] + columns[1]),
+                                          load_texel(texture, rows[k] + columns[2]),
+                                          load_texel(texture, rows[k] + columns[3]), weights);
+        texel::blend_cubic(point[0], point[1], point[2], point[3], broadcast_weights(across.lane[lane]))
+            .store_unaligned(values.lane[lane]);
+    }
+    Lanes16 alpha;
+    values.transpose(raw[0], raw[1], raw[2], alpha);
+}
+
+/// The same as fetch_run of a smooth map: false where the places are not near each other or the map wraps.
+HWY_NOINLINE inline bool fetch_spline_run(const Texture& texture, const TexelLanes& place,
+                                          Lanes16 (&raw)[3]) {
+    if constexpr (!LaneTable<16>::kIsInRegisters) return false;
+    constexpr float kMostRows = 3;
+    const float left = reduce_min(place.x0) - 1, top = reduce_min(place.y0), bottom = reduce_max(place.y0);
+    const bool is_near = reduce_max(place.x0) - left <= 13 && bottom - top < kMostRows;
+    const bool is_inside =
+        left >= 0 && top >= 1 && bottom + 2 < float(texture.height) && left + 16 <= float(texture.width);
+    if (!(is_near && is_inside)) return false;
+    const LaneIndices column = LaneIndices::convert(place.x0 - Lanes16(left));
+    const LaneIndices columns[4] = {column + LaneIndices(-1), column, column + LaneIndices(1),
+                                    column + LaneIndices(2)};
+    const wide::CubicWeights along = wide::weigh_spline(place.fx), across = wide::weigh_spline(place.fy);
+    size_t first = size_t(top - 1) * texture.width + size_t(left);
+    Lanes16 point[4][3]; // of the rows -1 to 2 of each lane
+    for (float row = top - 1; row <= bottom + 2; ++row, first += texture.width) {
+        Lanes16 texels[3];
+        load_texels(texture, first, texels);
+        for (int c = 0; c < 3; ++c) {
+            const LaneTable<16> table(texels[c]);
+            const Lanes16 value = wide::blend_cubic(table.pick(columns[0]), table.pick(columns[1]),
+                                                    table.pick(columns[2]), table.pick(columns[3]), along);
+            // Rows come in order, so the last one that is not below a lane's is its own.
+            for (int k = 0; k < 4; ++k)
+                point[k][c] = row == top - 1 ? value
+                                             : select_less(place.y0 + Lanes16(float(k - 1)), Lanes16(row),
+                                                           point[k][c], value);
+        }
+    }
+    for (int c = 0; c < 3; ++c)
+        raw[c] = wide::blend_cubic(point[0][c], point[1][c], point[2][c], point[3][c], across);
+    return true;
+}
+
 /// Whether sixteen samples are neighbours of a grid as fine as the picture, or lie all over a patch.
 enum class Spacing { close, wide };
+
+/// Raw channels at sixteen uvs, by the map's own filter.
+template <Spacing kSpacing>
+HWY_INLINE void fetch_channels(const DisplacementMap& map, const MapImage& image, const Lanes16& u,
+                               const Lanes16& v, Lanes16 (&raw)[3]) {
+    if (map.is_smooth) {
+        const Texture& texture = map.image(image.tile, image.mip).texture;
+        const TexelLanes place(map, texture, u, v);
+        if (kSpacing == Spacing::wide || !fetch_spline_run(texture, place, raw))
+            fetch_spline_raw(map, texture, place, raw);
+        return;
+    }
+    if (kSpacing == Spacing::wide || !fetch_run(map, image, u, v, raw)) fetch_raw(map, image, u, v, raw);
+}
 
 /// Displaced positions of sixteen samples whose interpolated values are given.
 template <Spacing kSpacing>
@@ -142,8 +246,7 @@ HWY_INLINE void displace(const Surface& surface, const MapImage& image, const La
                          Lanes16 (&position)[3]) {
     const DisplacementMap& map = surface.map;
     Lanes16 raw[3], d[3];
-    if (kSpacing == Spacing::wide || !fetch_run(map, image, value[kUv], value[kUv + 1], raw))
-        fetch_raw(map, image, value[kUv], value[kUv + 1], raw);
+    fetch_channels<kSpacing>(map, image, value[kUv], value[kUv + 1], raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
     raw[1] = raw[1] - Lanes16(map.midlevel.y);
     raw[2] = raw[2] - Lanes16(map.midlevel.z);

@@ -59,6 +59,7 @@ struct DisplacementMap {
     bool is_tangent = false; ///< d is (t, b, n) and goes through the frame
     float longest_axis = 1;  ///< no coordinate of a frame's axes is larger
     bool is_filtered = false, has_autobump = false;
+    bool is_smooth = false; ///< texels are coefficients of a uniform bicubic B-spline; no mips
 
     /// Copy `mip` of a tile that exists; 0 is the tile's own image.
     ImageView image(uint8_t tile, uint32_t mip) const;
@@ -172,7 +173,8 @@ Surface make_surface(const Mesh& mesh, const Displacement* displacement, const A
 Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint32_t i,
                       uint32_t j);
 
-/// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile, bilinear.
+/// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile: bilinear,
+/// or by the spline where the map is smooth.
 Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip = 0);
 
 /// Point and two derivatives of the displaced patch for shading: derivatives of the map by central

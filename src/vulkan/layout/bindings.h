@@ -83,5 +83,9 @@ const uint kScreenRows = 512u;    ///< squares
 
 const uint kMaxPushBytes = 128u;
 
+// Specialization constant of kernels that read maps or textures: not 0 where any of the scene is smooth.
+// Without one such kernels are compiled without what only those need.
+const uint kSmoothConstant = 7u;
+
 #include "formulas/end.h"
 #endif

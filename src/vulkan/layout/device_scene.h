@@ -44,6 +44,7 @@ struct MapData {
     uint is_tangent;
     uint first_tile; ///< index into textures; mip levels of the tiles follow consecutively
     uint tile_count;
+    uint is_smooth; ///< texels are coefficients of a uniform bicubic B-spline
 };
 
 /// Four channels per texel, row 0 at the top.
@@ -54,7 +55,9 @@ struct TextureData {
     uint is_half;       ///< stored in half_texels, else in float_texels
 };
 
-/// Indices into textures are kNone without one.
+/// Indices into textures are kNone without one; kSplineTexture is set where the texels are coefficients of a
+/// uniform bicubic B-spline.
+const uint kSplineTexture = 0x80000000u;
 struct MaterialData {
     Vec3 base_color;
     float roughness;

@@ -36,7 +36,7 @@ VertexData load_vertex(SurfaceData s, uint vertex) {
     return data;
 }
 
-/// Texel for a bilinear fetch; outside with kWrapBlack there is no displacement.
+/// Texel for a fetch; outside with kWrapBlack there is no displacement.
 vec3 load_wrapped_texel(TextureData texture_data, MapData map, int column, int row) {
     return column < 0 || row < 0 ? map.midlevel : load_texel(texture_data, uint(column), uint(row)).xyz;
 }
@@ -48,7 +48,22 @@ vec3 decode_displacement(MapData map, vec3 value) {
                 decode_row(raw.x, raw.y, raw.z, map.row2.x, map.row2.y, map.row2.z));
 }
 
-/// Bilinear displacement at a local uv of mip level `mip` of a tile; zero for a missing tile.
+/// Value of a B-spline in the cell of coefficients that begins in column `left` and row `top`.
+vec3 fetch_spline(TextureData texture_data, MapData map, int left, int top, vec2 fraction) {
+    CubicWeights along = weigh_spline(fraction.x);
+    vec3 point[4];
+    for (int j = 0; j < 4; ++j) {
+        int row = wrap_texel(top + j - 1, int(texture_data.height), map.wrap);
+        vec3 coefficient[4];
+        for (int i = 0; i < 4; ++i)
+            coefficient[i] = load_wrapped_texel(
+                texture_data, map, wrap_texel(left + i - 1, int(texture_data.width), map.wrap), row);
+        point[j] = blend_cubic_vectors(coefficient[0], coefficient[1], coefficient[2], coefficient[3], along);
+    }
+    return blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_spline(fraction.y));
+}
+
+/// Displacement at a local uv of mip level `mip` of a tile; zero for a missing tile.
 vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     if (tile >= map.tile_count) return vec3(0.0);
     TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
@@ -61,6 +76,8 @@ vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
     float y0 = clamp(floor_texel(y), -1073741824.0, 1073741760.0);
     precise float fx = x - x0;
     precise float fy = y - y0;
+    if (kHasSmooth != 0 && map.is_smooth != 0u)
+        return decode_displacement(map, fetch_spline(texture_data, map, int(x0), int(y0), vec2(fx, fy)));
     int left = wrap_texel(int(x0), width, map.wrap);
     int right = wrap_texel(int(x0) + 1, width, map.wrap);
     int top = wrap_texel(int(y0), height, map.wrap);
@@ -137,11 +154,6 @@ bool is_bicubic(SurfaceData s) { return s.first_control != kNone; }
 vec3 load_control(SurfaceData s, uvec4 quad, uint patch_index, uint number) {
     if (number < 4u) return load_position(s, quad[number]);
     return load_position_at(s.first_control + kInnerControlCount * patch_index + number - 4u);
-}
-
-vec3 blend_cubic_vectors(vec3 a, vec3 b, vec3 c, vec3 d, CubicWeights weights) {
-    return vec3(blend_cubic(a.x, b.x, c.x, d.x, weights), blend_cubic(a.y, b.y, c.y, d.y, weights),
-                blend_cubic(a.z, b.z, c.z, d.z, weights));
 }
 
 /// Point (u, v) of a bicubic base.

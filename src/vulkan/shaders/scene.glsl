@@ -32,6 +32,8 @@ layout(set = 0, binding = kBindLevels) uniform usamplerBuffer field_levels;
 layout(set = 0, binding = kBindFloatTexels) uniform samplerBuffer float_texels;
 layout(set = 0, binding = kBindHalfTexels) uniform samplerBuffer half_texels;
 
+layout(constant_id = kSmoothConstant) const uint kHasSmooth = 0;
+
 #define kInfinity uintBitsToFloat(0x7f800000u)
 const uint kNoTile = 255u;
 
@@ -86,6 +88,11 @@ uint find_levels(InstanceData instance, uint patch_index) {
 vec4 load_texel(TextureData texture_data, uint x, uint y) {
     int place = int(texture_data.first_texel + y * texture_data.width + x);
     return texture_data.is_half != 0u ? texelFetch(half_texels, place) : texelFetch(float_texels, place);
+}
+
+vec3 blend_cubic_vectors(vec3 a, vec3 b, vec3 c, vec3 d, CubicWeights weights) {
+    return vec3(blend_cubic(a.x, b.x, c.x, d.x, weights), blend_cubic(a.y, b.y, c.y, d.y, weights),
+                blend_cubic(a.z, b.z, c.z, d.z, weights));
 }
 
 vec3 transform_vector(AffineData a, vec3 v) {

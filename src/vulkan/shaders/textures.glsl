@@ -1,4 +1,4 @@
-// Look-ups of colour textures and environments: bilinear, on the raw texels.
+// Look-ups of colour textures and environments: bilinear on the raw texels, or by a B-spline.
 #ifndef RELIEF_TEXTURES_GLSL
 #define RELIEF_TEXTURES_GLSL
 
@@ -26,11 +26,31 @@ vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
     return make_texture_color(source.channel_count, value);
 }
 
-/// Repeated in both directions; row 0 is v = 1. A non-finite uv gives texel (0, 0).
+/// Value of a B-spline with the texels as coefficients; repeated in both directions.
+vec3 fetch_spline_color(TextureData source, vec2 at) {
+    vec2 whole = vec2(floor_texel(at.x), floor_texel(at.y));
+    CubicWeights along = weigh_spline(at.x - whole.x);
+    vec3 point[4];
+    for (int j = 0; j < 4; ++j) {
+        uint row = uint(wrap_texel(int(whole.y) + j - 1, int(source.height), kWrapRepeat));
+        vec3 coefficient[4];
+        for (int i = 0; i < 4; ++i) {
+            uint column = uint(wrap_texel(int(whole.x) + i - 1, int(source.width), kWrapRepeat));
+            coefficient[i] = load_texel(source, column, row).xyz;
+        }
+        point[j] = blend_cubic_vectors(coefficient[0], coefficient[1], coefficient[2], coefficient[3], along);
+    }
+    vec3 value = blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_spline(at.y - whole.y));
+    return make_texture_color(source.channel_count, value);
+}
+
+/// Repeated in both directions; row 0 is v = 1. `index` may have kSplineTexture. A non-finite uv gives texel (0, 0).
 vec3 fetch_texture(uint index, vec2 uv) {
-    TextureData source = textures[index];
+    TextureData source = textures[index & ~kSplineTexture];
     if (!is_finite(vec3(uv, 0.0))) return make_texture_color(source.channel_count, load_texel(source, 0u, 0u).xyz);
-    return fetch_bilinear(source, locate_texture_uv(uv, vec2(source.width, source.height)), kWrapRepeat);
+    vec2 at = locate_texture_uv(uv, vec2(source.width, source.height));
+    if (kHasSmooth != 0 && (index & kSplineTexture) != 0u) return fetch_spline_color(source, at);
+    return fetch_bilinear(source, at, kWrapRepeat);
 }
 
 /// Value at a position in [0, 1]^2 from the top left corner: repeated in x, clamped in y.
