@@ -68,10 +68,10 @@ class CpuEngine final : public Engine, private PassTracer {
 
     void any_hits(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const override {
         tracer_.rebuild_if_worthwhile();
-        parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
-            const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
-            tracer_.any_hits(batch, hits.subspan(begin, end - begin), 0, mask);
-        });
+        for (size_t first = 0; first < rays.size(); first += kOrderedRays) {
+            const size_t count = std::min(kOrderedRays, rays.size() - first);
+            find_occlusion(rays.subspan(first, count), hits.subspan(first, count), mask);
+        }
     }
 
     void add_statistics(Statistics& statistics) const override {
@@ -130,11 +130,27 @@ class CpuEngine final : public Engine, private PassTracer {
         });
     }
 
+    /// Empty where rays are not to be ordered.
+    std::vector<TraceHit> find_ordered(std::span<const Ray> rays, OrderedQuery query, uint32_t mask) const {
+        if (!tracer_.may_order(rays.size())) return {};
+        std::vector<TraceHit> found(rays.size());
+        if (!tracer_.ordered_hits(make_batch(rays), found, query, mask)) return {};
+        return found;
+    }
+
+    void find_occlusion(std::span<const Ray> rays, std::span<uint8_t> hits, uint32_t mask) const {
+        const std::vector<TraceHit> found = find_ordered(rays, OrderedQuery::any, mask);
+        for (size_t k = 0; k < found.size(); ++k) hits[k] = found[k].is_hit();
+        if (!found.empty()) return;
+        parallel_for("any_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
+            const std::vector<TraceRay> batch = make_batch(rays.subspan(begin, end - begin));
+            tracer_.any_hits(batch, hits.subspan(begin, end - begin), 0, mask);
+        });
+    }
+
     bool find_ordered_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const {
-        if (!tracer_.may_order(rays.size())) return false;
-        const std::vector<TraceRay> batch = make_batch(rays);
-        std::vector<TraceHit> found(batch.size());
-        if (!tracer_.ordered_hits(batch, found, mask)) return false;
+        const std::vector<TraceHit> found = find_ordered(rays, OrderedQuery::closest, mask);
+        if (found.empty()) return false;
         parallel_for("closest_hits", rays.size(), kBatchSize, [&](size_t begin, size_t end) {
             make_ray_hits(std::span(found).subspan(begin, end - begin), hits.subspan(begin, end - begin));
         });

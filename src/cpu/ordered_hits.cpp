@@ -25,14 +25,16 @@ struct OrderedPairs {
 
 using Slices = std::vector<std::vector<PatchEntry>>;
 
-Slices list_pairs(const Kernels& kernels, const RunCast& run, std::span<const TraceRay> rays,
-                  std::span<TraceHit> hits) {
-    Slices slices((rays.size() + kSliceSize - 1) / kSliceSize);
-    parallel_for("list_patches", rays.size(), kSliceSize, [&](size_t begin, size_t end) {
-        run(end - begin, [&](const SceneView& scene, TraceContext& context) {
-            for (size_t k = begin; k < end; ++k)
-                kernels.list_patches(scene, context, rays[k], uint32_t(k), hits[k],
-                                     slices[begin / kSliceSize]);
+Slices list_pairs(const OrderedCast& cast, std::span<TraceHit> hits) {
+    Slices slices((cast.rays.size() + kSliceSize - 1) / kSliceSize);
+    parallel_for("list_patches", cast.rays.size(), kSliceSize, [&](size_t begin, size_t end) {
+        std::vector<PatchEntry>& slice = slices[begin / kSliceSize];
+        cast.run(end - begin, [&](const SceneView& scene, TraceContext& context) {
+            for (size_t k = begin; k < end; ++k) {
+                const size_t count = slice.size();
+                cast.kernels.list_patches(scene, context, cast.rays[k], uint32_t(k), hits[k], slice);
+                if (cast.query == OrderedQuery::any && hits[k].is_hit()) slice.resize(count);
+            }
         });
     });
     return slices;
@@ -91,9 +93,21 @@ class RayLocks {
     std::vector<std::atomic<uint8_t>> is_taken_;
 };
 
-void trace_group(const Kernels& kernels, const SceneView& scene, TraceContext& context,
-                 std::span<PatchEntry> group, std::span<const TraceRay> rays, std::span<TraceHit> hits,
-                 RayLocks& locks) {
+/// One pair; the ray is locked.
+void trace_pair(const OrderedCast& cast, const SceneView& scene, TraceContext& context,
+                const PatchEntry& entry, TraceHit& hit) {
+    const TraceRay& ray = cast.rays[entry.ray];
+    const PrimitiveKernels& primitive = cast.kernels.primitive;
+    if (cast.query == OrderedQuery::closest) {
+        if (!(entry.entry > hit.t * scalar::kBoxSlack))
+            primitive.closest(scene, context, ray, entry.instance, entry.patch, hit);
+    } else if (!hit.is_hit() && primitive.any(scene, context, ray, entry.instance, entry.patch, hit)) {
+        hit.instance = entry.instance;
+    }
+}
+
+void trace_group(const OrderedCast& cast, const SceneView& scene, TraceContext& context,
+                 std::span<PatchEntry> group, std::span<TraceHit> hits, RayLocks& locks) {
     const auto key = [&](const PatchEntry& e) {
         return std::tuple(scene.instances[e.instance].levels->packed_at(e.patch), e.entry, e.ray);
     };
@@ -101,9 +115,7 @@ void trace_group(const Kernels& kernels, const SceneView& scene, TraceContext& c
     const PatchTreeCache::OwnedTrees scope(*scene.cache, context);
     for (const PatchEntry& entry : group) {
         locks.lock(entry.ray);
-        TraceHit& hit = hits[entry.ray];
-        if (!(entry.entry > hit.t * scalar::kBoxSlack))
-            kernels.primitive.closest(scene, context, rays[entry.ray], entry.instance, entry.patch, hit);
+        trace_pair(cast, scene, context, entry, hits[entry.ray]);
         locks.unlock(entry.ray);
     }
 }
@@ -116,19 +128,18 @@ size_t count_tree_bytes(uint32_t level) {
     return (PatchTree::size_bytes(kTileLevel) << 2 * depth) + TileDirectory::size_bytes(depth + 1);
 }
 
-bool trace_ordered(const Kernels& kernels, const SceneView& scene, const RunCast& run,
-                   std::span<const TraceRay> rays, std::span<TraceHit> hits, size_t room_bytes) {
-    DCHECK(rays.size() == hits.size() && rays.size() <= kOrderedRays);
-    OrderedPairs pairs = order_pairs(scene, list_pairs(kernels, run, rays, hits));
-    if (count_bytes(scene, pairs) <= room_bytes) return false;
-    RayLocks locks(rays.size());
+bool trace_ordered(const OrderedCast& cast, std::span<TraceHit> hits) {
+    DCHECK(cast.rays.size() == hits.size() && cast.rays.size() <= kOrderedRays);
+    OrderedPairs pairs = order_pairs(cast.scene, list_pairs(cast, hits));
+    if (count_bytes(cast.scene, pairs) <= cast.room_bytes) return false;
+    RayLocks locks(cast.rays.size());
     parallel_for("ordered_hits", pairs.begins.size() - 1, 1, [&](size_t begin, size_t end) {
-        run(0, [&](const SceneView& view, TraceContext& context) {
+        cast.run(0, [&](const SceneView& view, TraceContext& context) {
             for (size_t k = begin; k < end; ++k)
                 trace_group(
-                    kernels, view, context,
+                    cast, view, context,
                     std::span(pairs.entries).subspan(pairs.begins[k], pairs.begins[k + 1] - pairs.begins[k]),
-                    rays, hits, locks);
+                    hits, locks);
         });
     });
     return true;

@@ -20,10 +20,21 @@ using RunCast =
 /// Bytes of all trees of a patch at its levels.
 size_t count_tree_bytes(uint32_t level);
 
-/// Nearest hits as Kernels::closest_hits finds them, of rays with an LOD bias of 0. If the trees of all
-/// patches that the rays may meet fit into `room_bytes`: false, and `hits` is not to be used. Uses the
-/// threads of the scope.
-bool trace_ordered(const Kernels& kernels, const SceneView& scene, const RunCast& run,
-                   std::span<const TraceRay> rays, std::span<TraceHit> hits, size_t room_bytes);
+/// closest: the hits of Kernels::closest_hits. any: those of rays that Kernels::any_hits calls occluded are
+/// hits, and say nothing else.
+enum class OrderedQuery { closest, any };
+
+struct OrderedCast {
+    const Kernels& kernels;
+    const SceneView& scene;
+    const RunCast& run;
+    OrderedQuery query;
+    std::span<const TraceRay> rays; ///< LOD bias 0, at most kOrderedRays
+    size_t room_bytes;              ///< for trees
+};
+
+/// Hits of the rays, `hits[k]` of `rays[k]`. If the trees of all patches that they may meet have room: false,
+/// and `hits` is not to be used. Uses the threads of the scope.
+bool trace_ordered(const OrderedCast& cast, std::span<TraceHit> hits);
 
 } // namespace relief::cpu

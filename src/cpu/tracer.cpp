@@ -205,16 +205,17 @@ bool Tracer::may_order(size_t count) const {
            self.most_tree_bytes > self.cache->cap_byte_count();
 }
 
-bool Tracer::ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, uint32_t mask) const {
+bool Tracer::ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, OrderedQuery query,
+                          uint32_t mask) const {
     const Implementation& self = *implementation_;
     if (!may_order(rays.size()) || self.is_hidden(mask)) return false;
     const size_t room = self.cache->find_room();
     if (room < kLeastOrderedRoom || self.most_tree_bytes <= room) return false;
     const RunCast run = [&](size_t count, const auto& work) {
-        Batch batch(self, 0, count, mask);
+        Batch batch(self, query == OrderedQuery::any ? 1 : 0, count, mask);
         work(batch.view, batch.context);
     };
-    return trace_ordered(*self.kernels, self.view, run, rays, hits, room);
+    return trace_ordered({*self.kernels, self.view, run, query, rays, room}, hits);
 }
 
 void Tracer::continued_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {

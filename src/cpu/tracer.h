@@ -52,6 +52,7 @@ struct SurfacePoint {
 
 struct ShadingKernels;
 class SceneWalk;
+enum class OrderedQuery;
 
 /// What one thread needs for many points at once.
 struct PointScratch {
@@ -98,10 +99,11 @@ class Tracer {
     /// them: bounces behind the rays. Instances are met whose visibility mask shares a bit with `mask`.
     void closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth = 0,
                       uint32_t mask = kVisibleToAll) const;
-    /// The same of rays without an LOD bias, at most kOrderedRays, on the threads of the scope: each patch
-    /// tree is built once for all of them (ordered_hits.h). False, and nothing is found, where the trees that
-    /// they need fit into the cache, or rays are too few or need another traversal.
-    bool ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, uint32_t mask) const;
+    /// The same, or any hit, of rays without an LOD bias, at most kOrderedRays, on the threads of the scope:
+    /// each patch tree is built once for all of them (ordered_hits.h). False, and nothing is found, where the
+    /// trees that they need fit into the cache, or rays are too few or need another traversal.
+    bool ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, OrderedQuery query,
+                      uint32_t mask) const;
     /// False where ordered_hits of `count` rays is sure to be.
     bool may_order(size_t count) const;
     /// The same for further parts of rays that closest_hits has counted.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "cpu/cpu_engine.h"
 #include "cpu/ordered_hits.h"
 #include "cpu/tracer.h"
 #include "support/bodies.h"
@@ -74,7 +75,7 @@ TEST(OrderedHits, are_those_of_single_rays_in_a_scene_of_all_kinds) {
         Tracer(scene, settings).closest_hits(rays, expected, 0, mask);
         settings.surface.cache_bytes = kCap;
         const Tracer tracer(scene, settings);
-        with_threads(4, [&] { ASSERT_TRUE(tracer.ordered_hits(rays, found, mask)); });
+        with_threads(4, [&] { ASSERT_TRUE(tracer.ordered_hits(rays, found, OrderedQuery::closest, mask)); });
         size_t hits = 0, plain = 0;
         for (size_t k = 0; k < rays.size(); ++k) {
             ASSERT_TRUE(are_equal(found[k], expected[k])) << k << " mask " << mask;
@@ -94,9 +95,55 @@ TEST(OrderedHits, build_no_tree_twice_where_single_rays_build_most_again) {
     const Tracer single(scene, settings), ordered(scene, settings);
     single.closest_hits(rays, hits);
     EXPECT_GT(count_built(single), 4 * kPatches * kTiles);
-    with_threads(4, [&] { ASSERT_TRUE(ordered.ordered_hits(rays, hits, kVisibleToAll)); });
+    with_threads(
+        4, [&] { ASSERT_TRUE(ordered.ordered_hits(rays, hits, OrderedQuery::closest, kVisibleToAll)); });
     EXPECT_LE(count_built(ordered), kPatches * kTiles);
     EXPECT_GT(count_built(ordered), kPatches * kTiles / 2);
+}
+
+TEST(OrderedHits, say_which_rays_are_occluded) {
+    for (const uint32_t mask : {kVisibleToAll, 1u}) {
+        RenderSettings settings;
+        const auto scene = prepare(make_mixed_scene(), settings);
+        std::vector<TraceRay> rays = make_incoherent_rays(8000);
+        for (size_t k = 0; k < rays.size(); k += 3) rays[k].t_max = 0.7f;
+        std::vector<uint8_t> expected(rays.size());
+        std::vector<TraceHit> found(rays.size());
+        Tracer(scene, settings).any_hits(rays, expected, 0, mask);
+        settings.surface.cache_bytes = kCap;
+        const Tracer tracer(scene, settings);
+        with_threads(4, [&] { ASSERT_TRUE(tracer.ordered_hits(rays, found, OrderedQuery::any, mask)); });
+        size_t occluded = 0;
+        for (size_t k = 0; k < rays.size(); ++k) {
+            ASSERT_EQ(found[k].is_hit(), expected[k] != 0) << k << " mask " << mask;
+            occluded += expected[k];
+        }
+        EXPECT_GT(occluded, 2500u);
+        EXPECT_LT(occluded, 7500u);
+    }
+}
+
+/// Of an Intersector with a small cache, and how many trees it built for rays of both kinds.
+uint64_t count_built_for_occlusion(const Scene& scene, size_t rays) {
+    RenderSettings settings;
+    const auto prepared = prepare(scene, settings);
+    settings.surface.cache_bytes = kCap;
+    const std::unique_ptr<Engine> engine = make_cpu_engine(prepared, settings);
+    std::vector<Ray> batch;
+    for (const TraceRay& ray : make_incoherent_rays(rays))
+        batch.push_back({ray.origin, ray.t_min, ray.direction, ray.t_max});
+    std::vector<uint8_t> hits(rays);
+    with_threads(4, [&] { engine->any_hits(batch, hits, kVisibleToAll); });
+    Statistics statistics;
+    engine->add_statistics(statistics);
+    return statistics.bottom_built;
+}
+
+TEST(OrderedHits, build_no_tree_twice_for_rays_that_ask_for_any) {
+    EXPECT_GT(count_built_for_occlusion(make_torus_scene(), 3000), 2 * kPatches * kTiles); // too few to order
+    const uint64_t built = count_built_for_occlusion(make_torus_scene(), 8000);
+    EXPECT_LE(built, kPatches * kTiles);
+    EXPECT_GT(built, kPatches * kTiles / 2);
 }
 
 TEST(OrderedHits, are_not_made_where_all_trees_fit_or_rays_are_few) {
@@ -104,15 +151,16 @@ TEST(OrderedHits, are_not_made_where_all_trees_fit_or_rays_are_few) {
     const auto scene = prepare(make_torus_scene(), settings);
     const std::vector<TraceRay> rays = make_incoherent_rays(8000);
     std::vector<TraceHit> hits(rays.size());
-    EXPECT_FALSE(Tracer(scene, settings).ordered_hits(rays, hits, kVisibleToAll));
+    EXPECT_FALSE(Tracer(scene, settings).ordered_hits(rays, hits, OrderedQuery::closest, kVisibleToAll));
     settings.surface.cache_bytes = kCap;
     const Tracer small(scene, settings);
-    EXPECT_FALSE(small.ordered_hits(std::span(rays).first(100), std::span(hits).first(100), kVisibleToAll));
+    EXPECT_FALSE(small.ordered_hits(std::span(rays).first(100), std::span(hits).first(100),
+                                    OrderedQuery::closest, kVisibleToAll));
     // All of one patch or two.
     std::vector<TraceRay> narrow(8000, rays[0]);
     narrow[0].direction = narrow[0].origin * -1.0f;
     std::ranges::fill(narrow, narrow[0]);
-    EXPECT_FALSE(small.ordered_hits(narrow, hits, kVisibleToAll));
+    EXPECT_FALSE(small.ordered_hits(narrow, hits, OrderedQuery::closest, kVisibleToAll));
 }
 
 } // namespace
