@@ -28,7 +28,8 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         Film film = make_film(settings.image);
         const std::string identity = describe_samples(settings, scene_hash);
         if (checkpoints.resume) film.read(*checkpoints.resume, identity);
-        std::shared_ptr<const PreparedScene> prepared = prepare_scene(std::move(scene), settings);
+        std::shared_ptr<const PreparedScene> prepared =
+            prepare_scene(std::move(scene), settings, SceneOrigin::camera);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);
         statistics.prepare_s = total.seconds();
 
@@ -43,10 +44,11 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         if (control.save && film.most_samples() > 0) control.save();
 
         collect_statistics(*engine, film, *prepared, statistics);
+        const Vec3f origin = prepared->origin;
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
         result.whole_samples = int(film.least_samples());
-        result.image = film.resolve();
+        result.image = film.resolve(origin);
         add_metadata(settings, scene_hash, result.is_complete, film, result.image);
     });
     statistics.total_s = total.seconds();

@@ -242,7 +242,7 @@ void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
     }
 }
 
-Image Film::resolve() const {
+Image Film::resolve(const Vec3f& origin) const {
     Image image;
     image.width = window_.x1 - window_.x0;
     image.height = window_.y1 - window_.y0;
@@ -267,6 +267,8 @@ Image Film::resolve() const {
             for (const Layer& layer : layers_) {
                 if (layer.is_hidden) continue;
                 write_layer(p, layer, target);
+                if (kLayerKinds[layer.kind].source == Source::position && hit_counts_[p] > 0)
+                    target[0] += origin.x, target[1] += origin.y, target[2] += origin.z;
                 target += channel_count(kLayerKinds[layer.kind]);
             }
         }

@@ -65,7 +65,8 @@ class Film {
     /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
     /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
-    Image resolve() const;
+    /// `origin`: what P was measured from.
+    Image resolve(const Vec3f& origin = {}) const;
 
     /// The least and the greatest number of samples that a pixel has.
     uint32_t least_samples() const;

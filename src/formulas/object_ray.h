@@ -1,7 +1,7 @@
 // One ray in an object's space: conservative test against boxes, watertight against triangles.
 #ifndef RELIEF_OBJECT_RAY_H
 #define RELIEF_OBJECT_RAY_H
-#include "formulas/exact.h"
+#include "formulas/local_start.h"
 
 #include "formulas/begin.h"
 
@@ -18,6 +18,7 @@ struct ObjectRay {
     uint axis_x, axis_y, axis_z; ///< the two minor axes and the major one
     float shear_x, shear_y;      ///< along the minor axes
     float shear_z;               ///< 1 / direction along the major one
+    float shift;                 ///< t of the ray itself where `origin` lies: all t below are its own
 };
 
 /// Interval in which a ray is inside a box; a miss has entry > exit * kBoxSlack.
@@ -56,6 +57,7 @@ FN ObjectRay make_object_ray(Vec3 origin, Vec3 direction) {
     ray.shear_x = shear_x;
     ray.shear_y = shear_y;
     ray.shear_z = shear_z;
+    ray.shift = 0.0f;
     return ray;
 }
 
@@ -72,8 +74,9 @@ FN BoxInterval cross_box(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, flo
     float far_x = is_x_backward ? to_lower.x : to_upper.x;
     float far_y = is_y_backward ? to_lower.y : to_upper.y;
     float far_z = is_z_backward ? to_lower.z : to_upper.z;
-    BoxInterval result = {max(max(near_x, near_y), max(near_z, t_min)),
-                          min(min(far_x, far_y), min(far_z, t_max))};
+    EXACT float entry = max(max(near_x, near_y), near_z) + ray.shift;
+    EXACT float exit = min(min(far_x, far_y), far_z) + ray.shift;
+    BoxInterval result = {max(entry, t_min), min(exit, t_max)};
     return result;
 }
 
@@ -106,7 +109,7 @@ FN TriangleHit intersect_sheared(ObjectRay ray, Vec3 a, Vec3 b, Vec3 c, float t_
     if (!(min(min(u, v), w) >= 0.0f || max(max(u, v), w) <= 0.0f)) return result;
     EXACT float sum = u + v + w;
     if (sum == 0.0f) return result;
-    EXACT float t = (u * a.z + v * b.z + w * c.z) / sum * ray.shear_z;
+    EXACT float t = (u * a.z + v * b.z + w * c.z) / sum * ray.shear_z + ray.shift;
     if (!(t > t_min && t <= t_max)) return result;
     result.t = t;
     result.weight_b = v / sum;

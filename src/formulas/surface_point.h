@@ -43,10 +43,10 @@ FN Float sum_magnitudes(Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
 /// Bound of a point's position error: each step errs by a few ulp of the largest term. `corner`: largest
 /// coordinate of the corners in object space; `row`: largest sum_magnitudes of the linear part's rows;
-/// `translation` and `position`: their largest coordinates.
-FN Float bound_position_error(Float corner, Float row, Float translation, Float position) {
+/// `translation` and `position`: their largest coordinates; `share`: share_of_place.
+FN Float bound_position_error(Float corner, Float row, Float translation, Float position, Float share) {
     const float units = 32.0f * 5.9604644775390625e-8f;
-    return Float(units) * (row * corner + translation + position);
+    return Float(units) * (row * corner + translation * share + position * share);
 }
 
 /// uv in a displaced patch, or a quad cut from one; corners in order.

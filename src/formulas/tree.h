@@ -133,24 +133,6 @@ struct KdRay {
     float end; ///< negative: the cell is missed
 };
 
-/// origin + speed t with a single rounding, so that distant rays are not shifted: the rounding error of the
-/// product is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
-FN float move_origin(float origin, float speed, float t) {
-    EXACT float product = speed * t;
-    EXACT float sum = origin + product;
-    if (!(abs(t) < 1e34f)) return sum;
-    EXACT float speed_shifted = speed * 4097.0f;
-    EXACT float speed_high = speed_shifted - (speed_shifted - speed);
-    EXACT float speed_low = speed - speed_high;
-    EXACT float t_shifted = t * 4097.0f;
-    EXACT float t_high = t_shifted - (t_shifted - t);
-    EXACT float t_low = t - t_high;
-    EXACT float lost =
-        ((speed_high * t_high - product) + speed_high * t_low + speed_low * t_high) + speed_low * t_low;
-    EXACT float result = sum + lost;
-    return result;
-}
-
 /// 2 - kBoxSlack. A literal, because shader compilers fold constants in double precision.
 const float kCellSlack = 0.99999845f;
 
@@ -159,9 +141,10 @@ FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t
     // Never beyond the face: far from the origin, the float spacing exceeds the cell's margin.
     EXACT float offset = interval.entry * kCellSlack;
     EXACT float end = interval.exit * kBoxSlack - offset;
-    Vec3 origin = {move_origin(ray.origin.x, ray.direction.x, offset),
-                   move_origin(ray.origin.y, ray.direction.y, offset),
-                   move_origin(ray.origin.z, ray.direction.z, offset)};
+    EXACT float way = offset - ray.shift;
+    Vec3 origin = {move_origin(ray.origin.x, ray.direction.x, way),
+                   move_origin(ray.origin.y, ray.direction.y, way),
+                   move_origin(ray.origin.z, ray.direction.z, way)};
     KdRay result;
     result.direction = ray.direction;
     result.origin = offset > 0.0f ? origin : ray.origin;

@@ -104,7 +104,7 @@ PointColours colour_point(const PreparedScene& scene, const Ray& ray, const RayH
     const Place place = find_place(surface, hit.patch, hit.uv);
     const Vec3f half{0.5f, 0.5f, 0.5f};
     colours.axes = (half + place.displacement * (0.5f / longest)) * light;
-    const Vec3f base_normal = transform_normal(instance.object_from_world, place.base.frame.n);
+    const Vec3f base_normal = transform_normal(instance.object_space.from_origin, place.base.frame.n);
     const float facing = dot(hit.normal, base_normal) * (instance.is_mirrored ? -1.0f : 1.0f);
     if (facing < 0) colours.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
     return colours;
@@ -127,7 +127,7 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
                                        : std::array{Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}};
             const Vec3f from = transform_point(instance.world_from_object, base.position);
             const scalar::CameraProjection start = scalar::project_point(camera, from);
-            const Vec3f normal = transform_normal(instance.object_from_world, base.frame.n);
+            const Vec3f normal = transform_normal(instance.object_space.from_origin, base.frame.n);
             if (!(start.distance > 0) || dot(normal, camera.origin - from) < 0) continue;
             // A sixteenth of the height of the picture long, wherever the patch is.
             const float size = start.distance * length(camera.step_y) * float(settings.image.height) / 16;

@@ -14,6 +14,6 @@ struct EditableScene {
 };
 
 /// As prepare_scene().
-EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings);
+EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings, SceneOrigin origin);
 
 } // namespace relief

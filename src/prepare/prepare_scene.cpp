@@ -11,6 +11,7 @@
 #include "formulas/mips.h"
 #include "math/affine.h"
 #include "prepare/editable_scene.h"
+#include "prepare/local_origins.h"
 #include "prepare/scene_warnings.h"
 #include "prepare/space_warnings.h"
 #include "prepare/tessellate.h"
@@ -36,11 +37,7 @@ Instance make_instance(const Object& object, uint32_t surface, uint32_t default_
     Instance instance;
     instance.surface = surface;
     instance.material = object.material == kNoIndex ? default_material : object.material;
-    instance.world_from_object = object.world_from_object;
     instance.visibility_mask = object.visibility_mask;
-    instance.object_from_world = *invert(object.world_from_object);
-    instance.is_mirrored = compute_determinant(object.world_from_object) < 0;
-    instance.is_in_place = instance.object_from_world == Affine{} && instance.world_from_object == Affine{};
     return instance;
 }
 
@@ -54,13 +51,13 @@ void check_visibility(const Scene& scene) {
                                                "leave the object out, or set a bit"});
 }
 
-LevelFieldConfig make_level_config(const Scene& scene, const RenderSettings& settings) {
+LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& settings) {
     LevelFieldConfig config;
     config.fixed_level = settings.surface.level == kAutoLevel ? -1 : settings.surface.level;
     config.pixel_error = settings.surface.pixel_error;
-    config.camera = scene.camera.from;
+    config.camera = camera.from;
     config.pixel_angle =
-        float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
+        float(2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
     return config;
 }
 
@@ -203,7 +200,7 @@ std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t sur
     return choose_mips(scene.surfaces[surface], levels);
 }
 
-EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings) {
+EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings, SceneOrigin origin) {
     validate_scene(scene);
     check_visibility(scene);
     auto prepared = std::make_shared<PreparedScene>();
@@ -229,11 +226,13 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
         if (is_new) first_object.push_back(k);
         prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
     }
+    const std::vector<Vec3f> taken_off = move_meshes_to_origin(scene);
     prepare_maps(scene, editable);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
     share_mips(scene, surface_of_key, *prepared);
+    place_instances(scene, taken_off, origin, *prepared);
 
-    prepared->levels = make_level_config(scene, settings);
+    prepared->levels = make_level_config(prepared->camera, settings);
     parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             Instance& instance = prepared->instances[k];
@@ -251,8 +250,10 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     return editable;
 }
 
-std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings) {
-    const std::shared_ptr<PreparedScene> prepared = prepare_editable_scene(std::move(scene), settings).scene;
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings,
+                                                   SceneOrigin origin) {
+    const std::shared_ptr<PreparedScene> prepared =
+        prepare_editable_scene(std::move(scene), settings, origin).scene;
     for (PreparedMap& map : prepared->maps)
         if (map.coefficients) map.texture = nullptr;
     return prepared;

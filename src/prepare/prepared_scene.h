@@ -18,11 +18,21 @@
 
 namespace relief {
 
+/// The way from the world into the space of an object.
+struct ObjectSpace {
+    Vec3f origin{}; ///< what places are measured from first, world space: 0 but for objects that lie far away
+    Affine from_origin; ///< of what is left then; its linear part is the inverse of world_from_object's
+
+    Vec3f place(const Vec3f& p_world) const { return transform_point(from_origin, p_world - origin); }
+};
+
 /// One placed surface.
 struct Instance {
     uint32_t surface = 0;  ///< index into PreparedScene::surfaces
     uint32_t material = 0; ///< index into PreparedScene::materials
-    Affine world_from_object, object_from_world;
+    Affine world_from_object;
+    ObjectSpace object_space;
+    float reach = 0; ///< of the displaced surface from the object's origin, world space
     uint32_t visibility_mask = kVisibleToAll; ///< of the object
     bool is_mirrored = false;                 ///< negative determinant: the winding is turned
     bool is_in_place = false;                 ///< object space is world space
@@ -53,15 +63,21 @@ struct PreparedScene {
     Camera camera;
     uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture
-    LevelFieldConfig levels;   ///< what the instances' levels were computed with
+    Vec3f origin{}; ///< world space is measured from here, camera and lights included: SceneOrigin::camera
+    LevelFieldConfig levels; ///< what the instances' levels were computed with
     std::vector<std::string> warnings;
 };
 
 /// Chooses the copies of maps that the surfaces read, by the levels of their instances.
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 
+/// What world space is measured from. camera: from there, if an object lies so far away from the origin that
+/// its shadows would lose digits; for pictures, whose rays all start at the camera or at what it sees.
+enum class SceneOrigin { world, camera };
+
 /// The one way from a scene to a prepared one: validates, makes surfaces in parallel, computes levels, lists
 /// warnings; meshes are freed as used. Throws bad_input, out_of_memory for a tessellation.
-std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings);
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings,
+                                                   SceneOrigin origin = SceneOrigin::world);
 
 } // namespace relief

@@ -11,6 +11,7 @@
 
 #include "base/content_hash.h"
 #include "prepare/editable_scene.h"
+#include "prepare/local_origins.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
 #include "surface/patch/map_edit.h"
@@ -68,7 +69,7 @@ void refuse_tessellated(const SurfaceSettings& settings) {
 SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings)
     : lod_(settings.surface.lod), hash_(scene.hash) {
     refuse_tessellated(settings.surface);
-    EditableScene editable = prepare_editable_scene(std::move(scene), settings);
+    EditableScene editable = prepare_editable_scene(std::move(scene), settings, SceneOrigin::camera);
     scene_ = std::move(editable.scene), mips_ = std::move(editable.mips);
     own_maps();
 }
@@ -271,6 +272,9 @@ std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
     }
     update_levels(changes);
     update_mips(changes);
+    // Rays from far away are moved another way then, to all of the surface.
+    for (SurfaceChange& change : changes)
+        if (update_reach(*scene_, change.surface)) std::ranges::fill(change.is_changed, uint8_t(1));
     for (size_t k = 0; k < changes.size(); ++k) {
         extend_reach(changes[k].surface, reaches[k]);
         find_different_patches(readings, reaches[k], changes[k]);

@@ -217,7 +217,9 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
     for (const Instance& instance : scene.instances) {
         const Surface& surface = scene.surfaces[instance.surface];
         scalar::InstanceData data{};
-        data.object_from_world = make_affine_data(instance.object_from_world);
+        data.object_from_origin = make_affine_data(instance.object_space.from_origin);
+        data.origin = instance.object_space.origin;
+        data.reach = instance.reach;
         data.world_from_object = make_affine_data(instance.world_from_object);
         data.surface = instance.surface;
         data.material = instance.material;

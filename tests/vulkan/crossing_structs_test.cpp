@@ -25,7 +25,7 @@ namespace relief::scalar {
 namespace relief::vulkan::tests {
 namespace {
 
-static_assert(sizeof(scalar::InstanceData) == 31 * 4);
+static_assert(sizeof(scalar::InstanceData) == 35 * 4);
 static_assert(sizeof(scalar::SurfaceData) == 14 * 4);
 static_assert(sizeof(scalar::MapData) == 18 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);

@@ -20,6 +20,7 @@
 #include "formulas/ggx_albedo.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
+#include "formulas/local_start.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"

@@ -7,6 +7,7 @@
 #include "cpu/shading/shading_kernels.h"
 #include "formulas/control_points.h"
 #include "formulas/levels.h"
+#include "formulas/local_start.h"
 #include "formulas/mips.h"
 #include "formulas/wide-inl.h"
 
@@ -24,8 +25,8 @@ static_assert(sizeof(Affine) == 48 && sizeof(InnerControls) == 9 * 16);
 struct HitLanes {
     LaneQuads corner[4][4]; ///< VertexData of the patch's corners, four floats a part
     LaneQuads controls[9];  ///< InnerControls, four floats a part, where the base is bicubic
-    LaneQuads world_from_object[3], object_from_world[3];
-    alignas(64) float u[16], v[16], i[16], j[16], side[16], normal_side[16], turn[16];
+    LaneQuads world_from_object[3], object_from_origin[3]; ///< Affine
+    alignas(64) float u[16], v[16], i[16], j[16], side[16], normal_side[16], turn[16], share_of_place[16];
     alignas(64) float is_upper[16], is_seam[4][16]; ///< not 0: true
     alignas(64) float vertex_u[3][16], vertex_v[3][16];
     alignas(64) float foreign[3][3][16]; ///< vertex, axis: where the vertex is not the patch's own
@@ -79,11 +80,12 @@ inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& lev
 HWY_INLINE void load_place(const Instance& instance, const cpu::TraceHit& hit, const PatchLevels& levels,
                            size_t lane, HitLanes& lanes) {
     load_quads(&instance.world_from_object, lane, lanes.world_from_object, 3);
-    load_quads(&instance.object_from_world, lane, lanes.object_from_world, 3);
+    load_quads(&instance.object_space.from_origin, lane, lanes.object_from_origin, 3);
     lanes.u[lane] = hit.u, lanes.v[lane] = hit.v;
     lanes.i[lane] = hit.i, lanes.j[lane] = hit.j;
     lanes.side[lane] = float(1u << levels.patch);
     lanes.turn[lane] = instance.is_mirrored ? -1.0f : 1.0f;
+    lanes.share_of_place[lane] = scalar::share_of_place(instance.object_space.origin);
     lanes.is_upper[lane] = hit.is_upper ? 1.0f : 0.0f;
 }
 
@@ -267,7 +269,8 @@ HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVec3&
     const Lanes16 row = wide::max(wide::max(wide::sum_magnitudes(m.rows[0]), wide::sum_magnitudes(m.rows[1])),
                                   wide::sum_magnitudes(m.rows[2]));
     point.position_error = wide::bound_position_error(corner, row, wide::largest_coordinate(m.translation),
-                                                      wide::largest_coordinate(point.triangle.position));
+                                                      wide::largest_coordinate(point.triangle.position),
+                                                      Lanes16::load(lanes.share_of_place));
     return point;
 }
 
@@ -317,7 +320,7 @@ HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLane
 inline void store_points(const cpu::PointBatch& batch, size_t first, size_t count, const HitLanes& lanes,
                          const CellPointLanes& cell, const WideVec3& smooth, const WideVec2& uv) {
     static_assert(offsetof(cpu::SurfacePoint, position_error) == 48);
-    const AffineLanes inverse(lanes.object_from_world);
+    const AffineLanes inverse(lanes.object_from_origin);
     const WideVec3 shading_normal = wide::orient_shading_normal(
         inverse.rows[0] * smooth.x + inverse.rows[1] * smooth.y + inverse.rows[2] * smooth.z,
         cell.triangle.normal);

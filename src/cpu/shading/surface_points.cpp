@@ -4,6 +4,7 @@
 #include <array>
 
 #include "formulas/cell_place.h"
+#include "formulas/local_start.h"
 #include "formulas/mips.h"
 #include "formulas/surface_point.h"
 
@@ -29,13 +30,14 @@ Corners make_corners(const Surface& surface, const PatchSamples* samples, const 
             hit.is_upper ? vertex(0, 1) : vertex(1, 1)};
 }
 
-float bound_position_error(const Affine& world_from_object, const Corners& corners, const Vec3f& position) {
+float bound_position_error(const Instance& instance, const Corners& corners, const Vec3f& position) {
+    const Affine& world_from_object = instance.world_from_object;
     float corner = 0, row = 0;
     for (const Vec3f& p : corners) corner = std::max(corner, scalar::largest_coordinate(p));
     for (const Vec3f& r : world_from_object.rows) row = std::max(row, scalar::sum_magnitudes(r));
-    return scalar::bound_position_error(corner, row,
-                                        scalar::largest_coordinate(world_from_object.translation),
-                                        scalar::largest_coordinate(position));
+    return scalar::bound_position_error(
+        corner, row, scalar::largest_coordinate(world_from_object.translation),
+        scalar::largest_coordinate(position), scalar::share_of_place(instance.object_space.origin));
 }
 
 Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
@@ -118,7 +120,7 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
     point.position = triangle.position;
     point.geometric_normal = triangle.normal;
     point.area_per_uv = triangle.area_per_uv;
-    point.position_error = bound_position_error(world_from_object, corners, point.position);
+    point.position_error = bound_position_error(instance, corners, point.position);
     return point;
 }
 
@@ -130,8 +132,8 @@ SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit,
     SurfacePoint point = make_cell_point(scene, hit, samples);
     const Vec3f smooth = samples ? compute_shading_normal(surface, *samples, hit.patch, level, hit.u, hit.v)
                                  : compute_shading_normal(surface, hit.patch, level, hit.u, hit.v);
-    point.shading_normal = scalar::orient_shading_normal(transform_normal(instance.object_from_world, smooth),
-                                                         point.geometric_normal);
+    point.shading_normal = scalar::orient_shading_normal(
+        transform_normal(instance.object_space.from_origin, smooth), point.geometric_normal);
     point.uv = interpolate_uv(surface, hit.patch, hit.u, hit.v);
     return point;
 }

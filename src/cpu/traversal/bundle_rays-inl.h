@@ -29,6 +29,7 @@ struct BundleRays {
     uint32_t count, lod_bias;
     bool has_one_origin;
     Vec3f origin;                            ///< of all, or of the first
+    Box origins;                             ///< about all, once pad_inactive_lanes has been
     alignas(64) uint32_t found[kBundleSize]; ///< number in the log, kWritten or kNothing
     alignas(64) float t[kBundleSize];        ///< of the nearest hit, or the ray's t_max
     alignas(64) float t_min[kBundleSize];
@@ -122,6 +123,21 @@ inline void pad_inactive_lanes(BundleRays& rays) {
         if (rays.has_one_origin) continue;
         for (float* from : rays.from) from[k] = from[last];
     }
+    rays.origins = {rays.origin, rays.origin};
+    if (rays.has_one_origin) return;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float* const from = rays.from[axis];
+        Lanes16 least = Lanes16::load(from), greatest = least;
+        for (uint32_t at = kGroupSize; at < rays.count; at += kGroupSize)
+            least = min(least, Lanes16::load(from + at)), greatest = max(greatest, Lanes16::load(from + at));
+        set_component(rays.origins.lower, axis, reduce_min(least));
+        set_component(rays.origins.upper, axis, reduce_max(greatest));
+    }
+}
+
+/// Whether a ray begins so far away from an object that it is moved there by itself.
+HWY_INLINE bool is_any_far_away(const BundleRays& rays, const Instance& placed) {
+    return is_far_away(rays.origins.lower, placed) || is_far_away(rays.origins.upper, placed);
 }
 
 /// Width of the box of the origins over the distance of neighbours; of a tile of 16 x 16 pixels some 16.
@@ -138,13 +154,8 @@ inline bool are_neighbours_close(const BundleRays& rays) {
     }
     std::nth_element(distance.begin(), distance.begin() + kSamples / 2, distance.end());
     const float widest = kWidestBeam * distance[kSamples / 2];
-    for (const auto& from : rays.from) {
-        Lanes16 least = Lanes16::load(from), greatest = least;
-        for (uint32_t at = kGroupSize; at < rays.count; at += kGroupSize)
-            least = min(least, Lanes16::load(from + at)), greatest = max(greatest, Lanes16::load(from + at));
-        if (!(reduce_max(greatest) - reduce_min(least) <= widest)) return false;
-    }
-    return true;
+    const Vec3f extent = rays.origins.extent();
+    return extent.x <= widest && extent.y <= widest && extent.z <= widest;
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -226,10 +226,18 @@ HWY_NOINLINE void trace_block(const cpu::TriangleBlock& block, const ProjectedBo
     hits.offer();
 }
 
-/// An instance in whose space the rays are no bundle: one after another.
-inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                         BundleRays& rays) {
+/// An instance in whose space the rays are no bundle: one after another, those that may meet `bounds`.
+template <class Bundle>
+void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                  const Bundle& world_bundle, const ProjectedBounds& bounds) {
+    BundleRays& rays = *world_bundle.rays;
+    LaneMask left[kGroupCount] = {};
+    for (LaneMask groups = find_groups(bounds, world_bundle); groups; groups &= groups - 1) {
+        const uint32_t group = uint32_t(__builtin_ctz(groups));
+        left[group] = load_lanes(world_bundle, group).find_inside(bounds) & rays.group_mask(group);
+    }
     for (uint32_t k = 0; k < rays.count; ++k) {
+        if (!(left[k / kGroupSize] >> k % kGroupSize & 1)) continue;
         const cpu::TraceRay world{rays.origin_of(k), rays.t_min[k], rays.direction_of(k), rays.t[k],
                                   rays.lod_bias};
         RayState ray;
@@ -237,9 +245,9 @@ inline void trace_singly(const cpu::SceneView& scene, cpu::TraceContext& context
         if (rays.found[k] == kWritten) ray.hit = rays.hits[k];
         ray.hit.lod_bias = uint8_t(rays.lod_bias);
         ray.instance = instance;
-        enter_object(world, scene.instances[instance].object_from_world, ray);
+        enter_object(world, scene.instances[instance], ray);
         trace_instance<Query::closest>(scene, context, world, 0, ray);
-        rays.t[k] = ray.t_max;
+        rays.t[k] = ray.hit_t_max();
         if (!ray.hit.is_hit()) continue;
         rays.hits[k] = ray.hit, rays.found[k] = kWritten;
     }
@@ -277,17 +285,19 @@ void trace_instances(const cpu::SceneView& scene, cpu::TraceContext& context, Bu
     BundleWalker walker{scene.instance_tree->nodes, world};
     walk_primitives(*scene.instance_tree, context, walker, {}, [&](uint32_t instance, const BundleEntry&) {
         if (!scene.is_visible(instance)) return false;
-        if (scene.instances[instance].is_in_place) {
+        const Instance& placed = scene.instances[instance];
+        const bool is_far = is_any_far_away(*world.rays, placed);
+        if (placed.is_in_place && !is_far) {
             world.instance = instance;
             trace_instance(scene, context, world);
             return false;
         }
         Bundle local;
         local.rays = world.rays, local.instance = instance;
-        if (enter_space(scene.instances[instance].object_from_world, local))
+        if (!is_far && enter_space(placed.object_space, local))
             trace_instance(scene, context, local);
         else
-            trace_singly(scene, context, instance, *world.rays);
+            trace_singly(scene, context, instance, world, walker.bounds);
         for (uint32_t group = 0; group < kGroupCount; ++group)
             world.farthest[group] = find_farthest(world, group);
         join_upper(world.farthest);
@@ -306,7 +316,8 @@ bool trace_bundle(const cpu::SceneView& scene, cpu::TraceContext& context, Bundl
     Bundle bundle;
     bundle.rays = &rays, bundle.instance = 0;
     const bool is_alone = scene.instance_count == 1;
-    if (!enter_space(is_alone ? scene.instances[0].object_from_world : Affine{}, bundle)) return false;
+    if (is_alone && is_any_far_away(rays, scene.instances[0])) return false;
+    if (!enter_space(is_alone ? scene.instances[0].object_space : ObjectSpace{}, bundle)) return false;
     if (is_alone)
         trace_instance(scene, context, bundle);
     else

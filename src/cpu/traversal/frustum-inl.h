@@ -40,19 +40,20 @@ HWY_INLINE void make_sides(RayFrustum& frustum) {
 }
 
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
-HWY_INLINE bool enter_space(const Affine& object_from_world, RayFrustum& frustum) {
+HWY_INLINE bool enter_space(const ObjectSpace& space, RayFrustum& frustum) {
     const BundleRays& rays = *frustum.rays;
-    frustum.origin = transform_point(object_from_world, rays.origin);
+    const Affine& from_origin = space.from_origin;
+    frustum.origin = space.place(rays.origin);
     const auto direction = [&](uint32_t k) {
-        return normalize(transform_vector(object_from_world, rays.direction_of(k)));
+        return normalize(transform_vector(from_origin, rays.direction_of(k)));
     };
     // Axes along the rows that rays come in.
-    choose_axes(find_forward(object_from_world, rays), direction(HWY_MIN(3u, rays.count - 1)) - direction(0),
+    choose_axes(find_forward(from_origin, rays), direction(HWY_MIN(3u, rays.count - 1)) - direction(0),
                 frustum);
-    if (!choose_major_axis(object_from_world, frustum)) return false;
+    if (!choose_major_axis(from_origin, frustum)) return false;
     for (uint32_t group = 0; group < kGroupCount; ++group) {
         Lanes16 d[3], rcp_dz_dt;
-        transform_directions(rays, object_from_world, group * kGroupSize, d);
+        transform_directions(rays, from_origin, group * kGroupSize, d);
         if (!store_directions(d, group * kGroupSize, frustum, rcp_dz_dt)) return false;
         store_range(dot_lanes(d, frustum.right) * rcp_dz_dt, dot_lanes(d, frustum.up) * rcp_dz_dt, group,
                     frustum);

@@ -144,7 +144,7 @@ bool visit_primitive(const cpu::SceneView& scene, cpu::TraceContext& context, co
     ray.t_min = world.t_min, ray.t_max = std::fmin(world.t_max, best.t);
     ray.instance = instance;
     ray.hit = best;
-    enter_object(world, scene.instances[instance].object_from_world, ray);
+    enter_object(world, scene.instances[instance], ray);
     const bool has_hit = trace_primitive<kQuery>(scene, context, world, patch, ray);
     best = ray.hit;
     return has_hit;

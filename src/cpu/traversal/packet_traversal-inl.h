@@ -173,11 +173,29 @@ HWY_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& co
     });
 }
 
+/// The lanes of `mask` that begin far away from an instance go there by themselves, each moved; returns the
+/// others.
+template <Query kQuery>
+HWY_INLINE LaneMask visit_from_far(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
+                                   Packet& world, LaneMask mask) {
+    LaneMask far = world.lanes->find_far_away(scene.instances[instance]) & mask;
+    const LaneMask near = mask & ~far;
+    for (; far; far &= far - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(far));
+        take_hit<kQuery>(
+            world, lane,
+            visit_instance<kQuery>(scene, context, world.world[lane], instance, world.ray[lane]));
+    }
+    return near;
+}
+
 /// The instance for the lanes of `mask`; results go back to the packet of world rays.
 template <Query kQuery>
 void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance, Packet& world,
                     LaneMask mask) {
     if (!scene.is_visible(instance)) return;
+    mask = visit_from_far<kQuery>(scene, context, instance, world, mask);
+    if (mask == 0) return;
     const Instance& placed = scene.instances[instance];
     if (placed.is_in_place) {
         for (RayState& ray : world.ray) ray.instance = instance;
@@ -188,12 +206,12 @@ void trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, uin
     local.world = world.world, local.lanes = world.lanes;
     local.active = mask;
     for (int lane = 0; lane < 16; ++lane) local.ray[lane].hit = world.ray[lane].hit;
-    enter_object(*world.lanes, Lanes16::load(world.t_max), placed.object_from_world, instance, local);
+    enter_object(*world.lanes, Lanes16::load(world.t_max), placed.object_space, instance, local);
     trace_surface<kQuery>(scene, context, placed.surface, local, mask);
     for (LaneMask left = mask; left; left &= left - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(left));
-        world.ray[lane].hit = local.ray[lane].hit;
-        world.ray[lane].t_max = world.t_max[lane] = local.ray[lane].t_max;
+        take_over(world.ray[lane], local.ray[lane]);
+        world.t_max[lane] = local.ray[lane].t_max;
     }
     world.update_reach();
     world.active &= ~(mask & ~local.active);
@@ -205,13 +223,12 @@ LaneMask trace_packet(const cpu::SceneView& scene, cpu::TraceContext& context, c
                       const RayLanes& lanes, Packet& packet) {
     packet.world = rays, packet.lanes = &lanes;
     packet.active = 0xffff;
-    const bool is_alone = scene.instance_count == 1;
-    const Affine space_from_world = is_alone ? scene.instances[0].object_from_world : Affine{};
-    enter_object(lanes, lanes.t_max, space_from_world, is_alone ? 0 : kNoIndex, packet);
-    if (is_alone) {
+    if (scene.instance_count == 1 && lanes.find_far_away(scene.instances[0]) == 0) {
+        enter_object(lanes, lanes.t_max, scene.instances[0].object_space, 0, packet);
         trace_surface<kQuery>(scene, context, scene.instances[0].surface, packet, 0xffff);
         return ~packet.active & 0xffff;
     }
+    enter_object(lanes, lanes.t_max, {}, kNoIndex, packet);
     PacketWalker walker{packet, [&](uint32_t child, uint32_t lane) {
                             take_hit<kQuery>(
                                 packet, lane,

@@ -36,19 +36,19 @@ HWY_INLINE float find_farthest(const ParallelBeam& beam, uint32_t group) {
     return reduce_max(find_ends(beam, group));
 }
 
-/// Origins into the space, by the operations of transform_point, and where depth 0 is.
-HWY_INLINE void place_origins(const Affine& object_from_world, ParallelBeam& beam) {
+/// Origins into the space, by the operations of ObjectSpace::place, and where depth 0 is.
+HWY_INLINE void place_origins(const ObjectSpace& space, ParallelBeam& beam) {
     const BundleRays& rays = *beam.rays;
-    const Vec3f& t = object_from_world.translation;
-    const float translation[3] = {t.x, t.y, t.z};
-    const Vec3f first = transform_point(object_from_world, rays.origin_of(0));
+    const Vec3f &t = space.from_origin.translation, &o = space.origin;
+    const float translation[3] = {t.x, t.y, t.z}, origin[3] = {o.x, o.y, o.z};
+    const Vec3f first = space.place(rays.origin_of(0));
     const float base[3] = {first.x, first.y, first.z};
     Lanes16 depth(0.0f);
     for (size_t at = 0; at < kBundleSize; at += kGroupSize) {
         Lanes16 world[3], relative[3];
-        for (int k = 0; k < 3; ++k) world[k] = Lanes16::load(rays.from[k] + at);
+        for (int k = 0; k < 3; ++k) world[k] = Lanes16::load(rays.from[k] + at) - Lanes16(origin[k]);
         for (size_t k = 0; k < 3; ++k) {
-            const Lanes16 place = dot_lanes(world, object_from_world.rows[k]) + Lanes16(translation[k]);
+            const Lanes16 place = dot_lanes(world, space.from_origin.rows[k]) + Lanes16(translation[k]);
             place.store(beam.from[k] + at);
             relative[k] = place - Lanes16(base[k]);
         }
@@ -92,12 +92,12 @@ struct PivotSums {
 };
 
 /// Sixteen rays as lines, x and y at depth 0. False for several major axes or rays that go backward.
-HWY_INLINE bool enter_group(const Affine& object_from_world, uint32_t group, ParallelBeam& beam,
-                            Lanes16& extent, PivotSums& sums) {
+HWY_INLINE bool enter_group(const Affine& from_origin, uint32_t group, ParallelBeam& beam, Lanes16& extent,
+                            PivotSums& sums) {
     const size_t at = group * kGroupSize;
     const float origin[3] = {beam.origin.x, beam.origin.y, beam.origin.z};
     Lanes16 d[3], o[3], rcp_dz_dt;
-    transform_directions(*beam.rays, object_from_world, at, d);
+    transform_directions(*beam.rays, from_origin, at, d);
     if (!store_directions(d, at, beam, rcp_dz_dt)) return false;
     for (int k = 0; k < 3; ++k) o[k] = Lanes16::load(beam.from[k] + at) - Lanes16(origin[k]);
     const Lanes16 x = dot_lanes(o, beam.right), y = dot_lanes(o, beam.up);
@@ -126,18 +126,19 @@ HWY_INLINE bool place_group(uint32_t group, ParallelBeam& beam, Lanes16& extent)
 }
 
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
-HWY_INLINE bool enter_space(const Affine& object_from_world, ParallelBeam& beam) {
+HWY_INLINE bool enter_space(const ObjectSpace& space, ParallelBeam& beam) {
     const BundleRays& rays = *beam.rays;
+    const Affine& from_origin = space.from_origin;
     const uint32_t near = HWY_MIN(3u, rays.count - 1);
     const Vec3f along = (rays.origin_of(near) - rays.origin_of(0)) +
                         (normalize(rays.direction_of(near)) - normalize(rays.direction_of(0)));
-    choose_axes(find_forward(object_from_world, rays), transform_vector(object_from_world, along), beam);
-    if (!choose_major_axis(object_from_world, beam)) return false;
-    place_origins(object_from_world, beam);
+    choose_axes(find_forward(from_origin, rays), transform_vector(from_origin, along), beam);
+    if (!choose_major_axis(from_origin, beam)) return false;
+    place_origins(space, beam);
     Lanes16 extent(0.0f);
     PivotSums sums;
     for (uint32_t group = 0; group < kGroupCount; ++group)
-        if (!enter_group(object_from_world, group, beam, extent, sums)) return false;
+        if (!enter_group(from_origin, group, beam, extent, sums)) return false;
     // Farther away lines spread with the depth, whatever the pivot, and places lose digits.
     beam.pivot = HWY_MIN(sums.find_depth(), 1e3f * reduce_max(extent));
     for (uint32_t group = 0; group < kGroupCount; ++group)

@@ -18,7 +18,7 @@ inline void list_instance(const cpu::SceneView& scene, cpu::TraceContext& contex
     RayWalker walker{ray};
     walk_primitives(scene.surface_trees[surface], context, walker, {0, ray.t_min},
                     [&](uint32_t patch, const StackEntry& leaf) {
-                        entries.push_back({leaf.entry, ray_index, ray.instance, patch});
+                        entries.push_back({leaf.entry + ray.shift, ray_index, ray.instance, patch});
                         return false;
                     });
 }
@@ -30,16 +30,16 @@ inline void list_patches(const cpu::SceneView& scene, cpu::TraceContext& context
     if (!relief::can_hit(world)) return;
     RayState best;
     best.t_min = world.t_min, best.t_max = world.t_max;
-    enter_object(world, Affine{}, best);
+    enter_world(world, best);
     RayWalker walker{best};
     walk_primitives(*scene.instance_tree, context, walker, {0, best.t_min},
                     [&](uint32_t instance, const StackEntry&) {
                         if (!scene.is_visible(instance)) return false;
                         RayState ray = best;
                         ray.instance = instance;
-                        enter_object(world, scene.instances[instance].object_from_world, ray);
+                        enter_object(world, scene.instances[instance], ray);
                         list_instance(scene, context, world, ray_index, ray, entries);
-                        best.t_max = ray.t_max, best.hit = ray.hit;
+                        take_over(best, ray);
                         return false;
                     });
     hit = best.hit;

@@ -98,11 +98,11 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::PatchTree&
     cpu::PatchTree::block_cell(int(tree.level), block, column, row);
     const uint32_t cells = 1u << tree.level;
     alignas(32) float distance[8];
-    entry.store(distance);
+    (entry + Lanes8(ray.shift)).store(distance);
     bool has_hit = false;
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = uint32_t(__builtin_ctz(mask));
-        if (column + (cell & 3) >= cells || row + (cell >> 2) >= cells || distance[cell] > ray.t_max)
+        if (column + (cell & 3) >= cells || row + (cell >> 2) >= cells || distance[cell] > ray.hit_t_max())
             continue;
         if constexpr (kQuery == Query::any) return true;
         cpu::TraceHit hit;

@@ -87,11 +87,11 @@ template <class Bundle> HWY_INLINE void update_groups(Bundle& bundle, LaneMask d
 }
 
 /// Directions of sixteen rays in an object's space, by the operations of transform_vector.
-HWY_INLINE void transform_directions(const BundleRays& rays, const Affine& object_from_world, size_t at,
+HWY_INLINE void transform_directions(const BundleRays& rays, const Affine& from_origin, size_t at,
                                      Lanes16 (&d)[3]) {
     Lanes16 world[3];
     for (int k = 0; k < 3; ++k) world[k] = Lanes16::load(rays.direction[k] + at);
-    for (size_t k = 0; k < 3; ++k) d[k] = dot_lanes(world, object_from_world.rows[k]);
+    for (size_t k = 0; k < 3; ++k) d[k] = dot_lanes(world, from_origin.rows[k]);
 }
 
 /// Axes of a plane that faces `forward`, one of them about along `along`.
@@ -120,19 +120,19 @@ HWY_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
 }
 
 /// About the middle of the rays.
-HWY_INLINE Vec3f find_forward(const Affine& object_from_world, const BundleRays& rays) {
+HWY_INLINE Vec3f find_forward(const Affine& from_origin, const BundleRays& rays) {
     const auto direction = [&](uint32_t k) {
-        return normalize(transform_vector(object_from_world, rays.direction_of(k)));
+        return normalize(transform_vector(from_origin, rays.direction_of(k)));
     };
     const uint32_t last = rays.count - 1;
     return normalize(direction(0) + direction(last / 3) + direction(last - last / 3) + direction(last));
 }
 
 /// Takes the major axis of the first sixteen rays for all; false where these have several.
-HWY_INLINE bool choose_major_axis(const Affine& object_from_world, RayBundle& bundle) {
+HWY_INLINE bool choose_major_axis(const Affine& from_origin, RayBundle& bundle) {
     static constexpr int kMinorAxes[4][2] = {{1, 2}, {2, 0}, {0, 1}, {0, 0}};
     Lanes16 d[3];
-    transform_directions(*bundle.rays, object_from_world, 0, d);
+    transform_directions(*bundle.rays, from_origin, 0, d);
     const int major = find_major_axis(d);
     bundle.axis[0] = kMinorAxes[major][0], bundle.axis[1] = kMinorAxes[major][1];
     bundle.axis[2] = major;

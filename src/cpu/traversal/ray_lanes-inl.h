@@ -6,6 +6,8 @@
 
 #include "cpu/tracer.h"
 #include "formulas/lanes-inl.h"
+#include "formulas/local_start.h"
+#include "prepare/prepared_scene.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -31,6 +33,18 @@ struct RayLanes {
         }
         starts.transpose(origin[0], origin[1], origin[2], t_min);
         ends.transpose(direction[0], direction[1], direction[2], t_max);
+    }
+
+    /// is_far_away of each.
+    HWY_INLINE LaneMask find_far_away(const Instance& placed) const {
+        const Vec3f& center = placed.world_from_object.translation;
+        const Lanes16 limit(scalar::kFarAway * placed.reach);
+        const auto measure = [&](const Lanes16& from, float to) {
+            const Lanes16 way = from - Lanes16(to);
+            return max(way, Lanes16(to) - from);
+        };
+        return less(limit, max(max(measure(origin[0], center.x), measure(origin[1], center.y)),
+                               measure(origin[2], center.z)));
     }
 
     /// relief::can_hit of each, repeated ones included.

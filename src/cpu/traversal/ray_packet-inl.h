@@ -116,18 +116,23 @@ static_assert(offsetof(RayState, reciprocal) == 4 * 3 && offsetof(RayState, near
               offsetof(RayState, far_plane) == 4 * 15 && offsetof(RayState, axis) == 4 * 18 &&
               offsetof(RayState, shear) == 4 * 21 && offsetof(RayState, t_min) == 4 * 24 &&
               offsetof(RayState, t_max) == 4 * 25 && offsetof(RayState, instance) == 4 * 26 &&
-              offsetof(RayState, hit) == 4 * 28);
+              offsetof(RayState, shift) == 4 * 27 && offsetof(RayState, hit) == 4 * 28);
 
-/// Sixteen rays into the space of an object: enter_object of each, operation for operation. `t_max` is how
-/// far they still ask; `instance` is kNoIndex for the world itself; hits stay as they are.
-HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const Affine& object_from_world,
+/// Sixteen rays into the space of an object: enter_object of each that is not far away, operation for
+/// operation. `t_max` is how far they still ask; `instance` is kNoIndex for the world itself; hits stay as
+/// they are.
+HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const ObjectSpace& space,
                              uint32_t instance, Packet& packet) {
-    const float translation[3] = {object_from_world.translation.x, object_from_world.translation.y,
-                                  object_from_world.translation.z};
+    const Affine& from_origin = space.from_origin;
+    const float translation[3] = {from_origin.translation.x, from_origin.translation.y,
+                                  from_origin.translation.z};
+    const Lanes16 origin[3] = {world.origin[0] - Lanes16(space.origin.x),
+                               world.origin[1] - Lanes16(space.origin.y),
+                               world.origin[2] - Lanes16(space.origin.z)};
     AxisLanes axis[3];
     for (size_t k = 0; k < 3; ++k) {
-        const Vec3f& row = object_from_world.rows[k];
-        axis[k] = make_axis_lanes(dot_lanes(world.origin, row) + Lanes16(translation[k]),
+        const Vec3f& row = from_origin.rows[k];
+        axis[k] = make_axis_lanes(dot_lanes(origin, row) + Lanes16(translation[k]),
                                   dot_lanes(world.direction, row));
         packet.lower_origin[k] = axis[k].lower_origin, packet.upper_origin[k] = axis[k].upper_origin;
         packet.reciprocal[k] = axis[k].reciprocal;
@@ -148,7 +153,7 @@ HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const 
     store_quads(major.pick(number[0], number[1], number[2]),
                 major.pick(y.direction, z.direction, x.direction) * inverse,
                 major.pick(z.direction, x.direction, y.direction) * inverse, inverse, 20, rays);
-    store_quads(world.t_min, t_max, integer_lanes(instance), integer_lanes(0), 24, rays);
+    store_quads(world.t_min, t_max, integer_lanes(instance), Lanes16(0.0f), 24, rays);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -76,27 +76,33 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
         });
 }
 
+/// Everything of one instance. `best` is in world space and carries t_max and the hit.
+template <Query kQuery>
+HWY_INLINE bool visit_instance(const cpu::SceneView& scene, cpu::TraceContext& context,
+                               const cpu::TraceRay& world, uint32_t instance, RayState& best) {
+    if (!scene.is_visible(instance)) return false;
+    const Instance& placed = scene.instances[instance];
+    if (placed.is_in_place && !is_far_away(world.origin, placed)) {
+        best.instance = instance;
+        return trace_instance<kQuery>(scene, context, world, 0, best);
+    }
+    RayState ray = best;
+    ray.instance = instance;
+    enter_object(world, placed, ray);
+    const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
+    take_over(best, ray);
+    return is_hit;
+}
+
 /// The whole scene along one ray, from `root` of the instance tree. `best` carries t_max and the hit.
 template <Query kQuery>
 bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
                  uint32_t root, RayState& best) {
     RayWalker walker{best};
-    const auto visit = [&](uint32_t instance, const StackEntry&) {
-        if (!scene.is_visible(instance)) return false;
-        const Instance& placed = scene.instances[instance];
-        if (placed.is_in_place) {
-            best.instance = instance;
-            return trace_instance<kQuery>(scene, context, world, 0, best);
-        }
-        RayState ray = best;
-        ray.instance = instance;
-        enter_object(world, placed.object_from_world, ray);
-        const bool is_hit = trace_instance<kQuery>(scene, context, world, 0, ray);
-        best.t_max = ray.t_max;
-        best.hit = ray.hit;
-        return is_hit;
-    };
-    return walk_primitives(*scene.instance_tree, context, walker, {root, best.t_min}, visit);
+    return walk_primitives(*scene.instance_tree, context, walker, {root, best.t_min},
+                           [&](uint32_t instance, const StackEntry&) {
+                               return visit_instance<kQuery>(scene, context, world, instance, best);
+                           });
 }
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
@@ -105,11 +111,11 @@ HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& contex
                           RayState& ray) {
     ray.t_min = world.t_min, ray.t_max = world.t_max;
     if (scene.instance_count != 1) {
-        enter_object(world, Affine{}, ray);
+        enter_world(world, ray);
         return trace_scene<kQuery>(scene, context, world, 0, ray);
     }
     ray.instance = 0;
-    enter_object(world, scene.instances[0].object_from_world, ray);
+    enter_object(world, scene.instances[0], ray);
     return trace_instance<kQuery>(scene, context, world, 0, ray);
 }
 

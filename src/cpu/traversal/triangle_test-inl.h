@@ -34,8 +34,9 @@ template <size_t W> HWY_INLINE LaneMask find_places(const Lanes<W> (&z)[3], Tria
 template <size_t W>
 HWY_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
     find_places(z, test);
-    test.t = test.t * Lanes<W>(ray.shear[2]);
-    return test.mask &= less(Lanes<W>(ray.t_min), test.t) & less_equal(test.t, Lanes<W>(ray.t_max));
+    test.t = test.t * Lanes<W>(ray.shear[2]) + Lanes<W>(ray.shift);
+    return test.mask &=
+           less(Lanes<W>(ray.hit_t_min()), test.t) & less_equal(test.t, Lanes<W>(ray.hit_t_max()));
 }
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis. load(axis) gives coordinates.
@@ -58,7 +59,15 @@ HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
 
 /// Takes over a hit if it is nearer, or as near and first in that order.
 HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
-    if (hit.t == ray.hit.t ? comes_before(hit, ray.hit) : hit.t < ray.hit.t) ray.hit = hit, ray.t_max = hit.t;
+    if (!(hit.t == ray.hit.t ? comes_before(hit, ray.hit) : hit.t < ray.hit.t)) return;
+    ray.hit = hit;
+    ray.shorten(hit.t);
+}
+
+/// What the ray found in a space of its own.
+HWY_INLINE void take_over(RayState& ray, const RayState& found) {
+    ray.hit = found.hit;
+    ray.shorten(found.hit_t_max());
 }
 
 /// Offers the hits of a test; locate(lane, weight_b, weight_c, hit) sets cell, is_upper, u and v.
@@ -68,7 +77,7 @@ HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate lo
     test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
     for (LaneMask mask = test.mask; mask; mask &= mask - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(mask));
-        if (t[lane] > ray.t_max) continue;
+        if (t[lane] > ray.hit_t_max()) continue;
         const float sum = u[lane] + v[lane] + w[lane];
         cpu::TraceHit hit;
         hit.t = t[lane], hit.instance = ray.instance, hit.lod_bias = ray.hit.lod_bias;

@@ -94,8 +94,13 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
         const Instance& instance = view_.scene.instances[index];
         instance_ = index;
         tree_ = &view_.trees.surfaces[instance.surface];
-        ray_ = make_object_ray(transform_point(instance.object_from_world, world_.origin),
-                               transform_vector(instance.object_from_world, world_.direction));
+        const LocalStart local =
+            find_local_start(world_.origin, world_.direction, instance.object_space.origin,
+                             instance.world_from_object.translation, instance.reach);
+        const Affine& from_origin = instance.object_space.from_origin;
+        ray_ = make_object_ray(transform_point(from_origin, local.origin),
+                               transform_vector(from_origin, world_.direction));
+        ray_.shift = local.shift;
         if constexpr (kIsKd) patches_.clear();
         start();
     }

@@ -1,6 +1,7 @@
 #include "surface/map/displacement_map.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,22 @@ std::array<Vec3f, 3> make_matrix(const Displacement& displacement, const Affine&
     return turned;
 }
 
+ChannelRange find_whole_range(const DisplacementMap& map, const DisplacementMap::Tile& tile) {
+    return tile.pyramid->query(0, 0, int64_t(tile.texture->width) - 1, int64_t(tile.texture->height) - 1,
+                               WrapMode::clamp, {map.midlevel.x, map.midlevel.y, map.midlevel.z});
+}
+
+/// Along an axis of the frame, of which no coordinate is longer than the longest.
+double find_row_reach(const DisplacementMap& map, const Vec3f& row, const ChannelRange& range) {
+    double reach = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double middle = get_component(map.midlevel, c);
+        const double low = double(range.low[c]) - middle, high = double(range.high[c]) - middle;
+        reach += std::fmax(std::fabs(low), std::fabs(high)) * std::fabs(get_component(row, c));
+    }
+    return reach * double(map.longest_axis);
+}
+
 } // namespace
 
 DisplacementMap::ImageView DisplacementMap::image(uint8_t tile, uint32_t mip) const {
@@ -67,13 +84,7 @@ PyramidCache::get_or_build(const std::shared_ptr<const Texture>& texture) {
 void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
                  const ChannelRange& range) {
     for (const Vec3f& row : map.matrix) {
-        double reach = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double middle = get_component(map.midlevel, c);
-            const double low = double(range.low[c]) - middle, high = double(range.high[c]) - middle;
-            reach += std::fmax(std::fabs(low), std::fabs(high)) * std::fabs(get_component(row, c));
-        }
-        reach *= double(map.longest_axis);
+        const double reach = find_row_reach(map, row, range);
         if (!(reach <= kLargestDisplacement))
             throw Error(ErrorKind::bad_input,
                         {fmt::format("map '{}' displaces by {:g}", file, reach),
@@ -82,11 +93,19 @@ void check_reach(const std::string& name, const DisplacementMap& map, const std:
 }
 
 void check_reach(const std::string& name, const DisplacementMap& map) {
-    const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
     for (const DisplacementMap::Tile& tile : map.tiles)
-        check_reach(name, map, tile.texture->file,
-                    tile.pyramid->query(0, 0, int64_t(tile.texture->width) - 1,
-                                        int64_t(tile.texture->height) - 1, WrapMode::clamp, middle));
+        check_reach(name, map, tile.texture->file, find_whole_range(map, tile));
+}
+
+double find_longest_displacement(const DisplacementMap& map) {
+    double longest = 0;
+    for (const DisplacementMap::Tile& tile : map.tiles) {
+        const ChannelRange range = find_whole_range(map, tile);
+        double sum = 0;
+        for (const Vec3f& row : map.matrix) sum += find_row_reach(map, row, range);
+        longest = std::fmax(longest, sum);
+    }
+    return std::numbers::sqrt3 * longest; // an axis is at most so much longer than its longest coordinate
 }
 
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,

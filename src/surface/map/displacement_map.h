@@ -30,6 +30,9 @@ void check_reach(const std::string& name, const DisplacementMap& map, const std:
 /// The same of all tiles.
 void check_reach(const std::string& name, const DisplacementMap& map);
 
+/// A length that no texel displaces by more than; 0 without a map.
+double find_longest_displacement(const DisplacementMap& map);
+
 /// Throws bad_input with the displacement's name for a map without tiles, an axis out of range, a factor that
 /// is not finite, a displacement above 1e18, and whatever BoundsPyramid::build refuses.
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,

@@ -10,10 +10,12 @@ struct AffineData {
 };
 
 struct InstanceData {
-    AffineData object_from_world, world_from_object;
-    uint surface;     ///< index into surfaces
-    uint material;    ///< index into materials
-    uint root;        ///< node of the surface's tree; kNone: the surface is empty
+    AffineData object_from_origin, world_from_object;
+    Vec3 origin;   ///< what places are measured from first, world space: 0 but for objects that lie far away
+    float reach;   ///< of the displaced surface from the object's origin, world space
+    uint surface;  ///< index into surfaces
+    uint material; ///< index into materials
+    uint root;     ///< node of the surface's tree; kNone: the surface is empty
     uint first_level; ///< index into levels; kNone: all patches have `levels`
     uint levels;      ///< packed
     uint is_mirrored; ///< winding reversed

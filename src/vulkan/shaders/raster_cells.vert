@@ -12,7 +12,7 @@ vec3 bound_vector(AffineData a, vec3 v) {
 
 /// Camera in object space. Its scale does not affect the projection, only the range of floats.
 ObjectCamera enter_camera(InstanceData instance) {
-    AffineData m = instance.object_from_world;
+    AffineData m = instance.object_from_origin;
     vec3 reach = abs(push.corner) + float(push.x0 + push.width) * abs(push.step_x) +
                  float(push.y0 + push.height) * abs(push.step_y);
     vec3 bound = bound_vector(m, reach);
@@ -22,7 +22,7 @@ ObjectCamera enter_camera(InstanceData instance) {
                       transform_vector(m, push.step_y) * scale);
     CameraVectors bounds = CameraVectors(bound_vector(m, push.corner) * scale, bound_vector(m, push.step_x) * scale,
                                          bound_vector(m, push.step_y) * scale);
-    return make_object_camera(transform_point(m, push.origin), vectors, bounds, bound * scale);
+    return make_object_camera(transform_point(m, subtract_exact(push.origin, instance.origin)), vectors, bounds, bound * scale);
 }
 
 /// In pixels of the drawn region, with a margin: the ray of a pixel may pass through any point of it, but fragments are

@@ -21,8 +21,12 @@ layout(scalar, set = 0, binding = kBindJobs) buffer Jobs { uint jobs[]; };
 layout(scalar, set = 0, binding = kBindBuilds) buffer Builds { uint builds[]; };
 
 ObjectRay enter_object(RayData ray, InstanceData instance) {
-    return make_object_ray(transform_point(instance.object_from_world, ray.origin),
-                           transform_vector(instance.object_from_world, ray.direction));
+    LocalStart start = find_local_start(ray.origin, ray.direction, instance.origin, instance.world_from_object.t,
+                                        instance.reach);
+    ObjectRay result = make_object_ray(transform_point(instance.object_from_origin, start.origin),
+                                       transform_vector(instance.object_from_origin, ray.direction));
+    result.shift = start.shift;
+    return result;
 }
 
 uint64_t make_nearest(float t, uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }

@@ -100,8 +100,8 @@ vec3 transform_vector(AffineData a, vec3 v) {
 }
 vec3 transform_point(AffineData a, vec3 p) { return add_exact(transform_vector(a, p), a.t); }
 /// Not normalised.
-vec3 transform_normal(AffineData object_from_world, vec3 n) {
-    return object_from_world.x * n.x + object_from_world.y * n.y + object_from_world.z * n.z;
+vec3 transform_normal(AffineData inverse, vec3 n) {
+    return inverse.x * n.x + inverse.y * n.y + inverse.z * n.z;
 }
 
 #endif

@@ -44,7 +44,7 @@ Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) 
     vec2 at = vec2(hit.u, hit.v);
     uint level = packed_patch_level(hit.levels);
     vec3 interpolated = compute_shading_normal(s, corners, hit.patch_index, level, at);
-    vec3 normal = orient_shading_normal(transform_normal(instance.object_from_world, interpolated), geometric_normal);
+    vec3 normal = orient_shading_normal(transform_normal(instance.object_from_origin, interpolated), geometric_normal);
     Appearance appearance;
     appearance.shading_normal = is_flipped ? -normal : normal;
     appearance.uv = interpolate_uv(s, corners, at);

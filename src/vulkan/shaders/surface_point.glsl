@@ -5,6 +5,7 @@
 #include "vulkan/shaders/patch_evaluation.glsl"
 #include "formulas/warp.h"
 #include "formulas/surface_point.h"
+#include "formulas/local_start.h"
 #include "formulas/cell_place.h"
 #include "formulas/shading_normal.h"
 #include "vulkan/layout/device_rays.h"
@@ -15,11 +16,13 @@ struct CellPoint {
     float position_error;
 };
 
-float bound_error(AffineData world_from_object, vec3 a, vec3 b, vec3 c, vec3 position) {
+float bound_error(InstanceData instance, vec3 a, vec3 b, vec3 c, vec3 position) {
+    AffineData world_from_object = instance.world_from_object;
     float corner = max(max(largest_coordinate(a), largest_coordinate(b)), largest_coordinate(c));
     float row = max(max(sum_magnitudes(world_from_object.x), sum_magnitudes(world_from_object.y)),
                     sum_magnitudes(world_from_object.z));
-    return bound_position_error(corner, row, largest_coordinate(world_from_object.t), largest_coordinate(position));
+    return bound_position_error(corner, row, largest_coordinate(world_from_object.t), largest_coordinate(position),
+                                share_of_place(instance.origin));
 }
 
 CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_index, uint packed_levels,
@@ -45,7 +48,7 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
         make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
                             transform_vector(m, corner[2] - corner[0]), instance.is_mirrored != 0u ? -1.0 : 1.0,
                             triangle_uv_area(is_triangle(corners.quad), side));
-    point.position_error = bound_error(m, corner[0], corner[1], corner[2], point.triangle.position);
+    point.position_error = bound_error(instance, corner[0], corner[1], corner[2], point.triangle.position);
     return point;
 }
 

@@ -16,6 +16,7 @@
 #include "formulas/levels.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
+#include "formulas/local_start.h"
 #include "formulas/lod.h"
 #include "formulas/mips.h"
 #include "formulas/morton.h"

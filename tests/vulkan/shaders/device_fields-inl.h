@@ -45,8 +45,8 @@ struct AllStructs {
 #define FIELD2(path) FIELD(path.x) FIELD(path.y)
 #define FIELD3(path) FIELD(path.x) FIELD(path.y) FIELD(path.z)
 #define FIELDS_INSTANCE(s) \
-    FIELD3(s.object_from_world.x) FIELD3(s.object_from_world.y) FIELD3(s.object_from_world.z) \
-    FIELD3(s.object_from_world.t) FIELD3(s.world_from_object.x) FIELD3(s.world_from_object.y) \
+    FIELD3(s.object_from_origin.x) FIELD3(s.object_from_origin.y) FIELD3(s.object_from_origin.z) \
+    FIELD3(s.object_from_origin.t) FIELD3(s.origin) FIELD(s.reach) FIELD3(s.world_from_object.x) FIELD3(s.world_from_object.y) \
     FIELD3(s.world_from_object.z) FIELD3(s.world_from_object.t) FIELD(s.surface) FIELD(s.material) \
     FIELD(s.root) FIELD(s.first_level) FIELD(s.levels) FIELD(s.is_mirrored) FIELD(s.visibility_mask)
 #define FIELDS_SURFACE(s) \

@@ -11,7 +11,8 @@ struct ExactResults {
     uint hash, pixel_seed;
     UintPair sobol;
     uint unit, cell, cell_column, cell_row, cell_is_upper;
-    uint blend_quad, blend_cubic, filter_texels, decode_row, carried; ///< bits of floats that decide topology
+    uint blend_quad, blend_cubic, filter_texels, decode_row, carried, moved,
+        lost; ///< bits of floats that decide topology
 };
 
 struct WarpResults {
@@ -96,6 +97,11 @@ FN ExactResults run_exact(FormulaInput from) {
         floatBitsToUint(decode_row(from.u[0], from.u[2], from.u[4], from.u[6], from.u[8], from.u[10]));
     r.carried = floatBitsToUint(
         carry_through_frame(from.u[1], from.u[3], from.u[5], from.u[7], from.u[9], from.u[11]));
+    // Nearly all of a sum or a difference cancels.
+    r.moved = floatBitsToUint(move_origin(-3e5f * from.u[0], 3e5f, from.u[0]));
+    Vec3 a = {from.u[1], from.u[2], from.u[3]};
+    Vec3 b = {1e3f * from.u[4], from.u[5], 1e-3f * from.u[6]};
+    r.lost = floatBitsToUint(dot_exact(find_lost_by_subtraction(a, b, subtract_exact(a, b)), b));
     return r;
 }
 
@@ -233,7 +239,7 @@ FN SurfaceResults run_surface(FormulaInput from) {
     r.position = point.position;
     r.normal = point.normal;
     r.area_per_uv = point.area_per_uv;
-    r.error = bound_position_error(largest_coordinate(b), sum_magnitudes(c), 1.0f, 2.0f);
+    r.error = bound_position_error(largest_coordinate(b), sum_magnitudes(c), 1.0f, 2.0f, from.u[0]);
     r.patch_uv = blend_patch_uv(at, at * 2.0f, at * 3.0f, at * 5.0f, at);
     r.polygon_uv = blend_polygon_uv(at, at * 2.0f, at * 3.0f, at * 5.0f, at);
     r.origin = offset_origin(inside, point.normal, 0.25f, frame.n);
