@@ -12,6 +12,10 @@ void catch_interrupts();
 /// safe.
 void poll_interrupts();
 
+/// From now on there is a picture to be written after a signal. Before, a signal that nobody asks for within
+/// 0.15 s ends the command. Thread safe.
+void keep_picture();
+
 /// The caught signal, 0 for none. Thread safe.
 int get_interrupt();
 

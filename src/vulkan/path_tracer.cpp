@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/timer.h"
+#include "engine/stop_request.h"
 #include "formulas/pixel_order.h"
 #include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
@@ -91,6 +92,8 @@ void PathTracer::make_buffers() {
     points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
                                                     is_lent ? RasterBuffers::kLeastVertexBytes : 0);
     film_sums_ = make_buffer<scalar::FilmSumsData>(device, "film_sums", capacity_);
+    if (device.is_cpu())
+        whole_sums_ = make_buffer<scalar::FilmSumsData>(device, "whole_film_sums", capacity_);
     path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
     next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_,
                                             is_lent ? capacity_ * RasterBuffers::kNearestBytes : 0);
@@ -107,7 +110,8 @@ void PathTracer::make_buffers() {
     bindings.bind(scalar::kBindShadowList, shadow_list_);
 }
 
-void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples) {
+void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples,
+                               const std::function<void(uint64_t)>& on_samples) {
     DCHECK(!pixels.empty() && (!rasteriser_ || pixels.size() == 1));
     pixels_.clear();
     for (const PixelRange& range : pixels) {
@@ -123,21 +127,34 @@ void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, S
     drawn_ = pixels.front();
     pixel_list_.upload(pixels_);
     for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
-        trace_batch(film, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)});
+        trace_batch(film, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)}, on_samples);
 }
 
-void PathTracer::trace_batch(Film& film, SampleRange samples) {
+void PathTracer::trace_batch(Film& film, SampleRange samples,
+                             const std::function<void(uint64_t)>& on_samples) {
     Commands& commands = tracer_.commands();
+    const uint64_t sum_bytes = pixels_.size() * sizeof(scalar::FilmSumsData);
     batch_casts_.clear();
-    commands.begin_stage(Stage::film);
-    commands.fill(film_sums_, 0, pixels_.size() * sizeof(scalar::FilmSumsData), 0);
-    for (int k = 0; k < samples.count; ++k) trace_sample(uint32_t(samples.first + k));
-    commands.run();
-    const Timer timer;
-    add_to_film(film, samples.count);
-    film_s_ += timer.seconds();
-    // Only now: after an error the batch is traced again, and its rays must count once.
-    for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
+    int done = 0;
+    try {
+        commands.begin_stage(Stage::film);
+        commands.fill(film_sums_, 0, sum_bytes, 0);
+        for (; done < samples.count; ++done) {
+            trace_sample(uint32_t(samples.first + done));
+            // A sample takes a CPU device seconds, and begins to add to the sums before it is whole.
+            if (whole_sums_) commands.copy(film_sums_, 0, whole_sums_, 0, sum_bytes);
+            if (whole_sums_ || done + 1 == samples.count) commands.run();
+            if (whole_sums_) on_samples(pixels_.size());
+        }
+    } catch (const StopRequest&) {
+        if (whole_sums_ && done > 0) add_to_film(film, whole_sums_, done);
+        throw;
+    } catch (...) {
+        batch_casts_.clear(); // the batch is traced again, and its rays must count once
+        throw;
+    }
+    add_to_film(film, film_sums_, samples.count);
+    if (!whole_sums_) on_samples(pixels_.size() * uint64_t(samples.count));
 }
 
 scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
@@ -245,17 +262,22 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
     commands.dispatch(shadow_light_, shadow_count, push);
 }
 
-void PathTracer::add_to_film(Film& film, int sample_count) const {
-    const std::vector<scalar::FilmSumsData> sums = film_sums_.download<scalar::FilmSumsData>(pixels_.size());
+void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_count) {
+    const Timer timer;
+    const std::vector<scalar::FilmSumsData> sums = device_sums.download<scalar::FilmSumsData>(pixels_.size());
     for (size_t k = 0; k < sums.size(); ++k)
         film.add_sums(int(pixels_[k] & 0xffff), int(pixels_[k] >> 16), make_sums(sums[k], sample_count));
+    film_s_ += timer.seconds();
+    for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
+    batch_casts_.clear();
 }
 
 void PathTracer::add_statistics(Statistics& statistics) const {
     Statistics work;
     work.film_s = film_s_;
     work.casts = casts_;
-    for (const CastStatistics& cast : casts_) {
+    for (const CastStatistics& cast : batch_casts_) add_cast(work.casts, cast);
+    for (const CastStatistics& cast : work.casts) {
         if (cast.is_shadow)
             work.shadow_rays += cast.rays;
         else

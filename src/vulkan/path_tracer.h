@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,10 +39,14 @@ class PathTracer {
     uint32_t capacity() const { return capacity_; }
 
     /// Adds samples to the film. Sample k of a pixel depends on (seed, pixel, k) only. Any number of samples,
-    /// and of pixels (not of ranges that are drawn) up to capacity(), which is most efficient.
-    void trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples);
+    /// and of pixels (not of ranges that are drawn) up to capacity(), which is most efficient. `on_samples`
+    /// is told how many samples of pixels are new. After StopRequest the film has the whole samples before
+    /// it; only those of the last launch on a device that is no CPU are lost.
+    void trace_samples(
+        Film& film, std::span<const PixelRange> pixels, SampleRange samples,
+        const std::function<void(uint64_t)>& on_samples = [](uint64_t) {});
 
-    /// Adds rays by kind and casts by depth, of completed batches.
+    /// Adds rays by kind and casts by depth.
     void add_statistics(Statistics& statistics) const;
 
     /// Samples per pixel summed on the device, in single precision.
@@ -51,7 +56,7 @@ class PathTracer {
     struct NextRays {
         uint32_t path_count, shadow_count;
     };
-    void trace_batch(Film& film, SampleRange samples);
+    void trace_batch(Film& film, SampleRange samples, const std::function<void(uint64_t)>& on_samples);
     void make_buffers();
     void trace_sample(uint32_t sample_index);
     CastStatistics trace_bounces(scalar::PathPush push);
@@ -60,7 +65,7 @@ class PathTracer {
     void clear_lists();
     NextRays read_lists();
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
-    void add_to_film(Film& film, int sample_count) const;
+    void add_to_film(Film& film, const Buffer& sums, int sample_count);
     scalar::PathPush make_push(uint32_t sample_index) const;
 
     Tracer& tracer_;
@@ -71,6 +76,7 @@ class PathTracer {
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_, pixel_list_;
+    Buffer whole_sums_;                               ///< CPU devices only: the film sums of whole samples
     std::vector<uint32_t> pixels_;                    ///< of the current batch, pack_pixel()
     PixelRange drawn_;                                ///< what the rasteriser draws of them: all
     std::unique_ptr<Rasteriser> rasteriser_;          ///< hybrid method only

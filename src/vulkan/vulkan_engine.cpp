@@ -12,6 +12,7 @@
 #include "base/timer.h"
 #include "engine/picture_windows.h"
 #include "engine/render_passes.h"
+#include "engine/stop_request.h"
 #include "relief/error.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/ray_batch.h"
@@ -49,10 +50,12 @@ class VulkanEngine final : public Engine, private PassTracer {
 
   private:
     std::unique_ptr<Tracer> make_tracer(uint32_t rays, uint32_t share) const;
+    void make_paths(const Window& window);
     SizedTracer<RayBatch>& batches() const;
     uint64_t count_rays() const;
     void require_drawable(const Window& window) const;
     void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override;
+    void trace_tasks(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor);
 
     std::shared_ptr<const PreparedScene> scene_;
     RenderSettings settings_;
@@ -85,9 +88,8 @@ void VulkanEngine::require_drawable(const Window& window) const {
                  device_->description().name, "image.crop, or experiment.method = compute or fragment"});
 }
 
-bool VulkanEngine::render(Film& film, const RenderControl& control) {
-    const Window& window = film.window();
-    require_drawable(window);
+/// Compiles the kernels.
+void VulkanEngine::make_paths(const Window& window) {
     const uint64_t pixels = count_pixels(window);
     const Timer set_up;
     // Every path has a ray and a shadow ray.
@@ -97,6 +99,17 @@ bool VulkanEngine::render(Film& film, const RenderControl& control) {
               [this](uint32_t rays) { return make_tracer(rays, 2); },
               [this](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); }};
     set_up_s_ += set_up.seconds();
+}
+
+bool VulkanEngine::render(Film& film, const RenderControl& control) {
+    require_drawable(film.window());
+    try {
+        std::optional<Device::StopScope> scope;
+        if (control.observer) scope.emplace(*device_, [&] { return control.observer->is_cancelled(); });
+        make_paths(film.window());
+    } catch (const StopRequest&) {
+        return false;
+    }
     rays_reported_ = 0;
     const bool draws = settings_.experiment.method == RenderMethod::hybrid;
     const PassReport report =
@@ -105,9 +118,24 @@ bool VulkanEngine::render(Film& film, const RenderControl& control) {
     return report.is_complete;
 }
 
-/// Tasks of the same samples together, as many as the device has room for.
 void VulkanEngine::trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) {
+    const Device::StopScope scope(*device_,
+                                  [&] { return monitor.is_cancelled() || monitor.is_out_of_time(); });
+    try {
+        trace_tasks(film, tasks, monitor);
+    } catch (const StopRequest&) {
+        return; // the film has the whole samples before it
+    }
+}
+
+/// Tasks of the same samples together, as many as the device has room for.
+void VulkanEngine::trace_tasks(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) {
     const bool draws = settings_.experiment.method == RenderMethod::hybrid;
+    const auto report = [&](uint64_t pixel_samples) {
+        const uint64_t rays = count_rays();
+        monitor.finish_task(pixel_samples, rays - rays_reported_);
+        rays_reported_ = rays;
+    };
     for (size_t next = 0; next < tasks.size() && !monitor.must_stop();) {
         const SampleTask& first = tasks[next];
         const SampleRange samples{settings_.image.first_sample + first.first, first.count};
@@ -124,18 +152,15 @@ void VulkanEngine::trace(Film& film, std::span<const SampleTask> tasks, PassMoni
             }
             // One task may be more than a device has room for; what a failed attempt has traced of it stays.
             if (ranges.size() > 1 || count <= worker.capacity()) {
-                worker.trace_samples(film, ranges, samples);
+                worker.trace_samples(film, ranges, samples, report);
                 done = count;
             }
             for (; done < count; done += ranges[0].count) {
                 ranges[0].first = done, ranges[0].count = std::min<uint64_t>(worker.capacity(), count - done);
-                worker.trace_samples(film, ranges, samples);
+                worker.trace_samples(film, ranges, samples, report);
             }
         });
         next = end;
-        const uint64_t rays = count_rays();
-        monitor.finish_task(done * uint64_t(samples.count), rays - rays_reported_);
-        rays_reported_ = rays;
     }
 }
 

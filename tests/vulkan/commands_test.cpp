@@ -1,6 +1,7 @@
 // Fill, copy, dispatch and their order.
 #include <gtest/gtest.h>
 
+#include "engine/stop_request.h"
 #include "relief/error.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
@@ -66,6 +67,42 @@ TEST_F(Commands, indirect_dispatches_read_what_came_before) {
     commands.run();
     const std::vector<uint32_t> result = values.download<uint32_t>(kCount);
     for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], i < 320 ? 10 + i : 1);
+}
+
+TEST_F(Commands, launches_in_parts_on_a_cpu_device_cover_every_invocation_until_a_stop_is_asked_for) {
+    constexpr uint32_t kCount = 100'001;
+    constexpr uint64_t kPartCount = kCount / 2 / vulkan::Commands::kPartGroups + 1;
+    const Buffer values(device(), {.name = "values", .bytes = kCount * 4});
+    const Buffer arguments(device(), {.name = "arguments", .bytes = 32, .is_indirect = true});
+    BindingTable bindings(device());
+    bindings.bind(scalar::kBindFilm, values);
+    const Kernel kernel = make_test_kernel(device(), "add_index", {2});
+    vulkan::Commands commands(device(), bindings);
+    uint64_t queries = 0, most_queries = ~uint64_t(0);
+    const Device::StopScope scope(device(), [&] { return ++queries > most_queries; });
+    commands.fill(values, 0, kCount * 4, 3);
+    commands.fill(arguments, 0, 12, 1);
+    commands.fill(arguments, 0, 4, (kCount + 1) / 2);
+    commands.dispatch(kernel, kCount, AddIndexPush{kCount, 2});
+    commands.dispatch_indirect(kernel, arguments, 0, AddIndexPush{kCount, 10});
+    commands.run();
+    const std::vector<uint32_t> result = values.download<uint32_t>(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(result[i], (6 + i) * 10 + i);
+    EXPECT_LE(queries, 2 * kPartCount + 4);
+    if (!device().is_cpu()) return; // a GPU runs launches whole
+    EXPECT_GE(queries, 6u);
+
+    const uint64_t launched = commands.dispatch_count();
+    commands.fill(values, 0, kCount * 4, 3);
+    most_queries = queries + 3; // the fill and two parts: 1 row, then 1 or 2
+    EXPECT_THROW(commands.dispatch(kernel, kCount, AddIndexPush{kCount, 2}), StopRequest);
+    const std::vector<uint32_t> part = values.download<uint32_t>(kCount);
+    EXPECT_EQ(part[2 * vulkan::Commands::kPartGroups - 1], 6 + 2 * vulkan::Commands::kPartGroups - 1);
+    for (uint32_t i = 3 * 2 * vulkan::Commands::kPartGroups; i < kCount; ++i) ASSERT_EQ(part[i], 3u) << i;
+    EXPECT_EQ(commands.dispatch_count(), launched + 3) << "the last one was recorded, and is discarded";
+    most_queries = ~uint64_t(0);
+    commands.run();
+    EXPECT_EQ(values.download<uint32_t>(kCount), part);
 }
 
 TEST_F(Commands, of_nothing_do_nothing) {

@@ -11,16 +11,25 @@
 namespace relief::vulkan::tests {
 namespace {
 
-/// Cancels after passes of so many samples.
+/// Cancels at the n-th query, or after a number of passes.
 class Canceller final : public RenderObserver {
   public:
-    explicit Canceller(int samples) : samples_(samples) {}
+    static constexpr int kNever = 1 << 30;
+    explicit Canceller(int queries, int passes = kNever) : queries_(queries), passes_(passes) {}
     void on_progress(const Progress& progress) override { progress_ = progress; }
-    bool is_cancelled() const override { return progress_.samples_done >= samples_; }
+    bool is_cancelled() const override {
+        later_queries_ += is_cancelled_;
+        is_cancelled_ = is_cancelled_ || ++query_count_ > queries_ || progress_.samples_done >= passes_;
+        return is_cancelled_;
+    }
     const Progress& progress() const { return progress_; }
+    int query_count() const { return query_count_; }
+    int later_queries() const { return later_queries_; }
 
   private:
-    int samples_;
+    int queries_, passes_;
+    mutable int query_count_ = 0, later_queries_ = 0;
+    mutable bool is_cancelled_ = false;
     Progress progress_;
 };
 
@@ -83,7 +92,7 @@ TEST_F(EngineTest, renders_what_the_cpu_engine_renders) {
 TEST_F(EngineTest, cancelled_leaves_a_picture_of_whole_passes) {
     prepare();
     Film film = make_film();
-    Canceller canceller(1); // a pass of one sample, then no other
+    Canceller canceller(Canceller::kNever, 1);
     EXPECT_FALSE(engine_->render(film, &canceller));
     const Image image = film.resolve();
     const size_t samples = image.find_channel("samples.Y").value();
@@ -93,6 +102,33 @@ TEST_F(EngineTest, cancelled_leaves_a_picture_of_whole_passes) {
     EXPECT_GT(canceller.progress().rays, 0u);
     Film again = make_film();
     EXPECT_TRUE(engine_->render(again, nullptr));
+}
+
+/// Every submission and compilation asks beforehand: none comes after the request, which the passes see once
+/// more.
+TEST_F(EngineTest, cancelled_anywhere_does_nothing_more_and_keeps_whole_samples) {
+    settings_.image.layers = {"samples", "P", "N"};
+    prepare();
+    Canceller counter(Canceller::kNever);
+    Film whole = make_film();
+    EXPECT_TRUE(engine_->render(whole, &counter));
+    const Image expected = whole.resolve();
+    EXPECT_GT(counter.query_count(), 100);
+    const size_t samples = expected.find_channel("samples.Y").value();
+    // Not at the very end, where the picture may be done; parts of launches depend on time.
+    const int most = counter.query_count() * 9 / 10;
+    for (int queries = 0; queries < most; queries += 1 + most / 20) {
+        Canceller canceller(queries);
+        Film film = make_film();
+        EXPECT_FALSE(engine_->render(film, &canceller)) << queries;
+        EXPECT_LE(canceller.later_queries(), 1) << "queries, hence submissions, after the request";
+        const Image image = film.resolve();
+        EXPECT_GE(image.at(0, 0, samples), canceller.progress().samples_done);
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (size_t c = 0; image.at(x, y, samples) == 3 && c < image.channels.size(); ++c)
+                    ASSERT_EQ(image.at(x, y, c), expected.at(x, y, c)) << queries;
+    }
 }
 
 TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {

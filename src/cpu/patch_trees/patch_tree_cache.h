@@ -9,7 +9,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -83,11 +82,6 @@ struct TraceContext {
     std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1
 };
 
-/// Thrown where a tree would have to be made after the render was cancelled.
-struct StopRequest : std::exception {
-    const char* what() const noexcept override { return "render cancelled"; }
-};
-
 /// Bounds of trees, directories and table. The cap is doubled, up to `most_bytes` and half of the memory that
 /// is available, when a quarter of it has been built again since it was last set.
 struct CacheLimits {
@@ -121,7 +115,7 @@ class PatchTreeCache {
     };
 
     /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
-    /// StopRequest. Empty: never. Not while a context is taken.
+    /// StopRequest (engine/stop_request.h). Empty: never. Not while a context is taken.
     void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
 
     /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.

@@ -23,6 +23,13 @@ constexpr DrawSize kScreen = {scalar::kScreenColumns * scalar::kFragmentSquare,
                               scalar::kScreenRows* scalar::kFragmentSquare};
 static_assert(kFragmentGroup == scalar::kFragmentSquare * scalar::kFragmentSquare);
 
+/// Rows [first, first + count) of `width` groups each, of a launch.
+struct Rows {
+    uint32_t width, first, count;
+};
+
+constexpr double kPartSeconds = 0.05; ///< a part of a launch is doubled while it takes less than half of this
+
 vk::PipelineStageFlags2 find_pipeline_stages(vk::ShaderStageFlags shaders) {
     using Stage = vk::PipelineStageFlagBits2;
     if (!(shaders & vk::ShaderStageFlagBits::eFragment)) return Stage::eComputeShader;
@@ -69,8 +76,10 @@ struct Commands::Implementation {
     void prepare();
     void bind_kernel(const Kernel& kernel, std::span<const std::byte> push);
     void begin_drawing(DrawSize size);
-    void dispatch(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
-    void draw_full_screen(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    bool is_parted() const { return device.description.is_cpu && device.is_stop_asked_for; }
+    void launch(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
+    void launch_parts(const Kernel& kernel, Rows rows, std::span<const std::byte> push);
+    void record_rows(const Kernel& kernel, const Rows& rows, std::span<const std::byte> push);
     [[noreturn]] void refuse_size(const Kernel& kernel, uint64_t groups) const;
     void read_marks();
     void run();
@@ -129,24 +138,52 @@ void Commands::Implementation::refuse_size(const Kernel& kernel, uint64_t groups
                                     "Vulkan", kUseCpu});
 }
 
-void Commands::Implementation::dispatch(const Kernel& kernel, uint64_t groups,
-                                        std::span<const std::byte> push) {
-    const uint64_t widest = device.limits.maxComputeWorkGroupCount[0];
-    const uint64_t rows = (groups + widest - 1) / widest;
-    if (rows > device.limits.maxComputeWorkGroupCount[1]) refuse_size(kernel, groups);
+void Commands::Implementation::record_rows(const Kernel& kernel, const Rows& rows,
+                                           std::span<const std::byte> push) {
     prepare();
     bind_kernel(kernel, push);
-    buffer.dispatch(uint32_t((groups + rows - 1) / rows), uint32_t(rows), 1);
+    if (kernel.is_drawn()) {
+        begin_drawing(kScreen);
+        buffer.draw(rows.width * rows.count, 1, rows.width * rows.first, 0);
+        buffer.endRendering();
+    } else if (rows.first == 0) {
+        buffer.dispatch(rows.width, rows.count, 1);
+    } else {
+        buffer.dispatchBase(0, rows.first, 0, rows.width, rows.count, 1);
+    }
 }
 
-void Commands::Implementation::draw_full_screen(const Kernel& kernel, uint64_t groups,
-                                                std::span<const std::byte> push) {
-    if (groups > uint64_t(scalar::kScreenColumns) * scalar::kScreenRows) refuse_size(kernel, groups);
-    prepare();
-    bind_kernel(kernel, push);
-    begin_drawing(kScreen);
-    buffer.draw(uint32_t(groups), 1, 0, 0);
-    buffer.endRendering();
+/// Groups in rows: the widest, or in parts rows that are short enough for one part each.
+void Commands::Implementation::launch(const Kernel& kernel, uint64_t groups,
+                                      std::span<const std::byte> push) {
+    const bool is_drawn = kernel.is_drawn();
+    const bool has_parts = is_parted() && groups > kPartGroups;
+    const uint64_t most_rows = device.limits.maxComputeWorkGroupCount[1];
+    const uint64_t widest = is_drawn ? groups : device.limits.maxComputeWorkGroupCount[0];
+    const uint64_t columns =
+        has_parts ? std::max<uint64_t>(kPartGroups, (groups + most_rows - 1) / most_rows) : widest;
+    const uint64_t rows = (groups + columns - 1) / columns;
+    if (is_drawn ? groups > uint64_t(scalar::kScreenColumns) * scalar::kScreenRows
+                 : rows > most_rows || columns > widest)
+        refuse_size(kernel, groups);
+    if (has_parts) return launch_parts(kernel, {uint32_t(columns), 0, uint32_t(rows)}, push);
+    record_rows(kernel, {uint32_t((groups + rows - 1) / rows), 0, uint32_t(rows)}, push);
+}
+
+/// Also asks for a stop between the parts: run() does.
+void Commands::Implementation::launch_parts(const Kernel& kernel, Rows rows,
+                                            std::span<const std::byte> push) {
+    run();
+    for (Rows part{rows.width, 0, 1}; part.first < rows.count;) {
+        part.count = std::min(part.count, rows.count - part.first);
+        const auto begin = std::chrono::steady_clock::now();
+        record_rows(kernel, part, push);
+        run();
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        part.first += part.count;
+        if (taken.count() < kPartSeconds / 2) part.count *= 2;
+        if (taken.count() > kPartSeconds) part.count = std::max(1u, part.count / 2);
+    }
 }
 
 void Commands::Implementation::read_marks() {
@@ -167,6 +204,7 @@ std::string Commands::Implementation::describe() const {
 void Commands::Implementation::run() {
     if (!is_recording) return;
     is_recording = false;
+    device.heed_stop();
     check_vulkan("running kernels", [&] {
         if (*queries) mark(std::nullopt);
         record_host_barrier(buffer, device.shader_stages);
@@ -209,18 +247,20 @@ void Commands::dispatch_bytes(const Kernel& kernel, uint64_t invocations, std::s
     if (invocations == 0) return;
     Implementation& own = *implementation_;
     const uint64_t groups = (invocations + kernel.group_size() - 1) / kernel.group_size();
-    check_vulkan("recording a dispatch", [&] {
-        if (kernel.is_drawn())
-            own.draw_full_screen(kernel, groups, push);
-        else
-            own.dispatch(kernel, groups, push);
-    });
+    check_vulkan("recording a dispatch", [&] { own.launch(kernel, groups, push); });
 }
 
 void Commands::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
                                        std::span<const std::byte> push) {
     Implementation& own = *implementation_;
     DCHECK(arguments.internals().config.is_indirect && offset % 4 == 0);
+    if (own.is_parted()) {
+        own.run();
+        std::array<uint32_t, 3> groups;
+        arguments.download(std::as_writable_bytes(std::span(groups)), offset);
+        return dispatch_bytes(kernel, uint64_t(groups[0]) * groups[1] * groups[2] * kernel.group_size(),
+                              push);
+    }
     check_vulkan("recording a dispatch", [&] {
         own.prepare();
         own.bind_kernel(kernel, push);

@@ -32,7 +32,10 @@ struct DrawSize {
     uint32_t width = 0, height = 0; ///< pixels, at most Device::max_draw_size() each
 };
 
-/// Not thread safe. A full memory barrier separates any two commands: each sees earlier writes.
+/// Not thread safe. A full memory barrier separates any two commands: each sees earlier writes. While a stop
+/// may be asked for (Device::StopScope), a CPU device runs each launch of more than kPartGroups groups, and
+/// each indirect one, in parts that have submissions of their own: as many groups as take some hundredths of
+/// a second.
 class Commands {
   public:
     Commands(const Device& device, const BindingTable& bindings);
@@ -62,7 +65,11 @@ class Commands {
     void fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value);
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset, uint64_t bytes);
 
-    /// Submits the recorded commands and waits. Throws Error{device_missing} if the device is lost.
+    /// Groups of the smallest part of a launch.
+    static constexpr uint32_t kPartGroups = 32;
+
+    /// Submits the recorded commands and waits. Throws Error{device_missing} if the device is lost;
+    /// StopRequest, with the recorded commands discarded, if a stop was asked for.
     void run();
 
     /// Discards recorded commands after an error.

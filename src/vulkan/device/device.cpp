@@ -236,6 +236,11 @@ Buffer::Implementation& Device::Implementation::staging() {
     return *staging_buffer;
 }
 
+Device::StopScope::StopScope(const Device& device, std::function<bool()> is_asked_for) : device_(device) {
+    device_.internals().is_stop_asked_for = std::move(is_asked_for);
+}
+Device::StopScope::~StopScope() { device_.internals().is_stop_asked_for = nullptr; }
+
 Device::Device(const Config& config) : implementation_(std::make_unique<Implementation>(config)) {}
 Device::~Device() = default;
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,6 +64,20 @@ class Device {
 
     uint64_t allocated_bytes(Purpose purpose) const;
     uint64_t peak_bytes(Purpose purpose) const;
+
+    /// While this lives, what comes next on the device ends with StopRequest (engine/stop_request.h) once it
+    /// is asked for: before each compilation and submission, and on a CPU device, which takes seconds for the
+    /// launch of a large batch, also between its parts (Commands). Not while another thread uses the device.
+    class StopScope {
+      public:
+        StopScope(const Device& device, std::function<bool()> is_asked_for);
+        ~StopScope();
+        StopScope(const StopScope&) = delete;
+        StopScope& operator=(const StopScope&) = delete;
+
+      private:
+        const Device& device_;
+    };
 
     /// Warnings and errors of the validation layer so far; empty without validation.
     std::vector<std::string> validation_messages() const;

@@ -8,6 +8,7 @@
 
 #include <vulkan/vulkan_raii.hpp>
 
+#include "engine/stop_request.h"
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/device.h"
 #include "vulkan/device/instance.h"
@@ -32,6 +33,9 @@ struct Device::Implementation {
                          const std::function<std::string()>& describe);
     /// Records with `record`, submits and waits; for copies.
     void run_once(const char* what, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+    void heed_stop() const {
+        if (is_stop_asked_for && is_stop_asked_for()) throw StopRequest();
+    }
     /// Staging memory of kStagingBytes, created on first use.
     Buffer::Implementation& staging();
 
@@ -61,6 +65,7 @@ struct Device::Implementation {
     vk::raii::Fence fence = nullptr;
     std::unique_ptr<MemoryAllocator> memory;
     std::unique_ptr<Buffer::Implementation> staging_buffer;
+    std::function<bool()> is_stop_asked_for; ///< empty: never
 };
 
 struct Buffer::Implementation {

@@ -68,13 +68,16 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
                                            config.constants.size() * sizeof(uint32_t),
                                            config.constants.data());
     const bool is_drawn = !config.vertex_shader.empty();
+    // Commands launches kernels in parts on a CPU device.
+    const vk::PipelineCreateFlags flags =
+        device.description.is_cpu ? vk::PipelineCreateFlagBits::eDispatchBase : vk::PipelineCreateFlags();
     const vk::PipelineShaderStageCreateInfo stage(
         {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
         "main", &constants);
     vk::raii::Pipeline pipeline =
         is_drawn ? make_drawn_pipeline(device, config, stage)
                  : vk::raii::Pipeline(device.device, device.pipeline_cache,
-                                      vk::ComputePipelineCreateInfo({}, stage, *device.pipeline_layout));
+                                      vk::ComputePipelineCreateInfo(flags, stage, *device.pipeline_layout));
     device.set_name(pipeline, config.shader);
     return pipeline;
 }
@@ -82,7 +85,10 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
 /// The device's cached pipeline, or an own one for external SPIR-V.
 std::shared_ptr<const vk::raii::Pipeline>
 find_pipeline(Device::Implementation& device, const KernelConfig& config, std::span<const uint32_t> code) {
-    const auto make = [&] { return make_pipeline(device, config, code); };
+    const auto make = [&] {
+        device.heed_stop();
+        return make_pipeline(device, config, code);
+    };
     if (!config.code.empty()) return std::make_shared<const vk::raii::Pipeline>(make());
     return device.pipelines.find_or_make({config.shader, config.vertex_shader, config.constants}, make);
 }
