@@ -52,4 +52,8 @@ MeshFaults find_mesh_faults(const Mesh& mesh);
 MeshShape measure_shape(const Mesh& mesh);
 MeshUvs measure_uvs(const Mesh& mesh);
 
+/// MeshUvs::overlap alone, of a mesh of which each face has uvs, on about `most_cells` points.
+double measure_uv_overlap(const Mesh& mesh, double most_cells);
+inline constexpr double kMuchOverlap = 0.01; ///< more is probably not meant
+
 } // namespace relief

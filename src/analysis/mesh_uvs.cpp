@@ -142,20 +142,6 @@ template <class Visit> void visit_uv_triangles(const Mesh& mesh, const Visit& vi
     }
 }
 
-double measure_overlap(const Mesh& mesh) {
-    constexpr double kFinest = 512, kCoarsest = 4;
-    double area = 0;
-    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) {
-        const UvBox box = make_uv_box(a, b, c);
-        if (box.is_countable()) area += box.area();
-    });
-    const double side =
-        area > 0 ? std::clamp(std::floor(std::sqrt(kMostCells / area)), kCoarsest, kFinest) : kFinest;
-    Coverage coverage{int(side)};
-    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) { coverage.add(a, b, c); });
-    return coverage.measure_overlap();
-}
-
 /// Faces that share an edge with both uvs and lie the same way round are of one island.
 FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
     const std::vector<uint32_t> points = number_uv_points(mesh);
@@ -178,6 +164,20 @@ FaceSets join_islands(const Mesh& mesh, const std::vector<double>& areas) {
 
 } // namespace
 
+double measure_uv_overlap(const Mesh& mesh, double most_cells) {
+    constexpr double kFinest = 512, kCoarsest = 4;
+    double area = 0;
+    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+        const UvBox box = make_uv_box(a, b, c);
+        if (box.is_countable()) area += box.area();
+    });
+    const double side =
+        area > 0 ? std::clamp(std::floor(std::sqrt(most_cells / area)), kCoarsest, kFinest) : kFinest;
+    Coverage coverage{int(side)};
+    visit_uv_triangles(mesh, [&](const Vec2f& a, const Vec2f& b, const Vec2f& c) { coverage.add(a, b, c); });
+    return coverage.measure_overlap();
+}
+
 MeshUvs measure_uvs(const Mesh& mesh) {
     if (find_faces_without_uvs(mesh).count > 0) return measure_uvs(drop_faces_without_uvs(mesh));
     MeshUvs result;
@@ -196,7 +196,7 @@ MeshUvs measure_uvs(const Mesh& mesh) {
     for (uint32_t face = 0; face < areas.size(); ++face) area_of_island[sets.find(face)] += areas[face];
     result.islands = area_of_island.size();
     for (const auto& [island, area] : area_of_island) result.mirrored_islands += area < 0;
-    result.overlap = measure_overlap(mesh);
+    result.overlap = measure_uv_overlap(mesh, kMostCells);
     return result;
 }
 

@@ -13,6 +13,7 @@
 #include "relief/convert.h"
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
+#include "scene/faces_without_uvs.h"
 
 namespace relief {
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr uint64_t kMostTexels = uint64_t(1) << 18; ///< 512 x 512: a few hundredths of a second
 constexpr size_t kMostFaces = 50000;                ///< of a mesh on which a map is tried
+constexpr size_t kMostOverlapFaces = size_t(1) << 20;
 
 uint64_t count_texels(const Displacement& map) {
     uint64_t count = 0;
@@ -110,7 +112,23 @@ void add_range(const Displacement& map, const Mesh& mesh, std::vector<Finding>& 
                     mesh.name);
 }
 
-/// What one pass over the corners of a sound mesh tells; overlaps of uvs take longer than reading the mesh.
+/// What was sculpted on one face shows on another; a map that was said to repeat, or not to, is shared on
+/// purpose.
+void add_overlap(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
+    constexpr double kCells = 1 << 18; ///< as many as texels: some hundredths of a second
+    if (!map.assumed.wrap || mesh.uv_indices.empty() || mesh.face_sizes.size() > kMostOverlapFaces) return;
+    if (!find_mesh_faults(mesh).is_sound()) return;
+    const double overlap = find_faces_without_uvs(mesh).count > 0
+                               ? measure_uv_overlap(drop_faces_without_uvs(mesh), kCells)
+                               : measure_uv_overlap(mesh, kCells);
+    if (overlap > kMuchOverlap)
+        add_warning(findings, "W-UVOVER",
+                    "faces of mesh '{}' share {:.1f} % of the uv area: what is sculpted on one shows on the "
+                    "others; lay the islands apart, or write displacement.wrap = clamp if this is meant",
+                    mesh.name, 100 * overlap);
+}
+
+/// What one pass over the corners of a sound mesh tells.
 void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
     if (mesh.uv_indices.empty()) return;
     size_t triangles = 0, mirrored = 0, first = 0;
@@ -138,6 +156,7 @@ std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     if (!has_all_textures(map)) return findings;
     add_range(map, mesh, findings);
     add_mesh_doubts(map, mesh, findings);
+    add_overlap(map, mesh, findings);
     if (!assumed.space && !assumed.axes && !assumed.midlevel) return findings;
     const Displacement thin = thin_out(map);
     const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));

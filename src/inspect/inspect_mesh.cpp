@@ -196,10 +196,9 @@ void find_range_mistakes(const MeshUvs& uvs, const Displacement* map, std::vecto
 }
 
 void find_uv_mistakes(const MeshUvs& uvs, const Displacement* map, std::vector<Finding>& findings) {
-    constexpr double kOverlap = 0.01;
     find_range_mistakes(uvs, map, findings);
     if (map && map->is_udim) find_missing_tiles(uvs, *map, findings);
-    if (uvs.overlap > kOverlap)
+    if (uvs.overlap > kMuchOverlap)
         add_warning(findings, "W-UVOVER",
                     "faces share {:.1f} % of the uv area: what is sculpted on one shows on the others; lay "
                     "the islands apart unless this is meant",

@@ -63,6 +63,25 @@ TEST(DoubtfulAssumptions, tell_mirrored_uvs_and_triangles_of_the_mesh) {
     EXPECT_FALSE(has_code(find(texture, kAll), "W-TRI"));
 }
 
+TEST(DoubtfulAssumptions, tell_uvs_that_faces_share) {
+    const auto texture = make_sculpt_texture(64);
+    Mesh twice = make_sculpt_plane();
+    const size_t corners = twice.position_indices.size(), faces = twice.face_sizes.size();
+    for (size_t k = 0; k < corners; ++k) {
+        twice.position_indices.push_back(twice.position_indices[k]);
+        twice.uv_indices.push_back(twice.uv_indices[k]);
+    }
+    for (size_t k = 0; k < faces; ++k) twice.face_sizes.push_back(twice.face_sizes[k]);
+    const std::string text = find_text(find(texture, kAll, twice), "W-UVOVER");
+    EXPECT_HAS_PART(text, "share 100.0 % of the uv area");
+    EXPECT_HAS_PART(text, "displacement.wrap = clamp");
+    EXPECT_FALSE(has_code(find(texture, {.space = true, .axes = true}, twice), "W-UVOVER"))
+        << "wrap was said";
+    EXPECT_FALSE(has_code(find(texture, kAll), "W-UVOVER"));
+    twice.uv_indices[corners] = kNoIndex; // its face is not displaced
+    EXPECT_FALSE(has_code(find(texture, kAll, twice), "W-UVOVER") && faces == 1);
+}
+
 /// A tube that is open on one side, without seams, and what moves it outwards in object space.
 Mesh make_open_tube(Texture& outwards) {
     constexpr uint32_t kColumns = 24;
