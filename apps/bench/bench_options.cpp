@@ -39,7 +39,7 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
                 uint64_t(parse_integer("--tessellated-limit", text, 0, kMaxLimitMegabytes)) << 20;
         });
     verb.add_flag("--quick", o.is_quick, "tiny pictures and meshes, one run: only shows that it works");
-    verb.add_flag("-q", o.is_quiet, "no progress on stderr");
+    add_progress_options(verb, o.progress, "no progress on stderr");
 }
 
 void add_setting_options(CLI::App& verb, BenchOptions& o) {

@@ -11,6 +11,7 @@
 
 #include "common/cli_app.h"
 #include "common/engine_options.h"
+#include "common/progress.h"
 #include "relief/render.h"
 
 namespace relief::bench {
@@ -27,7 +28,8 @@ struct BenchOptions {
     std::optional<uint64_t> tessellated_limit_bytes;
     std::optional<int> level;
     std::vector<int> levels; ///< none: all of the suite
-    bool is_quick = false, is_quiet = false;
+    bool is_quick = false;
+    cli::ProgressOptions progress;
 };
 
 /// Adds all options; `options` must outlive parsing.

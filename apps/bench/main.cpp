@@ -31,9 +31,8 @@ int run_bench(const BenchOptions& options) {
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
     check_text_writable(folder / (options.suite + ".json"));
-    const Report report = [&](const std::string& line) {
-        if (!options.is_quiet) fmt::print(stderr, "relief bench: {}\n", line);
-    };
+    cli::WorkProgress progress(options.progress);
+    const Report report = [&](const std::string& line) { progress.begin_step(line); };
     const SuiteResult outcome = suite.run(options, report);
     for (const ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);

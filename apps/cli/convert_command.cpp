@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
+#include "common/progress.h"
 #include "common/values.h"
 #include "inputs.h"
 #include "map_options.h"
@@ -36,7 +37,11 @@ struct ConvertOptions {
     std::optional<MapSamples> samples;
     std::optional<std::string> subdivision;
     std::optional<int> subdivision_level;
+    ProgressOptions progress;
 };
+
+constexpr double kRead = 0.1,
+                 kConverted = 0.7; ///< parts of the work, before and after which files are read and written
 
 enum class FileKind { map, mesh, scene };
 
@@ -49,7 +54,8 @@ FileKind get_kind(const std::string& file) {
     throw Error(ErrorKind::usage, {message, where, hint});
 }
 
-void print_warnings(const std::vector<std::string>& warnings) {
+void print_warnings(const ConvertOptions& options, const std::vector<std::string>& warnings) {
+    if (options.progress.is_quiet) return;
     for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
 }
 
@@ -122,16 +128,18 @@ int convert_map_file(const ConvertOptions& options) {
     MapOptions meaning = options.from;
     if (meaning.dequantize) meaning.filter = "cubic"; // dequantize asks for a smooth one
     const Displacement from = load_map(options.input, meaning, warnings);
-    print_warnings(warnings);
+    print_warnings(options, warnings);
     warnings.clear();
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
+    WorkProgress progress(options.progress);
+    progress.tell(kRead);
     const MapSamples samples = choose_samples(options, from);
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
-    const Displacement converted =
-        convert_map(from, make_target(options, from, mesh_or_null, samples), mesh_or_null, &warnings);
-    print_warnings(warnings);
-    write_map(converted, options.output, samples);
+    const Displacement converted = convert_map(from, make_target(options, from, mesh_or_null, samples),
+                                               mesh_or_null, &warnings, progress.part(kRead, kConverted));
+    print_warnings(options, warnings);
+    write_map(converted, options.output, samples, progress.part(kConverted, 1));
     fmt::print("wrote {}: {}\n", options.output, describe(converted));
     return kExitDone;
 }
@@ -158,17 +166,23 @@ int convert_surface(const ConvertOptions& options) {
             refuse((options.level ? std::string("--level") : options.from_given.front()) +
                        " goes with --vdm MAP",
                    options.input, "a plain mesh is written as it is");
-        write_mesh(load_mesh(options.input, {.reader = make_mesh_reader()}), options.output);
+        WorkProgress progress(options.progress);
+        const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()});
+        progress.tell(kRead);
+        write_mesh(mesh, options.output, progress.part(kRead, 1));
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }
     if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
+    WorkProgress progress(options.progress);
     const Scene scene = load_surface(options);
+    progress.tell(kRead);
     keep_files(list_files(scene), options.output);
-    print_warnings(scene.warnings);
-    const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel));
-    write_mesh(mesh, options.output);
+    print_warnings(options, scene.warnings);
+    const Mesh mesh =
+        make_displaced_mesh(scene, options.level.value_or(kUsualLevel), progress.part(kRead, kConverted));
+    write_mesh(mesh, options.output, progress.part(kConverted, 1));
     fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
                mesh.face_sizes.size());
     return kExitDone;
@@ -248,6 +262,7 @@ Command add_convert(CLI::App& verb) {
             options->from_given.push_back("--dequantize");
         },
         "smooth the steps of a map of 8 or 16-bit integers");
+    add_progress_options(verb, options->progress, "no progress, no warnings on stderr");
     add_surface_options(verb, *options);
     add_map_options(verb, options->from, {"What the map means", "--from,--preset", "", &options->from_given});
     add_map_options(verb, options->to, {"What the new map shall mean", "--to", "to-", &options->to_given});

@@ -15,6 +15,7 @@
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
 #include "common/option_names.h"
+#include "common/progress.h"
 #include "common/report.h"
 #include "common/values.h"
 #include "inputs.h"
@@ -35,7 +36,12 @@ struct InspectOptions {
     std::vector<std::string> mesh_only; ///< given options that only meshes support
     std::vector<std::string> map_only;  ///< given options that only maps, or meshes with a map, support
     bool is_json = false, is_strict = false;
+    ProgressOptions progress;
 };
+
+constexpr double kRead = 0.3; ///< of the work; a check picture comes last
+
+double get_picture_start(const InspectOptions& options) { return options.picture.empty() ? 1 : 0.6; }
 
 enum class FileKind { map, mesh, scene };
 
@@ -76,23 +82,27 @@ RenderSettings make_check_settings() {
     return settings;
 }
 
-void write_check_picture(const Scene& scene, const RenderSettings& settings, const std::string& file) {
+void write_check_picture(const Scene& scene, const RenderSettings& settings, const InspectOptions& options,
+                         WorkProgress& progress) {
+    const std::string& file = options.picture;
     if (file.empty()) return;
     keep_files(list_files(scene), file);
-    write_image(make_check_picture(scene, settings), file);
+    write_image(make_check_picture(scene, settings, progress.part(get_picture_start(options), 1)), file);
     // On stderr: stdout is machine readable.
     fmt::print(stderr, "wrote {}\n", file);
 }
 
-Inspection inspect_map_file(const InspectOptions& options) {
+Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progress) {
     std::vector<std::string> warnings;
     const Displacement map = load_map(options.file, options.scene.map, warnings);
+    progress.tell(kRead);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
-    Inspection inspection = inspect_map(map, meaning, mesh_or_null);
+    Inspection inspection =
+        inspect_map(map, meaning, mesh_or_null, progress.part(kRead, get_picture_start(options)));
     if (mesh) append(inspect_mesh(*mesh, &meant), inspection);
     if (const std::string pattern = find_tile_pattern(options.file); !pattern.empty())
         inspection.findings.push_back(
@@ -107,40 +117,43 @@ Inspection inspect_map_file(const InspectOptions& options) {
     if (found != inspection.findings.end())
         throw Error(ErrorKind::bad_input, {found->text, options.file, "no check picture can be made"});
     const Scene scene = mesh ? make_mesh_scene(std::move(*mesh), &meant) : make_map_scene(meant);
-    write_check_picture(scene, make_check_settings(), options.picture);
+    write_check_picture(scene, make_check_settings(), options, progress);
     return inspection;
 }
 
-Inspection inspect_plain_mesh(const InspectOptions& options) {
+Inspection inspect_plain_mesh(const InspectOptions& options, WorkProgress& progress) {
     Mesh mesh = load_mesh(options.file, {.reader = make_mesh_reader()});
+    progress.tell(kRead);
     Inspection inspection = inspect_mesh(mesh);
+    progress.tell(get_picture_start(options));
     if (!options.picture.empty())
-        write_check_picture(make_mesh_scene(std::move(mesh), nullptr), make_check_settings(),
-                            options.picture);
+        write_check_picture(make_mesh_scene(std::move(mesh), nullptr), make_check_settings(), options,
+                            progress);
     return inspection;
 }
 
-Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options) {
+Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options, WorkProgress& progress) {
     RenderSettings settings;
     settings.image.width = scene.picture.width.value_or(settings.image.width);
     settings.image.height = scene.picture.height.value_or(settings.image.height);
     settings.image.spp = scene.picture.spp.value_or(settings.image.spp);
     settings.image.bounces = scene.picture.bounces.value_or(settings.image.bounces);
-    Inspection inspection = inspect_scene(scene, settings);
+    Inspection inspection = inspect_scene(scene, settings, progress.part(kRead, get_picture_start(options)));
     if (!options.picture.empty()) {
         RenderSettings check = make_check_settings();
         check.image.width =
             std::max(1, int(int64_t(check.image.height) * settings.image.width / settings.image.height));
-        write_check_picture(scene, check, options.picture);
+        write_check_picture(scene, check, options, progress);
     }
     return inspection;
 }
 
 /// Facts of the mesh, then those of the scene that a render would make of it, without duplicates.
-Inspection inspect_mesh_as_rendered(const InspectOptions& options) {
+Inspection inspect_mesh_as_rendered(const InspectOptions& options, WorkProgress& progress) {
     const Scene scene = load_mesh_scene(options.file, options.scene);
     Inspection inspection = inspect_mesh(scene.meshes.front());
-    Inspection rendered = inspect_as_scene(scene, options);
+    progress.tell(kRead);
+    Inspection rendered = inspect_as_scene(scene, options, progress);
     std::erase_if(rendered.facts, [&](const Fact& fact) {
         return std::any_of(inspection.facts.begin(), inspection.facts.end(),
                            [&](const Fact& own) { return own.name == fact.name; });
@@ -155,16 +168,19 @@ Inspection inspect_mesh_as_rendered(const InspectOptions& options) {
 }
 
 Inspection inspect_file(const InspectOptions& options) {
+    WorkProgress progress(options.progress);
     switch (get_kind(options.file)) {
     case FileKind::map:
-        return inspect_map_file(options);
+        return inspect_map_file(options, progress);
     case FileKind::mesh:
-        if (options.mesh_only.empty()) return inspect_plain_mesh(options);
-        return inspect_mesh_as_rendered(options);
+        if (options.mesh_only.empty()) return inspect_plain_mesh(options, progress);
+        return inspect_mesh_as_rendered(options, progress);
     case FileKind::scene:
         break;
     }
-    return inspect_as_scene(load_scene(options.file, make_mesh_reader()), options);
+    const Scene scene = load_scene(options.file, make_mesh_reader());
+    progress.tell(kRead);
+    return inspect_as_scene(scene, options, progress);
 }
 
 /// JSON readers get an unreadable input as a finding.
@@ -259,6 +275,7 @@ Command add_inspect(CLI::App& verb) {
         ->type_name("FILE");
     verb.add_flag("--json", options->is_json, "print a JSON object");
     verb.add_flag("--strict", options->is_strict, "exit 6 when there are warnings");
+    add_progress_options(verb, options->progress, "no progress on stderr");
     add_mesh_options(verb, "With a mesh, to inspect what a render would make of it", options->scene,
                      options->mesh_only);
     add_map_options(verb, options->scene.map,

@@ -118,7 +118,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
-    if (!options.is_quiet)
+    if (!options.progress.is_quiet)
         print_warnings(std::span(statistics.warnings).subspan(std::min(told, statistics.warnings.size())),
                        true);
     if (options.is_verbose) print_summary(result, settings);
@@ -249,7 +249,7 @@ int render_input(const RenderOptions& options, double start) {
     if (options.aim.turntable > 0) return render_turns(options, settings, scene, waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
-    if (!options.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
+    if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 

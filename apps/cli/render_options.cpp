@@ -184,15 +184,7 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
 void add_report_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--stats", "FILE", "write statistics as JSON",
         [&o](const std::string& text) { o.statistics_file = text; });
-    add(verb, "--progress", "NAME", "auto (default), bar, plain, json, none", [&o](const std::string& text) {
-        constexpr std::array<Word<ProgressStyle>, 5> words{{{"auto", ProgressStyle::automatic},
-                                                            {"bar", ProgressStyle::bar},
-                                                            {"plain", ProgressStyle::plain},
-                                                            {"json", ProgressStyle::json},
-                                                            {"none", ProgressStyle::none}}};
-        o.progress = parse_word("--progress", text, words);
-    });
-    verb.add_flag("-q", o.is_quiet, "no progress, no warnings on stderr")
+    add_progress_options(verb, o.progress, "no progress, no warnings on stderr")
         ->excludes(verb.add_flag("-v", o.is_verbose, "say what was rendered and what it cost"));
     verb.add_flag("--strict", o.is_strict, "render nothing that there are warnings of: exit 6");
 }

@@ -12,7 +12,7 @@
 #include "checkpoint.h"
 #include "common/cli_app.h"
 #include "common/engine_options.h"
-#include "progress.h"
+#include "common/progress.h"
 #include "relief/denoise.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -38,8 +38,8 @@ struct RenderOptions {
     CheckpointOptions checkpoint;
     bool is_denoised = false;
     std::shared_ptr<const Denoiser> denoiser; ///< where is_denoised
-    ProgressStyle progress = ProgressStyle::automatic;
-    bool is_quiet = false, is_verbose = false, is_strict = false;
+    ProgressOptions progress;
+    bool is_verbose = false, is_strict = false;
 };
 
 /// Adds the options; `options` must outlive parsing.

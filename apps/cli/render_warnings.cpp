@@ -46,22 +46,25 @@ std::string name_setting(std::string warning, bool is_mesh) {
 }
 
 RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told)
-    : ProgressPrinter(options.is_quiet ? ProgressStyle::none : options.progress),
-      options_(options),
-      told_(told) {}
+    : printer_(options.progress), options_(options), told_(told) {}
 
 void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
     const bool is_mesh = is_mesh_file(options_.input);
     for (; told_ < warnings.size(); ++told_)
-        if (!options_.is_quiet || options_.is_strict)
+        if (!options_.progress.is_quiet || options_.is_strict)
             fmt::print(stderr, "relief: warning: {}\n", name_setting(warnings[told_], is_mesh));
     is_refused_ = options_.is_strict && !warnings.empty();
     if (is_refused_) fmt::print(stderr, "relief: nothing is rendered with warnings under --strict\n");
 }
 
+void RenderWatcher::on_progress(const Progress& progress) {
+    if (progress.samples_done > 0) keep_picture();
+    printer_.print(progress);
+}
+
 bool RenderWatcher::is_cancelled() const {
     poll_interrupts();
-    return is_refused_ || ProgressPrinter::is_cancelled();
+    return is_refused_ || get_interrupt() != 0;
 }
 
 } // namespace relief::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "progress.h"
+#include "common/progress.h"
 #include "relief/scene.h"
 #include "render_options.h"
 
@@ -17,19 +17,21 @@ void add_assumption_warnings(Scene& scene);
 /// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file.
 std::string name_setting(std::string warning, bool is_mesh);
 
-/// Prints progress and warnings; under --strict a warning cancels the render.
-class RenderWatcher final : public ProgressPrinter {
+/// Prints progress and warnings; an interrupt, and under --strict a warning, cancels the render.
+class RenderWatcher final : public RenderObserver {
   public:
     /// `told`: warnings printed before, by other pictures of the same scene; outlives this object.
     RenderWatcher(const RenderOptions& options, size_t& told);
 
     void on_warnings(const std::vector<std::string>& warnings) override;
+    void on_progress(const Progress& progress) override;
     bool is_cancelled() const override;
 
     /// Whether --strict stood in the way of the picture.
     bool is_refused() const { return is_refused_; }
 
   private:
+    ProgressPrinter printer_;
     const RenderOptions& options_;
     size_t& told_;
     bool is_refused_ = false;

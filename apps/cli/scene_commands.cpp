@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/progress.h"
 #include "common/report.h"
 #include "inputs.h"
 #include "lab/scenes/peer_scenes.h"
@@ -30,6 +31,7 @@ namespace {
 struct SceneOptions {
     std::string name, folder;
     bool is_instanced = false;
+    ProgressOptions progress;
 };
 
 std::string list_scenes() {
@@ -38,10 +40,11 @@ std::string list_scenes() {
 }
 
 /// A sample scene, or a scene of the renderer comparisons.
-Scene make_named_scene(const SceneOptions& options) {
+Scene make_named_scene(const SceneOptions& options, const ProgressFunction& on_progress) {
     const std::vector<std::string> peers = peer_scene_names();
     if (std::find(peers.begin(), peers.end(), options.name) == peers.end())
-        return make_sample_scene(options.name, options.is_instanced ? Instancing::shared : Instancing::none);
+        return make_sample_scene(options.name, options.is_instanced ? Instancing::shared : Instancing::none,
+                                 on_progress);
     if (options.is_instanced)
         throw Error(ErrorKind::usage,
                     {"nothing in this scene can be shared", options.name, "leave out --instanced"});
@@ -70,7 +73,11 @@ int run_scene(const SceneOptions& options) {
     const std::string before = read_text(file);
     const std::string copy = find_free_copy(file.string());
     if (!before.empty()) write_text_file(copy, before);
-    save_scene(make_named_scene(options), folder);
+    {
+        constexpr double kMade = 0.7;
+        WorkProgress progress(options.progress);
+        save_scene(make_named_scene(options, progress.part(0, kMade)), folder, progress.part(kMade, 1));
+    }
     if (before == read_text(file))
         std::filesystem::remove(copy);
     else if (!before.empty())
@@ -153,6 +160,7 @@ Command add_scene(CLI::App& verb) {
     verb.add_option("name", options->name, "one of: " + list_scenes())->type_name("NAME");
     verb.add_option("-o", options->folder, "folder to write; default: the name")->type_name("DIR");
     verb.add_flag("--instanced", options->is_instanced, "copies share their mesh");
+    add_progress_options(verb, options->progress, "no progress on stderr");
     return [options] { return run_scene(*options); };
 }
 

@@ -3,4 +3,5 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+} // namespace CLI

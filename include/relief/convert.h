@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/progress.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -20,7 +21,8 @@ namespace relief {
 /// Error{usage} for impossible conversions (vectors to heights, world space, a missing mesh),
 /// Error{bad_input} for a mesh that cannot carry the map.
 Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh = nullptr,
-                         std::vector<std::string>* warnings = nullptr);
+                         std::vector<std::string>* warnings = nullptr,
+                         const ProgressFunction& on_progress = {});
 
 /// Axes in the notation of options and scene files: "t,-n,b", or "x,-z,y" in object and world space.
 std::string format_map_axes(const AxisMap& axes, DisplacementSpace space);
@@ -32,6 +34,6 @@ float find_largest_displacement(const Displacement& map);
 /// per patch, welded along shared edges; other polygons unchanged, or subdivided as their mesh asks. `level`
 /// is in [0, kMaxLevel], else Error{usage}. Throws Error{bad_input} for an invalid scene,
 /// Error{out_of_memory} with the byte count for a mesh that does not fit.
-Mesh make_displaced_mesh(const Scene& scene, int level);
+Mesh make_displaced_mesh(const Scene& scene, int level, const ProgressFunction& on_progress = {});
 
 } // namespace relief

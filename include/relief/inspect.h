@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "relief/image.h"
+#include "relief/progress.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 
@@ -52,7 +53,8 @@ TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings&
 
 /// Counts, bytes, the estimated render time with `settings` (measured on a few windows of the picture), and
 /// the findings of all meshes and maps. Throws as render().
-Inspection inspect_scene(const Scene& scene, const RenderSettings& settings);
+Inspection inspect_scene(const Scene& scene, const RenderSettings& settings,
+                         const ProgressFunction& on_progress = {});
 
 /// Checks faces, edges and uvs; with its displacement also whether the two match: UDIM tiles, texel density,
 /// uv range.
@@ -65,7 +67,8 @@ enum class MapMeaning { declared, unknown };
 /// Statistics of a map's texels, its probable convention and the reasons, and common mistakes. With the mesh
 /// that the map belongs to, tangent and object space can be distinguished and lengths compared with its size.
 /// Non-finite values are reported as findings, not as errors.
-Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh = nullptr);
+Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh = nullptr,
+                       const ProgressFunction& on_progress = {});
 
 /// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
@@ -81,6 +84,7 @@ std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
 /// displaced surface, the displacement as colours (red, green, blue along t, b, n or x, y, z; grey is zero),
 /// and folds: where the surface faces away from its base, in red. Values are meant for a tone-mapped file.
 /// Throws as render().
-Image make_check_picture(const Scene& scene, const RenderSettings& settings);
+Image make_check_picture(const Scene& scene, const RenderSettings& settings,
+                         const ProgressFunction& on_progress = {});
 
 } // namespace relief

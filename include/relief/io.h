@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "relief/image.h"
+#include "relief/progress.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -65,11 +66,13 @@ enum class MapSamples { float16, float32, uint16 };
 /// values in [0, 1]). A map with tiles needs a name with `<UDIM>`, `<UVTILE>` or `<uvtile>`; folders must
 /// exist. Each file is replaced atomically. Throws Error{usage} for another extension, a sample type that the
 /// format lacks, or a name with a missing or superfluous token; Error{bad_input} for values out of range.
-void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples);
+void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples,
+               const ProgressFunction& on_progress = {});
 
 /// Writes .obj, or binary .ply: faces unchanged, with uvs. Throws Error{usage} for another extension,
 /// Error{bad_input} for an invalid mesh, Error{failed} where the file cannot be written.
-void write_mesh(const Mesh& mesh, const std::filesystem::path& file);
+void write_mesh(const Mesh& mesh, const std::filesystem::path& file,
+                const ProgressFunction& on_progress = {});
 
 /// For a file that is one of several tiles in its folder ("head.1001.exr"): the name with the token that
 /// matches all of them ("head.`<UDIM>`.exr"). Else empty.
@@ -116,7 +119,8 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws
 /// Error{bad_input} for a map in the mesh's own tangent frames, since OBJ has no tangents.
-void save_scene(const Scene& scene, const std::filesystem::path& folder);
+void save_scene(const Scene& scene, const std::filesystem::path& folder,
+                const ProgressFunction& on_progress = {});
 
 /// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by
 /// aim_scene, as a scene file that names the files of `input`; load_scene restores the same scene. Comments

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/progress.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -14,6 +15,7 @@ enum class Instancing { none, shared };
 std::vector<std::string> sample_scene_names();
 
 /// Builds a sample scene in memory. Throws Error{usage} for an unknown name.
-Scene make_sample_scene(const std::string& name, Instancing instancing);
+Scene make_sample_scene(const std::string& name, Instancing instancing,
+                        const ProgressFunction& on_progress = {});
 
 } // namespace relief

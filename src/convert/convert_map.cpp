@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/progress.h"
 #include "convert/frame_inverse.h"
 #include "convert/texel_frames.h"
 #include "math/vec.h"
@@ -132,30 +133,38 @@ void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t
         }
 }
 
-/// Through the frames of `surface`: `turn(frame, index of the texel)` makes the new displacement.
-template <class Turn>
-Field change_space(const Surface& surface, uint8_t tile, const Field& field, const Turn& turn) {
-    const Texture& texture = *surface.map.tiles[tile].texture;
+struct FramedTile {
+    const Surface& surface;
+    uint8_t tile;
+    ProgressFunction on_progress;
+};
+
+/// Through the frames of the surface: `turn(frame, index of the texel)` makes the new displacement.
+template <class Turn> Field change_space(const FramedTile& framed, const Field& field, const Turn& turn) {
+    const Texture& texture = *framed.surface.map.tiles[framed.tile].texture;
     Field changed(field.size());
     std::vector<uint8_t> is_known(field.size());
-    visit_texel_frames(surface, tile, [&](uint32_t x, uint32_t y, const TexelFrame& frame) {
-        const size_t at = size_t(y) * texture.width + x;
-        changed[at] = turn(frame, at);
-        is_known[at] = 1;
-    });
+    visit_texel_frames(
+        framed.surface, framed.tile,
+        [&](uint32_t x, uint32_t y, const TexelFrame& frame) {
+            const size_t at = size_t(y) * texture.width + x;
+            changed[at] = turn(frame, at);
+            is_known[at] = 1;
+        },
+        framed.on_progress);
     for (int k = 0; k < kMargin; ++k) grow(changed, is_known, texture.width, texture.height);
     return changed;
 }
 
-Field change_to_object(const Surface& surface, uint8_t tile, const Field& field) {
-    return change_space(surface, tile, field,
+Field change_to_object(const FramedTile& framed, const Field& field) {
+    return change_space(framed, field,
                         [&](const TexelFrame& frame, size_t at) { return to_object(frame.axes, field[at]); });
 }
 
 /// A texel may be visited again, by a nearer patch.
-Field change_to_tangent(const Surface& surface, uint8_t tile, const Field& field, Misses& misses) {
+Field change_to_tangent(const FramedTile& framed, const Field& field, Misses& misses) {
     std::vector<float> errors(field.size());
-    Field changed = change_space(surface, tile, field, [&](const TexelFrame& frame, size_t at) {
+    Field changed = change_space(framed, field, [&](const TexelFrame& frame, size_t at) {
         const FrameCoordinates inverse = invert_frame(frame, field[at]);
         errors[at] = inverse.error;
         return inverse.tbn;
@@ -206,7 +215,7 @@ Surface make_framed_surface(const Displacement& map, const Displacement& meant, 
 } // namespace
 
 Displacement convert_map(const Displacement& from, const Displacement& to, const Mesh* mesh,
-                         std::vector<std::string>* warnings) {
+                         std::vector<std::string>* warnings, const ProgressFunction& on_progress) {
     check_kinds(from, to, mesh);
     if (to.scale.x == 0 || to.scale.y == 0 || to.scale.z == 0)
         refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
@@ -224,13 +233,24 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         if (!find_texel_range(stored, all)) refuse_bad_texel(stored, all);
         const std::shared_ptr<const Texture> texels = smooth_steps(from, from.tiles[k].texture);
         const Texture& source = *texels;
+        const double count = double(from.tiles.size());
+        const ProgressFunction tile_progress =
+            make_part(on_progress, double(k) / count, (double(k) + 1) / count);
         Field field = decode_all(from, source);
-        if (source_frames) field = change_to_object(*source_frames, uint8_t(k), field);
+        // Frames take most of the time.
+        const double half = target_frames ? 0.5 : 0.9;
+        if (source_frames)
+            field =
+                change_to_object({*source_frames, uint8_t(k), make_part(tile_progress, 0.05, half)}, field);
         Misses misses;
-        if (target_frames) field = change_to_tangent(*target_frames, uint8_t(k), field, misses);
+        if (target_frames)
+            field = change_to_tangent(
+                {*target_frames, uint8_t(k), make_part(tile_progress, source_frames ? 0.5 : 0.05, 0.9)},
+                field, misses);
         if (warnings && misses.count > 0) warnings->push_back(misses.describe(from.tiles[k].udim));
         if (from.flip_v != to.flip_v) turn_rows(field, source.width);
         result.tiles.push_back({from.tiles[k].udim, encode_all(to, source, field)});
+        if (tile_progress) tile_progress(1);
     }
     return result;
 }

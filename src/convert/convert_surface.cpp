@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/machine.h"
+#include "base/progress.h"
 #include "math/affine.h"
 #include "prepare/prepared_scene.h"
 #include "relief/convert.h"
@@ -36,8 +37,8 @@ class SurfaceCutter {
         levels_ = {narrow, {narrow, narrow, narrow, narrow}};
     }
 
-    void cut() {
-        for (uint32_t patch = 0; patch < surface_.patch_count(); ++patch) cut_patch(patch);
+    void cut(ProgressCounter& counter) {
+        for (uint32_t patch = 0; patch < surface_.patch_count(); ++patch) cut_patch(patch), counter.add(1);
     }
 
   private:
@@ -176,7 +177,7 @@ void check_room(uint64_t patches, int level) {
 
 } // namespace
 
-Mesh make_displaced_mesh(const Scene& scene, int level) {
+Mesh make_displaced_mesh(const Scene& scene, int level, const ProgressFunction& on_progress) {
     if (level < 0 || level > kMaxLevel)
         throw Error(ErrorKind::usage, {fmt::format("level {} is not in [0, {}]", level, kMaxLevel), "", ""});
     RenderSettings settings;
@@ -184,6 +185,12 @@ Mesh make_displaced_mesh(const Scene& scene, int level) {
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     Mesh mesh;
     mesh.name = "displaced";
+    uint64_t patches = 0;
+    for (const Instance& instance : prepared->instances) {
+        const Surface& surface = prepared->surfaces[instance.surface];
+        patches += surface.has_displacement ? surface.patch_count() : 0;
+    }
+    ProgressCounter counter(on_progress, patches);
     for (size_t number = 0; number < scene.objects.size(); ++number) {
         const Object& object = scene.objects[number];
         const Mesh& source = scene.meshes[object.mesh];
@@ -194,7 +201,7 @@ Mesh make_displaced_mesh(const Scene& scene, int level) {
         }
         const Surface& surface = prepared->surfaces[prepared->instances[number].surface];
         check_room(surface.patch_count() + (uint64_t(mesh.face_sizes.size()) >> (2 * level)), level);
-        SurfaceCutter(surface, object, level, mesh).cut();
+        SurfaceCutter(surface, object, level, mesh).cut(counter);
     }
     return mesh;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/progress.h"
 #include "math/vec.h"
 #include "surface/map/texels.h"
 #include "surface/patch/patch_samples.h"
@@ -121,10 +122,14 @@ class FrameVisitor {
 } // namespace
 
 void visit_texel_frames(const Surface& surface, uint8_t tile,
-                        const std::function<void(uint32_t, uint32_t, const TexelFrame&)>& visit) {
+                        const std::function<void(uint32_t, uint32_t, const TexelFrame&)>& visit,
+                        const ProgressFunction& on_progress) {
     FrameVisitor visitor(surface, tile);
-    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
+    ProgressCounter counter(on_progress, surface.patch_count());
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
         if (surface.tile(surface.quads[patch].vertex[0]) == tile) visitor.visit_patch(patch, visit);
+        counter.add(1);
+    }
 }
 
 } // namespace relief

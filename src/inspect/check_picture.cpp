@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/progress.h"
 #include "cpu/cpu_engine.h"
 #include "formulas/camera.h"
 #include "inspect/picture_lines.h"
@@ -144,14 +145,18 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
 
 } // namespace
 
-Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
+Image make_check_picture(const Scene& scene, const RenderSettings& settings,
+                         const ProgressFunction& on_progress) {
     validate_settings(settings);
     RenderSettings plain = settings;
     plain.device.engine = EngineKind::cpu;
     plain.image.crop = {}, plain.image.layers = {}, plain.surface.mode = SurfaceMode::direct;
     Image sheet = make_sheet(plain);
+    ProgressCounter steps(on_progress, 3);
     copy_picture(render(make_base(scene), plain).image, 0, 0, sheet);
+    steps.add(1);
     copy_picture(render(scene, plain).image, plain.image.width, 0, sheet);
+    steps.add(1);
 
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, plain);
     const scalar::CameraFrame camera = make_camera_frame(*prepared);
@@ -166,6 +171,7 @@ Image make_check_picture(const Scene& scene, const RenderSettings& settings) {
         set_pixel(sheet, plain.image.width + x, plain.image.height + y, colours.folds);
     }
     draw_frames(*prepared, camera, plain, sheet);
+    steps.add(1);
     return sheet;
 }
 

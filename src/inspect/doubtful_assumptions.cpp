@@ -13,7 +13,6 @@
 #include "relief/convert.h"
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
-#include "scene/faces_without_uvs.h"
 
 namespace relief {
 

@@ -7,6 +7,7 @@
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
 #include "analysis/mesh_statistics.h"
+#include "base/progress.h"
 #include "inspect/facts.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
@@ -185,15 +186,19 @@ void note_folds(const Displacement& map, MapMeaning meaning, const Reading& read
 
 } // namespace
 
-Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh) {
+Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh,
+                       const ProgressFunction& on_progress) {
     Inspection result;
+    ProgressCounter steps(on_progress, 2);
     const Reading reading = read_map(map, meaning, mesh);
+    steps.add(1);
     describe_files(map, reading.statistics, result.facts);
     describe_convention(map, meaning, reading.statistics, reading.convention, result.facts);
     find_map_mistakes(map, meaning, reading.statistics, result.findings);
     if (reading.mesh) find_misfits(map, reading.statistics, *reading.mesh, result.findings);
     note_convention(map, meaning, reading.convention, result.findings);
     note_folds(map, meaning, reading, result.findings);
+    steps.add(1);
     return result;
 }
 

@@ -12,6 +12,7 @@
 #include "analysis/mesh_statistics.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
+#include "base/progress.h"
 #include "base/timer.h"
 #include "cpu/path_tracer.h"
 #include "film/film.h"
@@ -38,9 +39,11 @@ std::set<Pair> list_displaced(const Scene& scene) {
 }
 
 /// Maps, each with the first mesh that it is used on.
-void describe_maps(const Scene& scene, const std::set<Pair>& pairs, Inspection& result) {
+void describe_maps(const Scene& scene, const std::set<Pair>& pairs, ProgressCounter& steps,
+                   Inspection& result) {
     for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
         const Displacement& map = scene.displacements[index];
+        steps.add(1);
         if (!has_all_textures(map)) continue;
         const auto pair = pairs.lower_bound({index, 0});
         const bool is_used = pair != pairs.end() && pair->first == index;
@@ -65,7 +68,8 @@ void add_mesh_findings(const Mesh& mesh, const Displacement* map, Inspection& re
     }
 }
 
-void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection& result) {
+void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, ProgressCounter& steps,
+                     Inspection& result) {
     std::set<uint32_t> displaced;
     for (const auto& [map, mesh] : pairs) {
         if (displaced.insert(mesh).second)
@@ -73,6 +77,7 @@ void describe_meshes(const Scene& scene, const std::set<Pair>& pairs, Inspection
                                     describe_base(scene.meshes.at(mesh)),
                                     {}});
         add_mesh_findings(scene.meshes.at(mesh), &scene.displacements.at(map), result);
+        steps.add(1);
     }
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
         if (displaced.count(mesh) == 0) add_mesh_findings(scene.meshes[mesh], nullptr, result);
@@ -174,7 +179,7 @@ double extrapolate_build(const std::vector<TrialRender::Seconds>& parts, int cou
 /// samples. Tracing grows with pixels and samples, building of patch trees for the first sample with the part
 /// of the surfaces that is seen; what later samples build they build for all pixels, as trees were dropped.
 Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double prepare_s,
-                   const RenderSettings& settings) {
+                   const RenderSettings& settings, const ProgressFunction& on_progress) {
     constexpr double kBudget_s = 1.5;
     const Timer timer;
     TrialRender trial(prepared, settings);
@@ -186,6 +191,7 @@ Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double 
            (parts.size() < 2 || trial_timer.seconds() < kBudget_s)) {
         parts.push_back(trial.time_part(int(parts.size())));
         first_s += parts.back().first, next_s += parts.back().next, built_s += parts.back().build;
+        if (on_progress) on_progress(std::min(1.0, trial_timer.seconds() / kBudget_s));
     }
     const double share = double(parts.size()) / trial.part_count();
     const double build_s = extrapolate_build(parts, trial.part_count());
@@ -204,10 +210,13 @@ Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double 
              {"samples", double(settings.image.spp), "count"}}};
 }
 
-void describe_cost(const Scene& scene, const RenderSettings& settings, Inspection& result) {
+void describe_cost(const Scene& scene, const RenderSettings& settings, const ProgressFunction& on_progress,
+                   Inspection& result) {
     const Timer timer;
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     const double prepare_s = timer.seconds();
+    constexpr double kPrepared = 0.5;
+    if (on_progress) on_progress(kPrepared);
     uint64_t patches = 0, triangles = 0;
     int max_level = 0;
     for (const Instance& instance : prepared->instances) {
@@ -236,7 +245,8 @@ void describe_cost(const Scene& scene, const RenderSettings& settings, Inspectio
     count_scene(*prepared, statistics);
     add_bytes("map_texels", statistics.displacement_bytes, " with their bounds and copies");
     add_bytes("tessellated", estimate_tessellation(*prepared).peak_bytes, " at the levels of this view");
-    result.facts.push_back(estimate_time(prepared, prepare_s, settings));
+    result.facts.push_back(
+        estimate_time(prepared, prepare_s, settings, make_part(on_progress, kPrepared, 1)));
     for (size_t k = scene.warnings.size(); k < prepared->warnings.size(); ++k)
         add_warning(result.findings, "W-SCENE", "{}", prepared->warnings[k]);
 }
@@ -250,7 +260,8 @@ TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings&
     return estimate_tessellation(*prepare_scene(scene, direct));
 }
 
-Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
+Inspection inspect_scene(const Scene& scene, const RenderSettings& settings,
+                         const ProgressFunction& on_progress) {
     Inspection result;
     size_t displaced = 0;
     for (const Object& object : scene.objects) displaced += object.displacement != kNoIndex;
@@ -268,9 +279,10 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings) {
     try {
         validate_scene(scene);
         const std::set<Pair> pairs = list_displaced(scene);
-        describe_meshes(scene, pairs, result);
-        describe_maps(scene, pairs, result);
-        describe_cost(scene, settings, result);
+        ProgressCounter steps(make_part(on_progress, 0, 0.5), pairs.size() + scene.displacements.size());
+        describe_meshes(scene, pairs, steps, result);
+        describe_maps(scene, pairs, steps, result);
+        describe_cost(scene, settings, make_part(on_progress, 0.5, 1), result);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::bad_input) throw;
         add_error(result.findings, "E-SCENE", "{}", error.what());

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "math/half.h"
 #include "math/vec.h"
 
@@ -36,7 +37,7 @@ void store(Texture& texture, uint32_t x, uint32_t y, const Vec3f& value) {
 } // namespace
 
 Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
-               const std::function<MapSample(Vec2f uv)>& sample) {
+               const std::function<MapSample(Vec2f uv)>& sample, const ProgressFunction& on_progress) {
     DCHECK(size % 2 == 0);
     const auto displacement = make_texture(name + "_displacement", size, texels);
     const auto color = make_texture(name + "_color", size / 2, Texels::halves);
@@ -53,8 +54,10 @@ Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
             store(*color, x, pair, min(max(mean, Vec3f{}), Vec3f{1, 1, 1}));
         }
     };
+    ProgressCounter counter(on_progress, size / 2);
     parallel_for("bake maps", size / 2, 16, [&](size_t begin, size_t end) {
         for (size_t pair = begin; pair < end; ++pair) bake_row_pair(uint32_t(pair));
+        counter.add(end - begin);
     });
     return {displacement, color};
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "relief/progress.h"
 #include "relief/scene.h"
 
 namespace relief::samples {
@@ -23,6 +24,6 @@ enum class Texels { halves, floats };
 
 /// `sample` (thread safe) at every texel centre of a square map, row 0 at v = 1; colour: means of four.
 Maps bake_maps(const std::string& name, uint32_t size, Texels texels,
-               const std::function<MapSample(Vec2f uv)>& sample);
+               const std::function<MapSample(Vec2f uv)>& sample, const ProgressFunction& on_progress = {});
 
 } // namespace relief::samples

@@ -114,10 +114,11 @@ LatheShape make_trunk_profile(const TrunkShape& trunk) {
 
 LatheBody make_trunk_body(const TrunkShape& shape) { return LatheBody(make_trunk_profile(shape)); }
 
-Model make_trunk(const TrunkShape& shape) {
+Model make_trunk(const TrunkShape& shape, const ProgressFunction& on_progress) {
     const BarkSculptor sculptor;
-    Model model = bake_model("bark", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
-                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
+    Model model = bake_model(
+        "bark", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
+        [&](Vec2f uv) { return sculptor.sculpt(uv); }, on_progress);
     model.displacement.scale = Vec3f{1, 1, 1} * (2 * kPi);
     model.material.roughness = 0.85f;
     const LatheBody body = make_trunk_body(shape);

@@ -86,8 +86,9 @@ class CoralSculptor {
 
 } // namespace
 
-Model make_coral() {
-    return make_sculpted_model<CoralSculptor>("coral", make_shape(), DisplacementSpace::object, 0.5f);
+Model make_coral(const ProgressFunction& on_progress) {
+    return make_sculpted_model<CoralSculptor>("coral", make_shape(), DisplacementSpace::object, 0.5f,
+                                              on_progress);
 }
 
 } // namespace relief::samples

@@ -109,11 +109,12 @@ class EarSculptor {
 
 } // namespace
 
-Model make_ear() {
+Model make_ear(const ProgressFunction& on_progress) {
     const EarSculptor sculptor;
     // One quad carries the whole map, so steps of half floats at the height of the rim would show as grain.
-    Model model = bake_model("ear", DisplacementSpace::tangent, WrapMode::clamp, Texels::floats,
-                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
+    Model model = bake_model(
+        "ear", DisplacementSpace::tangent, WrapMode::clamp, Texels::floats,
+        [&](Vec2f uv) { return sculptor.sculpt(uv); }, on_progress);
     model.material.roughness = 0.45f;
     model.make_mesh = [](const Deformation& deform) {
         Mesh mesh = make_single_quad();

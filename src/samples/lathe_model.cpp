@@ -6,8 +6,8 @@
 namespace relief::samples {
 
 Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap, Texels texels,
-                 const std::function<MapSample(Vec2f uv)>& sample) {
-    Maps maps = bake_maps(name, kMapSize, texels, sample);
+                 const std::function<MapSample(Vec2f uv)>& sample, const ProgressFunction& on_progress) {
+    Maps maps = bake_maps(name, kMapSize, texels, sample, on_progress);
     Model model;
     model.displacement.name = name;
     model.displacement.space = space;
@@ -20,7 +20,8 @@ Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap
 }
 
 Model make_lathe_model(const std::string& name, const LatheBody& body, DisplacementSpace space,
-                       const std::function<Sculpture(const BodyPoint&)>& sculpt) {
+                       const std::function<Sculpture(const BodyPoint&)>& sculpt,
+                       const ProgressFunction& on_progress) {
     const auto sample = [&](Vec2f uv) {
         const BodyPoint point = body.point_at_uv(uv);
         const Sculpture result = sculpt(point);
@@ -32,7 +33,7 @@ Model make_lathe_model(const std::string& name, const LatheBody& body, Displacem
         }
         return sample;
     };
-    Model model = bake_model(name, space, WrapMode::repeat, Texels::halves, sample);
+    Model model = bake_model(name, space, WrapMode::repeat, Texels::halves, sample, on_progress);
     model.make_mesh = [body, name](const Deformation& deform) { return body.make_mesh(name, deform); };
     return model;
 }

@@ -155,8 +155,9 @@ class MushroomSculptor {
 
 } // namespace
 
-Model make_mushroom() {
-    return make_sculpted_model<MushroomSculptor>("mushroom", make_shape(), DisplacementSpace::tangent, 0.35f);
+Model make_mushroom(const ProgressFunction& on_progress) {
+    return make_sculpted_model<MushroomSculptor>("mushroom", make_shape(), DisplacementSpace::tangent, 0.35f,
+                                                 on_progress);
 }
 
 } // namespace relief::samples

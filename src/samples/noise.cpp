@@ -9,9 +9,12 @@ struct Cell {
     float fraction, weight;
 };
 
+/// Rounds towards minus infinity without a call, which std::floor is on processors without SSE4.
 Cell locate(float x) {
-    const float floor = std::floor(x), f = x - floor;
-    return {int32_t(floor), f, f * f * f * (f * (f * 6 - 15) + 10)};
+    auto index = int32_t(x);
+    if (float(index) > x) --index;
+    const float f = x - float(index);
+    return {index, f, f * f * f * (f * (f * 6 - 15) + 10)};
 }
 
 /// Dot product with one of the twelve edge directions of a cube.
@@ -73,10 +76,12 @@ float noise(const Vec3f& p, uint32_t seed) {
 
 float tile_noise(const Vec2f& p, int period_x, int period_y, uint32_t seed) {
     const Cell x = locate(p.x), y = locate(p.y);
-    const int32_t x0 = wrap(x.index, period_x), x1 = wrap(x.index + 1, period_x);
+    // Divisions are most of what a wrap takes.
+    const int32_t x0 = wrap(x.index, period_x), x1 = x0 + 1 == period_x ? 0 : x0 + 1;
+    const int32_t y0 = wrap(y.index, period_y);
     float rows[2];
     for (int j = 0; j < 2; ++j) {
-        const int32_t row = wrap(y.index + j, period_y);
+        const int32_t row = y0 + j == period_y ? 0 : y0 + j;
         const float fy = y.fraction - float(j);
         const float a = dot_gradient(hash(x0, row, 0, seed), x.fraction, fy);
         const float b = dot_gradient(hash(x1, row, 0, seed), x.fraction - 1, fy);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.h"
 #include "samples/noise.h"
 #include "samples/stage.h"
 
@@ -116,14 +117,17 @@ void add_plain_objects(Stage& stage, Floor& floor) {
 
 } // namespace
 
-Scene make_party_scene(Instancing instancing) {
+Scene make_party_scene(Instancing instancing, const ProgressFunction& on_progress) {
     Stage stage(instancing);
     Floor floor(301);
     TrunkShape trunk;
     trunk.cap_cells = 6, trunk.rows = 36, trunk.height = 9;
-    const uint32_t bark = stage.add_model(make_trunk(trunk));
-    const uint32_t pumpkin = stage.add_model(make_pumpkin()), mushroom = stage.add_model(make_mushroom());
-    const uint32_t coral = stage.add_model(make_coral()), ring = stage.add_model(make_scale_ring());
+    const auto part = [&](int k) { return make_part(on_progress, k / 5.0, (k + 1) / 5.0); };
+    const uint32_t bark = stage.add_model(make_trunk(trunk, part(0)));
+    const uint32_t pumpkin = stage.add_model(make_pumpkin(part(1)));
+    const uint32_t mushroom = stage.add_model(make_mushroom(part(2)));
+    const uint32_t coral = stage.add_model(make_coral(part(3)));
+    const uint32_t ring = stage.add_model(make_scale_ring(part(4)));
     const Vec3f white{1, 1, 1};
     const Tints rings{{"scales", white}, {"scales_bronze", {1, 0.5f, 0.3f}}};
     const Tints pumpkins{{"pumpkin", white},

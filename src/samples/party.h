@@ -5,6 +5,6 @@
 
 namespace relief::samples {
 
-Scene make_party_scene(Instancing instancing);
+Scene make_party_scene(Instancing instancing, const ProgressFunction& on_progress);
 
 } // namespace relief::samples

@@ -133,8 +133,9 @@ class PumpkinSculptor {
 
 } // namespace
 
-Model make_pumpkin() {
-    return make_sculpted_model<PumpkinSculptor>("pumpkin", make_shape(), DisplacementSpace::object, 0.42f);
+Model make_pumpkin(const ProgressFunction& on_progress) {
+    return make_sculpted_model<PumpkinSculptor>("pumpkin", make_shape(), DisplacementSpace::object, 0.42f,
+                                                on_progress);
 }
 
 } // namespace relief::samples

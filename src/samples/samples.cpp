@@ -32,30 +32,30 @@ Deformation make_trunk_growth(uint32_t seed, float height) {
     };
 }
 
-Scene make_pumpkin_scene(Instancing instancing) {
+Scene make_pumpkin_scene(Instancing instancing, const ProgressFunction& on_progress) {
     Stage stage(instancing);
-    stage.add_displaced(stage.add_model(make_pumpkin()), "pumpkin", place({0, 0.84f, 0}, 1, 25),
+    stage.add_displaced(stage.add_model(make_pumpkin(on_progress)), "pumpkin", place({0, 0.84f, 0}, 1, 25),
                         make_variation(3, 0.03f));
     stage.add_ground(0, 40, {0.42f, 0.37f, 0.31f});
     stage.light({-118, 34, {1.0f, 0.84f, 0.64f}, 3.6f});
     return stage.finish({1.35f, 2.25f, 3.9f}, {0.03f, 0.92f, 0}, 27);
 }
 
-Scene make_bark_scene(Instancing instancing) {
+Scene make_bark_scene(Instancing instancing, const ProgressFunction& on_progress) {
     Stage stage(instancing);
     const TrunkShape shape;
-    const uint32_t bark = stage.add_model(make_trunk(shape));
+    const uint32_t bark = stage.add_model(make_trunk(shape, on_progress));
     stage.add_displaced(bark, "trunk", place({0, -0.4f, 0}, 1, 200), make_trunk_growth(4, shape.height));
     stage.add_ground(0, 40, {0.20f, 0.17f, 0.12f});
     stage.light({-128, 30, {1.0f, 0.82f, 0.60f}, 4.2f});
     return stage.finish({0.7f, 1.9f, 3.4f}, {0.02f, 1.5f, 0}, 42);
 }
 
-Scene make_barks_scene(Instancing instancing) {
+Scene make_barks_scene(Instancing instancing, const ProgressFunction& on_progress) {
     Stage stage(instancing);
     TrunkShape shape;
     shape.rows = 74;
-    const uint32_t bark = stage.add_model(make_trunk(shape));
+    const uint32_t bark = stage.add_model(make_trunk(shape, on_progress));
     struct Tree {
         Vec3f position;
         float scale, turn;
@@ -76,14 +76,15 @@ Scene make_barks_scene(Instancing instancing) {
     return stage.finish({0.3f, 2.3f, 8.2f}, {0.15f, 2.1f, -1}, 38);
 }
 
-Scene make_ear_scene(Instancing instancing) {
+Scene make_ear_scene(Instancing instancing, const ProgressFunction& on_progress) {
     Stage stage(instancing);
-    stage.add_displaced(stage.add_model(make_ear()), "ear", Affine{}, [](const Vec3f& p) { return p; });
+    stage.add_displaced(stage.add_model(make_ear(on_progress)), "ear", Affine{},
+                        [](const Vec3f& p) { return p; });
     stage.light({-125, 42, {1.0f, 0.90f, 0.78f}, 3.2f});
     return stage.finish({1.15f, 0.45f, 3.6f}, {0.02f, 0.03f, 0.12f}, 32);
 }
 
-using Maker = Scene (*)(Instancing);
+using Maker = Scene (*)(Instancing, const ProgressFunction&);
 
 constexpr std::pair<const char*, Maker> kScenes[] = {{"pumpkin", make_pumpkin_scene},
                                                      {"bark", make_bark_scene},
@@ -99,10 +100,10 @@ std::vector<std::string> sample_scene_names() {
     return names;
 }
 
-Scene make_sample_scene(const std::string& name, Instancing instancing) {
+Scene make_sample_scene(const std::string& name, Instancing instancing, const ProgressFunction& on_progress) {
     std::string known;
     for (const auto& [candidate, maker] : kScenes) {
-        if (name == candidate) return maker(instancing);
+        if (name == candidate) return maker(instancing, on_progress);
         known += (known.empty() ? "" : ", ") + std::string(candidate);
     }
     throw Error(ErrorKind::usage, {"there is no sample scene of this name", name, "known are " + known});

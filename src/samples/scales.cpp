@@ -92,10 +92,11 @@ class ScaleSculptor {
 
 } // namespace
 
-Model make_scale_ring() {
+Model make_scale_ring(const ProgressFunction& on_progress) {
     const ScaleSculptor sculptor;
-    Model model = bake_model("scales", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
-                             [&](Vec2f uv) { return sculptor.sculpt(uv); });
+    Model model = bake_model(
+        "scales", DisplacementSpace::tangent, WrapMode::repeat, Texels::halves,
+        [&](Vec2f uv) { return sculptor.sculpt(uv); }, on_progress);
     model.displacement.scale = Vec3f{1, 1, 1} * kTileLength;
     model.material.roughness = 0.32f;
     TorusShape shape;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/progress.h"
 #include "io/file_system.h"
 #include "io/mesh/mesh_obj.h"
 #include "relief/error.h"
@@ -42,9 +43,25 @@ std::string make_ply_header(const Mesh& mesh, const char* vertex_uvs, const char
                        mesh.positions.size(), vertex_uvs, mesh.face_sizes.size(), corner_uvs);
 }
 
+/// Of a million faces a second nobody looks at each.
+class FaceCounter {
+  public:
+    FaceCounter(const Mesh& mesh, const ProgressFunction& on_progress)
+        : counter_(on_progress, mesh.face_sizes.size() / kFaces) {}
+    void count_face() {
+        if (++faces_ % kFaces == 0) counter_.add(1);
+    }
+
+  private:
+    static constexpr size_t kFaces = 4096;
+    ProgressCounter counter_;
+    size_t faces_ = 0;
+};
+
 } // namespace
 
-std::string format_obj(const Mesh& mesh) {
+std::string format_obj(const Mesh& mesh, const ProgressFunction& on_progress) {
+    FaceCounter counter(mesh, on_progress);
     std::string text;
     const auto out = std::back_inserter(text);
     for (const Vec3f& p : mesh.positions) fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
@@ -63,11 +80,13 @@ std::string format_obj(const Mesh& mesh) {
             if (has_normals) fmt::format_to(out, "{}/{}", has_uv ? "" : "/", mesh.normal_indices[corner] + 1);
         }
         text += '\n';
+        counter.count_face();
     }
     return text + format_obj_creases(mesh.creases);
 }
 
-std::string format_ply(const Mesh& mesh) {
+std::string format_ply(const Mesh& mesh, const ProgressFunction& on_progress) {
+    FaceCounter counter(mesh, on_progress);
     const std::vector<Vec2f> uvs = find_vertex_uvs(mesh);
     const bool has_corner_uvs = uvs.empty() && !mesh.uv_indices.empty();
     std::string bytes = make_ply_header(mesh, uvs.empty() ? "" : "property float s\nproperty float t\n",
@@ -88,17 +107,18 @@ std::string format_ply(const Mesh& mesh) {
             append_float(bytes, uv.x), append_float(bytes, uv.y);
         }
         first += size;
+        counter.count_face();
     }
     return bytes;
 }
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& file) {
+void write_mesh(const Mesh& mesh, const std::filesystem::path& file, const ProgressFunction& on_progress) {
     validate_mesh(mesh);
     const std::string extension = get_extension(file);
     if (extension == ".obj")
-        write_text_file(file, format_obj(mesh));
+        write_text_file(file, format_obj(mesh, on_progress));
     else if (extension == ".ply")
-        write_text_file(file, format_ply(mesh));
+        write_text_file(file, format_ply(mesh, on_progress));
     else
         throw Error(ErrorKind::usage, {fmt::format("cannot write meshes of kind '{}'", extension),
                                        file.string(), "known: .obj, .ply"});

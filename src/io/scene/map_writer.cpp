@@ -4,6 +4,7 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
 
+#include "base/progress.h"
 #include "io/file_system.h"
 #include "io/picture/image_coders.h"
 #include "io/scene/asset_cache.h"
@@ -89,9 +90,14 @@ void write_tile(const Texture& texture, const std::filesystem::path& file, MapSa
 
 } // namespace
 
-void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples) {
+void write_map(const Displacement& map, const std::filesystem::path& file, MapSamples samples,
+               const ProgressFunction& on_progress) {
     check_kind(map, file, samples);
-    for (const MapTile& tile : map.tiles) write_tile(*tile.texture, make_tile_name(file, tile.udim), samples);
+    ProgressCounter counter(on_progress, map.tiles.size());
+    for (const MapTile& tile : map.tiles) {
+        write_tile(*tile.texture, make_tile_name(file, tile.udim), samples);
+        counter.add(1);
+    }
 }
 
 } // namespace relief

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/progress.h"
 #include "io/mesh/mesh_writer.h"
 #include "io/picture/image_coders.h"
 #include "io/scene/json_node.h"
@@ -72,8 +73,8 @@ void check_steps(const Displacement& map) {
 
 class SceneWriter {
   public:
-    SceneWriter(const Scene& scene, std::filesystem::path folder)
-        : scene_(scene), folder_(std::move(folder)) {}
+    SceneWriter(const Scene& scene, std::filesystem::path folder, const ProgressFunction& on_progress)
+        : scene_(scene), folder_(std::move(folder)), progress_(on_progress, count_work(scene)) {}
 
     void write() {
         for (const char* name : {"meshes", "maps"}) {
@@ -90,12 +91,37 @@ class SceneWriter {
     }
 
   private:
+    /// A vertex takes as long as so many texels.
+    static constexpr uint64_t kTexelsPerVertex = 16;
+
+    static uint64_t count_texels(const Texture& texture) { return uint64_t(texture.width) * texture.height; }
+
+    /// Texels, and vertices counted as texels.
+    static uint64_t count_work(const Scene& scene) {
+        std::set<const Texture*> textures;
+        if (scene.environment) textures.insert(scene.environment->texture.get());
+        for (const Material& material : scene.materials)
+            textures.insert({material.base_color_texture.get(), material.roughness_texture.get()});
+        for (const Displacement& map : scene.displacements)
+            for (const MapTile& tile : map.tiles) textures.insert(tile.texture.get());
+        textures.erase(nullptr);
+        uint64_t work = 0;
+        for (const Texture* texture : textures) work += count_texels(*texture);
+        for (const Mesh& mesh : scene.meshes) work += kTexelsPerVertex * mesh.positions.size();
+        return work;
+    }
+
+    void write_counted(const Texture& texture, const std::filesystem::path& file) {
+        write_texels(texture, file);
+        progress_.add(count_texels(texture));
+    }
+
     /// Writes a texture once, however often it is used; returns its path relative to the scene.
     std::string add_map(const std::shared_ptr<const Texture>& texture, const std::string& name) {
         std::string& file = files_[texture.get()];
         if (file.empty()) {
             file = "maps/" + map_names_.make_unique(make_file_stem(name)) + ".exr";
-            write_texels(*texture, folder_ / file);
+            write_counted(*texture, folder_ / file);
         }
         return file;
     }
@@ -145,7 +171,7 @@ class SceneWriter {
         if (!map.is_udim) return add_map(map.tiles.front().texture, name);
         const std::string stem = "maps/" + map_names_.make_unique(make_file_stem(name));
         for (const MapTile& tile : map.tiles)
-            write_texels(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
+            write_counted(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
         return stem + ".<UDIM>.exr";
     }
 
@@ -178,6 +204,7 @@ class SceneWriter {
             const std::string file =
                 "meshes/" + file_namer.make_unique(make_file_stem(mesh_names_.back())) + ".obj";
             write_text_file(folder_ / file, format_obj(mesh));
+            progress_.add(kTexelsPerVertex * mesh.positions.size());
             Json& node = root_["meshes"][mesh_names_.back()];
             node["file"] = file;
             if (has_subdivision(mesh)) node["subdivision"] = write_subdivision(mesh);
@@ -215,6 +242,7 @@ class SceneWriter {
 
     const Scene& scene_;
     std::filesystem::path folder_;
+    ProgressCounter progress_;
     Json root_;
     Namer map_names_{"map"};
     std::map<const Texture*, std::string> files_;
@@ -223,11 +251,12 @@ class SceneWriter {
 
 } // namespace
 
-void save_scene(const Scene& scene, const std::filesystem::path& folder) {
+void save_scene(const Scene& scene, const std::filesystem::path& folder,
+                const ProgressFunction& on_progress) {
     validate_scene(scene);
     for (const Object& object : scene.objects) check_tangents(scene, object);
     for (const Displacement& map : scene.displacements) check_steps(map);
-    SceneWriter(scene, folder).write();
+    SceneWriter(scene, folder, on_progress).write();
 }
 
 } // namespace relief
