@@ -8,6 +8,7 @@
 #include "io/scene/displacement_reader.h"
 #include "io/scene/scene_keys.h"
 #include "math/affine.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 
