@@ -48,14 +48,18 @@ class CpuEngine final : public Engine, private PassTracer {
     bool render(Film& film, const RenderControl& control) override {
         // A surface that glows is drawn as a light from everywhere: nothing could be kept. Nor could blocks
         // whose number of samples depends on others.
-        if (!expects_changes_ || lights_.has_emitters() || settings_.image.noise > 0)
-            return trace_film(film, control);
-        footprints_.emplace(film.window(), tracer_.displaced_bounds());
-        return trace_stale_blocks(film, control);
+        if (!footprints_ && expects_changes_ && !lights_.has_emitters() && settings_.image.noise == 0)
+            footprints_.emplace(film.window(), tracer_.displaced_bounds());
+        if (footprints_)
+            for (const Window& window : footprints_->start_stale_windows()) film.clear(window);
+        const PassReport report = render_passes(film, settings_.image, control, kTileEdge, *this);
+        first_image_s_ = report.first_image_s;
+        if (footprints_ && report.is_complete) footprints_->finish();
+        return report.is_complete;
     }
 
     bool refresh(Film& film, const RenderControl& control) override {
-        return footprints_ ? trace_stale_blocks(film, control) : Engine::refresh(film, control);
+        return footprints_ ? render(film, control) : Engine::refresh(film, control);
     }
 
     void closest_hits(std::span<const Ray> rays, std::span<RayHit> hits, uint32_t mask) const override {
@@ -89,19 +93,6 @@ class CpuEngine final : public Engine, private PassTracer {
     }
 
   private:
-    bool trace_stale_blocks(Film& film, const RenderControl& control) {
-        for (const Window& window : footprints_->start_stale_windows()) film.clear(window);
-        const bool is_complete = trace_film(film, control);
-        if (is_complete) footprints_->finish();
-        return is_complete;
-    }
-
-    bool trace_film(Film& film, const RenderControl& control) {
-        const PassReport report = render_passes(film, settings_.image, control, kTileEdge, *this);
-        first_image_s_ = report.first_image_s;
-        return report.is_complete;
-    }
-
     void start_pass() override { tracer_.rebuild_if_worthwhile(); }
 
     void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override {
