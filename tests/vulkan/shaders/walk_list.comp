@@ -1,4 +1,5 @@
 // Steps from entry i to the end of its list.
+#include "formulas/constants.h"
 #include "vulkan/shaders/kernel.glsl"
 layout(binding = kBindFilm) readonly buffer Next { uint next[]; };
 layout(binding = kBindPaths) writeonly buffer Steps { uint steps[]; };
