@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/stop_request.h"
+#include "formulas/constants.h"
 #include "relief/error.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
