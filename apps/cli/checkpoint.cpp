@@ -1,5 +1,7 @@
 #include "checkpoint.h"
 
+#include <exception>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -28,9 +30,19 @@ void add_checkpoint_options(CLI::App& verb, CheckpointOptions& options) {
         ->type_name("FILE");
 }
 
+std::vector<std::string> list_films(const CheckpointOptions& options, const std::filesystem::path& output) {
+    std::vector<std::string> films;
+    if (options.is_on()) films.push_back(name_film(output).string());
+    if (!options.resumed.empty()) films.push_back(name_film(options.resumed).string());
+    return films;
+}
+
 void check_checkpoint(const CheckpointOptions& options, const std::filesystem::path& output) {
     if (!options.is_on()) return;
     check_text_writable(name_film(output));
+    if (options.resumed.empty() && std::filesystem::exists(name_film(output)))
+        fmt::print(stderr, "relief: warning: {} is replaced; --resume {} goes on from it\n",
+                   name_film(output).string(), output.string());
     const std::filesystem::path film = name_film(options.resumed);
     if (!options.resumed.empty() && !std::filesystem::is_regular_file(film))
         throw Error(ErrorKind::bad_input,
@@ -52,7 +64,9 @@ Checkpoints FilmKeeper::checkpoints() {
     checkpoints.save = [this](const std::function<void(std::ostream&)>& write) {
         try {
             write_file(file_, write);
-        } catch (const Error& error) {
+            has_failed_ = false;
+        } catch (const std::exception& error) {
+            has_failed_ = true;
             fmt::print(stderr, "relief: warning: the samples so far could not be kept: {}\n", error.what());
         }
     };

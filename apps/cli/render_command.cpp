@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -91,13 +92,23 @@ struct Waiting {
     double start, load_s;
 };
 
-/// Not after an interrupt, which asks for an end.
-void denoise_picture(const RenderOptions& options, RenderResult& result) {
+/// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;
+/// returns the exit code.
+int denoise_picture(const RenderOptions& options, RenderResult& result) {
     const double start = get_seconds();
     const auto is_interrupted = [] { return get_interrupt() != 0; };
-    if (!options.denoiser->denoise(result.image, is_interrupted))
-        fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
+    int exit_code = kExitDone;
+    try {
+        if (!options.denoiser->denoise(result.image, is_interrupted)) {
+            fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
+            exit_code = kExitSignalBase + get_interrupt();
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "relief: error: the picture is not denoised: {}\n", error.what());
+        exit_code = int(ErrorKind::failed);
+    }
     result.statistics.denoise_s = get_seconds() - start;
+    return exit_code;
 }
 
 /// `told`: warnings printed before the render.
@@ -110,7 +121,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
         if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
         return get_exit_code(result, {});
     }
-    if (options.is_denoised) denoise_picture(options, result);
+    const int denoised = options.is_denoised ? denoise_picture(options, result) : kExitDone;
     const double write_start = get_seconds();
     add_display_entries(options.aim, output, result.image);
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
@@ -126,7 +137,8 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     std::fflush(stdout); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
-    return get_exit_code(result, saved);
+    const int exit_code = get_exit_code(result, saved);
+    return exit_code != kExitDone ? exit_code : denoised;
 }
 
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
@@ -134,13 +146,14 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     catch_interrupts();
     RenderResult result;
     size_t told = 0;
+    FilmKeeper keeper(options.checkpoint, output);
     {
         RenderWatcher watcher(options, told); // its end prints the last line
-        FilmKeeper keeper(options.checkpoint, output);
         result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
-    return finish_picture(options, settings, output, waiting, result, told);
+    const int exit_code = finish_picture(options, settings, output, waiting, result, told);
+    return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }
 
 /// The pictures of a turntable, one after the other.
@@ -240,6 +253,7 @@ int render_input(const RenderOptions& options, double start) {
     const std::vector<std::string> files = list_files(scene);
     keep_files(files, options.output), keep_files(files, options.statistics_file);
     keep_files(files, options.aim.saved_scene);
+    for (const std::string& film : list_films(options.checkpoint, options.output)) keep_files(files, film);
     RenderSettings settings = make_settings(options, scene.picture);
     apply_background(options.aim, options.output, settings.image);
     aim_scene(scene, options.aim.scene, float(settings.image.width) / float(settings.image.height));

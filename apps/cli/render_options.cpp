@@ -294,6 +294,8 @@ void complete_render_options(RenderOptions& o) {
     if (!o.statistics_file.empty() && find_place(o.output) == find_place(o.statistics_file))
         throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
                                        o.statistics_file.string(), "name another one for --stats"});
+    const std::vector<std::string> films = list_films(o.checkpoint, o.output);
+    keep_files(films, o.output), keep_files(films, o.statistics_file), keep_files(films, o.aim.saved_scene);
     check_writable(o.output);
     check_checkpoint(o.checkpoint, o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);

@@ -142,7 +142,8 @@ struct Progress {
     double elapsed_s = 0; ///< since the render started
 };
 
-/// Receives progress and requests cancellation. Called from one thread at a time, a few times a second.
+/// Receives progress and requests cancellation. on_progress is called from one thread at a time, a few times
+/// a second; is_cancelled from any thread, often, also at once.
 class RenderObserver {
   public:
     virtual ~RenderObserver() = default;
@@ -163,15 +164,15 @@ struct Checkpoints {
     /// What a render of the same picture wrote: its samples are not traced again, and the result is that of
     /// one render of all samples, bit for bit; on the Vulkan engine where each ended after 1, 2, 4, 8 or a
     /// multiple of 16 samples. Null: none. Throws Error{bad_input} for a stream that is damaged or of another
-    /// picture.
+    /// picture or version; scenes with hash 0 (in memory) are told apart by nothing but these settings.
     std::istream* resume = nullptr;
 };
 
 struct RenderResult {
     Image image; ///< R G B A and the requested layers; linear, data window = crop
     Statistics statistics;
-    bool is_complete =
-        true; ///< false if cancelled; "samples.Y" then holds the number of samples of each pixel
+    bool is_complete = true; ///< false if cancelled; "samples.Y" then holds the number of samples of each
+                             ///< pixel, as it does where a time limit or low noise ended the render
     /// Samples that every pixel has; 0 if cancelled before the first pass over the picture was whole: pixels
     /// without samples are then 0, and the image is not to be shown.
     int whole_samples = 0;

@@ -82,22 +82,25 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
     const ImageSettings& image = settings.image;
     const SurfaceSettings& surface = settings.surface;
     const Vec3f background = image.background.value_or(Vec3f{-1, -1, -1});
-    return fmt::format("scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, "
-                       "background {},{},{}, layers {}, "
-                       "noise {}, surface {} {} {} {} {} {}, engine {}",
-                       scene_hash, image.width, image.height, image.crop.x0, image.crop.y0, image.crop.x1,
-                       image.crop.y1, image.seed, image.first_sample, image.bounces, background.x,
-                       background.y, background.z, fmt::join(image.layers, ","), image.noise,
-                       int(surface.mode), surface.level, surface.pixel_error, int(surface.lod),
-                       int(surface.bounce_levels), int(surface.leaf),
-                       settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
+    // Layers of which no sums are kept, and their order, do not matter.
+    std::vector<std::string> layers = image.layers;
+    std::erase(layers, "samples");
+    std::ranges::sort(layers);
+    return fmt::format(
+        "Relief {}, scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, "
+        "background {},{},{}, layers {}, noise {}, surface {} {} {} {} {} {}, engine {}",
+        RELIEF_VERSION_STRING, scene_hash, image.width, image.height, image.crop.x0, image.crop.y0,
+        image.crop.x1, image.crop.y1, image.seed, image.first_sample, image.bounces, background.x,
+        background.y, background.z, fmt::join(layers, ","), image.noise, int(surface.mode), surface.level,
+        surface.pixel_error, int(surface.lod), int(surface.bounce_levels), int(surface.leaf),
+        settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
                   Image& image) {
-    // A render that was not cancelled may have fewer samples than it was allowed: of low noise, or for want
-    // of time.
-    const int samples = is_complete ? int(film.most_samples()) : settings.image.spp;
+    // Where noise was low enough no sample is missing; what time ended has the samples that it has.
+    const bool may_lack_some = !is_complete || settings.image.noise > 0;
+    const int samples = std::max(int(film.most_samples()), may_lack_some ? settings.image.spp : 0);
     image.metadata["Software"] = "Relief " RELIEF_VERSION_STRING;
     image.metadata["relief:version"] = RELIEF_VERSION_STRING;
     image.metadata["relief:seed"] = std::to_string(settings.image.seed);
@@ -105,6 +108,8 @@ void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_c
         fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + samples);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
     if (settings.image.noise > 0) image.metadata["relief:noise"] = fmt::format("{}", settings.image.noise);
+    if (settings.image.time_limit_s > 0)
+        image.metadata["relief:time_limit"] = fmt::format("{} s", settings.image.time_limit_s);
     if (!is_complete) image.metadata["relief:interrupted"] = "yes";
 }
 

@@ -38,10 +38,18 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         RenderControl control(observer);
         control.save_interval_s = checkpoints.interval_s;
         if (checkpoints.save)
-            control.save = [&] { checkpoints.save([&](std::ostream& s) { film.write(s, identity); }); };
-        result.is_complete = engine->render(film, control);
+            control.save = [&] {
+                if (film.most_samples() > 0)
+                    checkpoints.save([&](std::ostream& s) { film.write(s, identity); });
+            };
+        try {
+            result.is_complete = engine->render(film, control);
+        } catch (...) {
+            if (control.save) control.save(); // samples are added whole: a lost device loses no others
+            throw;
+        }
         statistics.render_s = timer.seconds();
-        if (control.save && film.most_samples() > 0) control.save();
+        if (control.save) control.save();
 
         collect_statistics(*engine, film, *prepared, statistics);
         const Vec3f origin = prepared->origin;

@@ -221,6 +221,7 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         refuse(to, "a scale of 0 leaves nothing to be stored", "say another scale");
     Displacement result = to;
     result.name = from.name, result.is_udim = from.is_udim, result.wrap = from.wrap;
+    result.dequantize = false; // floats have no steps
     result.dilate = from.dilate, result.filter = from.filter, result.autobump = from.autobump;
     result.tiles.clear();
     const bool turns = uses_frames(from) != uses_frames(to) || has_other_frames(from, to);

@@ -27,10 +27,10 @@ constexpr uint64_t kBytesPerQuad =
 /// Adds one displaced object to a mesh.
 class SurfaceCutter {
   public:
-    SurfaceCutter(const Surface& surface, const Object& object, int level, Mesh& mesh)
+    SurfaceCutter(const Surface& surface, const Affine& world_from_object, int level, Mesh& mesh)
         : surface_(surface),
-          object_(object),
-          is_turned_(compute_determinant(object.world_from_object) < 0),
+          world_from_object_(world_from_object),
+          is_turned_(compute_determinant(world_from_object) < 0),
           side_(1u << level),
           mesh_(mesh) {
         const auto narrow = uint8_t(level);
@@ -67,7 +67,7 @@ class SurfaceCutter {
 
     uint32_t add_point(const PatchSamples& samples, uint32_t i, uint32_t j) {
         mesh_.positions.push_back(
-            transform_point(object_.world_from_object, evaluate_vertex(samples, levels_, i, j)));
+            transform_point(world_from_object_, evaluate_vertex(samples, levels_, i, j)));
         return uint32_t(mesh_.positions.size()) - 1;
     }
 
@@ -119,7 +119,7 @@ class SurfaceCutter {
     }
 
     const Surface& surface_;
-    const Object& object_;
+    const Affine& world_from_object_;
     bool is_turned_; ///< mirrored: faces are turned so that they still face outwards
     uint32_t side_;
     PatchLevels levels_;
@@ -199,9 +199,11 @@ Mesh make_displaced_mesh(const Scene& scene, int level, const ProgressFunction& 
             add_plain(is_smooth ? make_smooth_mesh(source) : source, object, mesh);
             continue;
         }
-        const Surface& surface = prepared->surfaces[prepared->instances[number].surface];
+        // Not the object's own transform: the surface may be measured from elsewhere.
+        const Instance& instance = prepared->instances[number];
+        const Surface& surface = prepared->surfaces[instance.surface];
         check_room(surface.patch_count() + (uint64_t(mesh.face_sizes.size()) >> (2 * level)), level);
-        SurfaceCutter(surface, object, level, mesh).cut(counter);
+        SurfaceCutter(surface, instance.world_from_object, level, mesh).cut(counter);
     }
     return mesh;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
 
 #include <fmt/format.h>
 
@@ -120,7 +119,9 @@ struct Denoiser::Library {
         const int error = call.GetDeviceError(device, &message);
         if (error == oidn::kErrorNone) return true;
         if (error == oidn::kErrorCancelled) return false;
-        if (error == oidn::kErrorOutOfMemory) throw std::bad_alloc();
+        if (error == oidn::kErrorOutOfMemory)
+            throw Error(ErrorKind::out_of_memory, {"the denoiser lacks memory for the picture",
+                                                   "Open Image Denoise", "denoise a smaller picture"});
         throw Error(ErrorKind::failed,
                     {std::string("the denoiser failed: ") + (message ? message : "no reason given"),
                      "Open Image Denoise", ""});

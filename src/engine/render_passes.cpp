@@ -19,6 +19,10 @@ bool PassMonitor::is_out_of_time() const {
     return time_limit_s_ > 0 && has_first_pass_ && timer_.seconds() >= time_limit_s_;
 }
 
+void PassMonitor::start(int samples_a_pixel) {
+    if (samples_a_pixel > 0) finish_pass(samples_a_pixel);
+}
+
 void PassMonitor::start_pass(double fraction, uint64_t pixel_samples) {
     const std::lock_guard lock(mutex_);
     fraction_ = fraction, done_ = 0;
@@ -61,6 +65,7 @@ PassReport render_passes(Film& film, const ImageSettings& image, const RenderCon
     PassReport report;
     const uint64_t all = uint64_t(film.window().x1 - film.window().x0) *
                          uint64_t(film.window().y1 - film.window().y0) * uint64_t(image.spp);
+    monitor.start(int(film.least_samples()));
     while (plan.start_pass()) {
         if (monitor.is_cancelled()) return report.is_complete = false, report;
         tracer.start_pass();

@@ -24,6 +24,8 @@ class PassMonitor {
     /// A task is done: so many samples and rays. Reports progress now and then.
     void finish_task(uint64_t pixel_samples, uint64_t rays);
 
+    /// The film has so many samples of each pixel already.
+    void start(int samples_a_pixel);
     void start_pass(double fraction, uint64_t pixel_samples);
     void finish_pass(int samples_a_pixel);
     /// Never twice without a task between.

@@ -45,6 +45,7 @@ SamplePlan::SamplePlan(Film& film, const ImageSettings& image)
     const Window& window = film.window();
     columns_ = size_t((window.x1 - 1) / kBlockEdge - window.x0 / kBlockEdge + 1);
     film_.passes.is_active.resize(blocks_.size(), 1);
+    film_.passes.target = std::min(target(), image.spp); // of a film that was to have more
 }
 
 int SamplePlan::count_of(size_t block) const {

@@ -267,7 +267,8 @@ Image Film::resolve(const Vec3f& origin) const {
             for (const Layer& layer : layers_) {
                 if (layer.is_hidden) continue;
                 write_layer(p, layer, target);
-                if (kLayerKinds[layer.kind].source == Source::position && hit_counts_[p] > 0)
+                if (origin != Vec3f{} && kLayerKinds[layer.kind].source == Source::position &&
+                    hit_counts_[p] > 0)
                     target[0] += origin.x, target[1] += origin.y, target[2] += origin.z;
                 target += channel_count(kLayerKinds[layer.kind]);
             }

@@ -17,7 +17,8 @@ namespace {
 constexpr std::string_view kStart = "relief film 1\n";
 
 [[noreturn]] void refuse(const std::string& message) {
-    throw Error(ErrorKind::bad_input, {message, "sums of samples to go on from", "render the picture anew"});
+    throw Error(ErrorKind::bad_input, {message, "sums of samples to go on from",
+                                       "go on with the settings that they were made with, or render anew"});
 }
 
 class Writer {

@@ -56,12 +56,17 @@ FN bool is_far_away(Vec3 origin, Vec3 center, float reach) {
 FN LocalStart find_local_start(Vec3 origin, Vec3 direction, Vec3 space_origin, Vec3 center, float reach) {
     LocalStart start = {subtract_exact(origin, space_origin), 0.0f};
     if (!is_far_away(origin, center, reach)) return start;
+    // Rounded alike by all kernels: they find the start of one ray again and again.
     float speed = greatest_size(direction);
-    Vec3 way = direction / speed;
+    EXACT float way_x = direction.x / speed;
+    EXACT float way_y = direction.y / speed;
+    EXACT float way_z = direction.z / speed;
+    Vec3 way = {way_x, way_y, way_z};
     Vec3 back = subtract_exact(origin, center);
     // Before the middle by so much that neither rounding nor the length of the direction matters.
-    float before = 2.0f * reach + 4e-6f * greatest_size(back);
-    float shift = (-dot(back, way) / dot(way, way) - before) / speed;
+    EXACT float before = 2.0f * reach + 4e-6f * greatest_size(back);
+    EXACT float middle = -dot_exact(back, way) / dot_exact(way, way);
+    EXACT float shift = (middle - before) / speed;
     Vec3 lost = find_lost_by_subtraction(origin, space_origin, start.origin);
     EXACT float x = move_origin(start.origin.x, direction.x, shift) + lost.x;
     EXACT float y = move_origin(start.origin.y, direction.y, shift) + lost.y;

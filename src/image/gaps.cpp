@@ -40,7 +40,9 @@ int count_least_samples(const Part& part, const Rectangle& cell) {
         for (int x = cell.x0; x < cell.x1; ++x)
             least = std::min(least, part.image->at(x, y, *part.count_channel));
     // Where noise was low enough the samples that are not there are not missing.
-    if (least > 0 && part.image->metadata.contains("relief:noise")) return all;
+    const auto& metadata = part.image->metadata;
+    const bool is_ended = metadata.contains("relief:interrupted") || metadata.contains("relief:time_limit");
+    if (least > 0 && metadata.contains("relief:noise") && !is_ended) return all;
     return int(std::lround(least));
 }
 

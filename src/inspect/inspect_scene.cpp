@@ -213,7 +213,7 @@ Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double 
 void describe_cost(const Scene& scene, const RenderSettings& settings, const ProgressFunction& on_progress,
                    Inspection& result) {
     const Timer timer;
-    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings, SceneOrigin::camera);
     const double prepare_s = timer.seconds();
     constexpr double kPrepared = 0.5;
     if (on_progress) on_progress(kPrepared);
@@ -257,7 +257,7 @@ TessellationCost estimate_tessellation(const Scene& scene, const RenderSettings&
     validate_settings(settings);
     RenderSettings direct = settings;
     direct.surface.mode = SurfaceMode::direct;
-    return estimate_tessellation(*prepare_scene(scene, direct));
+    return estimate_tessellation(*prepare_scene(scene, direct, SceneOrigin::camera));
 }
 
 Inspection inspect_scene(const Scene& scene, const RenderSettings& settings,

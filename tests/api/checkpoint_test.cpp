@@ -120,6 +120,28 @@ TEST(Checkpoints, of_another_picture_are_refused) {
     EXPECT_THROW(resume("relief film", make_settings(2), again), Error);
 }
 
+TEST(Checkpoints, of_more_samples_than_asked_for_are_taken_as_they_are) {
+    Keeper keeper;
+    Canceller canceller(0.3);
+    RenderSettings settings = make_settings(64);
+    render(make_torus_scene(), settings, &canceller, keeper.checkpoints);
+    settings.image.spp = 4;
+    Keeper again;
+    const RenderResult result = resume(keeper.bytes, settings, again);
+    EXPECT_TRUE(result.is_complete);
+    EXPECT_GE(result.whole_samples, 4);
+    EXPECT_EQ(result.statistics.camera_rays, 0u) << "nothing is lacking";
+}
+
+TEST(Checkpoints, a_time_limit_holds_from_the_first_pass_that_goes_on) {
+    Keeper keeper;
+    render(make_torus_scene(), make_settings(1), nullptr, keeper.checkpoints);
+    RenderSettings settings = make_settings(1 << 20);
+    settings.image.time_limit_s = 1e-9;
+    Keeper again;
+    EXPECT_EQ(resume(keeper.bytes, settings, again).statistics.camera_rays, 0u);
+}
+
 TEST(Noise, a_limit_spares_samples_and_keeps_the_mean) {
     RenderSettings settings = make_settings(256);
     const Image all = render(make_torus_scene(), settings).image;

@@ -295,6 +295,24 @@ TEST(DisplacedMesh, objects_stand_where_they_stand_and_face_outwards) {
     EXPECT_NEAR(at(0).x, 12, 0.01f);
 }
 
+TEST(DisplacedMesh, points_far_from_the_origin_stay_there) {
+    constexpr float kFar = 262144;
+    const Displacement map = make_map(make_sculpt_texture(kSize));
+    Mesh plane = make_sculpt_plane();
+    const Mesh near = make_displaced_mesh(make_scene(plane, map), 1);
+    for (Vec3f& p : plane.positions) p.x += kFar;
+    for (const float back : {0.0f, -kFar}) {
+        Scene scene = make_scene(plane, map);
+        scene.objects[0].world_from_object.translation = {back, 0, 0};
+        const Mesh far = make_displaced_mesh(scene, 1);
+        ASSERT_EQ(far.positions.size(), near.positions.size());
+        for (size_t k = 0; k < near.positions.size(); ++k) {
+            EXPECT_NEAR(far.positions[k].x, near.positions[k].x + kFar + back, 0.05f) << back;
+            EXPECT_NEAR(far.positions[k].z, near.positions[k].z, 1e-5f);
+        }
+    }
+}
+
 TEST(DisplacedMesh, a_level_that_does_not_fit_is_refused) {
     Mesh tube = make_tube();
     for (int k = 0; k < 2; ++k) { // 128 patches of 16 million quads, more than any machine is asked for

@@ -71,6 +71,18 @@ TEST(FindGaps, an_interrupted_part_has_the_samples_of_its_least_pixel) {
     EXPECT_EQ(find_gaps(Parts{part}), (Gaps{{0, 0, 8, 6, 0, 8}}));
 }
 
+TEST(FindGaps, samples_that_low_noise_spared_are_not_missing) {
+    Image upper = make_part({0, 0, 8, 3}, 0, 64), lower = make_part({0, 3, 8, 6}, 0, 64);
+    upper.metadata["relief:noise"] = lower.metadata["relief:noise"] = "0.02";
+    upper.at(3, 2, 1) = 16;
+    EXPECT_EQ(find_gaps(Parts{upper, lower}), Gaps{});
+    for (const char* key : {"relief:interrupted", "relief:time_limit"}) {
+        Image ended = upper;
+        ended.metadata[key] = "yes";
+        EXPECT_EQ(find_gaps(Parts{ended, lower}), (Gaps{{0, 0, 8, 3, 16, 64}})) << key;
+    }
+}
+
 TEST(FindGaps, refuses_parts_without_a_range) {
     Image part = make_part({0, 0, 8, 6}, 0, 8);
     for (const char* range : {"", "8", "4:4", "-1:3", "a:b", "1:2x"}) {

@@ -6,6 +6,7 @@
 #define RELIEF_SAMPLE_LANES_INL_H
 #endif
 
+#include <algorithm>
 #include <optional>
 
 #include "formulas/lanes-inl.h"
@@ -165,7 +166,11 @@ HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const Text
     place.x0.store_as_integers(column), place.y0.store_as_integers(row);
     LaneQuads along, across, values;
     weigh_lanes(place.fx, along), weigh_lanes(place.fy, across);
+    // Of large uvs, whose fraction is lost: within integers, as the device has them.
+    constexpr int32_t kMost = 1 << 30;
     for (int lane = 0; lane < 16; ++lane) {
+        column[lane] = std::clamp(column[lane], -kMost, kMost),
+        row[lane] = std::clamp(row[lane], -kMost, kMost);
         const bool is_inside =
             column[lane] >= 1 && column[lane] + 2 < width && row[lane] >= 1 && row[lane] + 2 < height;
         size_t columns[4], rows[4];
