@@ -57,10 +57,13 @@ Denoiser load_denoiser(int threads) {
     }
     try {
         return Denoiser(settings);
-    } catch (const Error&) {
+    } catch (const Error& error) {
         settings.libraries = find_in_python();
-        if (settings.libraries.empty()) throw;
-        return Denoiser(settings);
+        if (!settings.libraries.empty()) return Denoiser(settings);
+        throw Error(error.kind(),
+                    {error.message(), error.where(),
+                     "install Open Image Denoise 2, for example by `pip install pyoidn`, or say "
+                     "RELIEF_OIDN=FOLDER"});
     }
 }
 

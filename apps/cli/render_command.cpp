@@ -152,6 +152,9 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
         result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
+    if (!options.checkpoint.resumed.empty() && result.is_complete && result.statistics.camera_rays == 0)
+        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
+                   result.whole_samples, settings.image.spp);
     const int exit_code = finish_picture(options, settings, output, waiting, result, told);
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }

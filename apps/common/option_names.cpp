@@ -12,7 +12,7 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 35> kOptions{{
+constexpr std::array<OptionName, 36> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
@@ -38,6 +38,7 @@ constexpr std::array<OptionName, 35> kOptions{{
     {"experiment.method", "--method"},
     {"experiment.bottom", "--bottom"},
     {"displacement.scale", "--vdm-scale"},
+    {"displacement.filter", "--filter"},
     {"displacement.type", "--type"},
     {"displacement.space", "--space"},
     {"displacement.axes", "--axes"},

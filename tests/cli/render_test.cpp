@@ -208,6 +208,7 @@ TEST_F(Render, statistics_add_up) {
     render_ok("a.exr", {"--stats", "s.json", "--level", "4"});
     const json s = json::parse(read("s.json"));
     EXPECT_EQ(s["image"]["is_complete"], true);
+    EXPECT_EQ(s["image"]["whole_samples"], s["image"]["spp"]);
     const json& rays = s["rays"];
     for (const char* kind : {"camera", "shadow", "bounce"}) EXPECT_GT(rays[kind], 0) << kind;
     EXPECT_EQ(rays["total"], rays["camera"].get<uint64_t>() + rays["shadow"].get<uint64_t>() +

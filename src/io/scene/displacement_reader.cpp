@@ -74,7 +74,7 @@ void complete_midlevel(const DisplacementRequest& request, Displacement& map, As
     if (is_eight_bit && !map.dequantize)
         assets.warnings().push_back(fmt::format(
             "displacement '{}': 8-bit map, one step is {:.3g} scene units: stairs will show; "
-            "export half or float EXR, or smooth them by displacement.dequantize under filter = cubic",
+            "export half or float EXR, or smooth them by displacement.filter = cubic with dequantize",
             request.name,
             std::max({std::fabs(map.scale.x), std::fabs(map.scale.y), std::fabs(map.scale.z)}) / 255));
     if (!is_integer || says_zero(request.options, map)) return;
