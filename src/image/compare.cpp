@@ -35,8 +35,7 @@ std::vector<ChannelPair> find_pairs(const Image& a, const Image& b, const std::s
     }
     const std::string shown = layer.empty() ? "colour" : layer;
     if (pairs.empty())
-        throw_mismatch(fmt::format("the first image has no layer {}", shown),
-                       "render it with image.layers");
+        throw_mismatch(fmt::format("the first image has no layer {}", shown), "render it with image.layers");
     if (pairs.size() != count_in_b)
         throw_mismatch(fmt::format("the images have different channels in layer {}", shown), "");
     return pairs;
