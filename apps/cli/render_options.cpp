@@ -240,8 +240,9 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
     add_machine_options(verb, o);
     add_report_options(verb, o);
     add_options_of_meshes(verb, o);
-    for (const char* name : {"--surface", "--lod", "--bounce-levels", "--leaf", "--bottom", "--isa",
-                             "--method", "--structure", "--traversal"})
+    for (const char* name :
+         {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
+          "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
     for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
                              "--type", "--frame", "--lengths", "--encoding", "--wrap"})
