@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "formulas/local_start.h"
+#include "math/vec.h"
 #include "surface/map/displacement_map.h"
 
 namespace relief {
@@ -151,13 +153,27 @@ void place_instances(const Scene& scene, std::span<const Vec3f> taken_off, Scene
     }
 }
 
+/// Whether rays of the scene may start so far away that they are moved before they meet an object of this
+/// reach.
+static bool may_be_far_away(const PreparedScene& scene, const Vec3f& center, float reach) {
+    const auto is_far = [&](const Vec3f& place, float around) {
+        return length(place - center) + around > scalar::kFarAway * reach;
+    };
+    return is_far(scene.camera.from, 0) || std::ranges::any_of(scene.instances, [&](const Instance& other) {
+               return is_far(other.world_from_object.translation, other.reach);
+           });
+}
+
 bool update_reach(PreparedScene& scene, uint32_t surface) {
     const double base_reach = find_base_reach(scene.surfaces[surface]);
     bool is_changed = false;
     for (Instance& instance : scene.instances) {
         if (instance.surface != surface) continue;
         const float reach = find_reach(scene.surfaces[surface], base_reach, instance.world_from_object);
-        is_changed = is_changed || reach != instance.reach;
+        // Near ones are met alike whatever their reach.
+        is_changed |=
+            reach != instance.reach &&
+            may_be_far_away(scene, instance.world_from_object.translation, std::min(reach, instance.reach));
         instance.reach = reach;
     }
     return is_changed;

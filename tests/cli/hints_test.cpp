@@ -67,7 +67,7 @@ constexpr Slip kOptionSlips[] = {
     {"scene rock --instance", "'--instanced'"},
     {"bench paper1 --szie 8x8", "'--size'"},
     // Nothing is near: an option of one letter least of all.
-    {"scene ear -q", ""},
+    {"scene ear -x", ""},
     {"scene ear -v", ""},
     {"scene ear --gpu", ""},
     {"devices -x", ""},
