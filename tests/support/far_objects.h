@@ -273,10 +273,10 @@ inline RenderResult render_moved(const Vec3f& offset, RenderSettings settings) {
     Scene scene = make_far_scene(place);
     scene.camera.from = Vec3f{2.5f, 1, 0.5f} + offset, scene.camera.to = offset;
     scene.environment = Environment{};
-    Light lamp;
-    lamp.type = LightType::point, lamp.position = Vec3f{1, 3, 2} + offset;
-    lamp.strength = 40;
-    scene.lights.push_back(lamp);
+    Light light;
+    light.type = LightType::point, light.position = Vec3f{1, 3, 2} + offset;
+    light.strength = 40;
+    scene.lights.push_back(light);
     settings.image.width = settings.image.height = 32;
     settings.image.spp = 16, settings.image.bounces = 1;
     settings.image.layers = {"P", "Ng"};
