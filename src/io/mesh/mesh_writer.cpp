@@ -115,13 +115,15 @@ std::string format_ply(const Mesh& mesh, const ProgressFunction& on_progress) {
 void write_mesh(const Mesh& mesh, const std::filesystem::path& file, const ProgressFunction& on_progress) {
     validate_mesh(mesh);
     const std::string extension = get_extension(file);
+    const ProgressFunction formatting = make_part(on_progress, 0, 0.9);
     if (extension == ".obj")
-        write_text_file(file, format_obj(mesh, on_progress));
+        write_text_file(file, format_obj(mesh, formatting));
     else if (extension == ".ply")
-        write_text_file(file, format_ply(mesh, on_progress));
+        write_text_file(file, format_ply(mesh, formatting));
     else
         throw Error(ErrorKind::usage, {fmt::format("cannot write meshes of kind '{}'", extension),
                                        file.string(), "known: .obj, .ply"});
+    if (on_progress) on_progress(1);
 }
 
 } // namespace relief
