@@ -34,9 +34,13 @@ template <size_t W> HWY_INLINE LaneMask find_places(const Lanes<W> (&z)[3], Tria
 template <size_t W>
 HWY_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
     find_places(z, test);
-    test.t = test.t * Lanes<W>(ray.shear[2]) + Lanes<W>(ray.shift);
-    return test.mask &=
-           less(Lanes<W>(ray.hit_t_min()), test.t) & less_equal(test.t, Lanes<W>(ray.hit_t_max()));
+    test.t = test.t * Lanes<W>(ray.shear[2]);
+    float t_min = ray.t_min, t_max = ray.t_max;
+    if (ray.shift != 0) [[unlikely]] {
+        test.t = test.t + Lanes<W>(ray.shift);
+        t_min = ray.own_t_min, t_max = ray.own_t_max;
+    }
+    return test.mask &= less(Lanes<W>(t_min), test.t) & less_equal(test.t, Lanes<W>(t_max));
 }
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis. load(axis) gives coordinates.
