@@ -252,6 +252,8 @@ int render_input(const RenderOptions& options, double start) {
     catch_interrupts();
     Scene scene = load_input(options);
     add_assumption_warnings(scene);
+    if (options.tile && get_lower_extension(options.output) == ".png")
+        scene.warnings.emplace_back("a tile as a PNG cannot be merged: name an .exr");
     const double load_s = get_seconds() - start;
     const std::vector<std::string> files = list_files(scene);
     keep_files(files, options.output), keep_files(files, options.statistics_file);

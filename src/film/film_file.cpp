@@ -5,6 +5,9 @@
 #include <istream>
 #include <ostream>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "base/content_hash.h"
 #include "film/film.h"
@@ -80,6 +83,22 @@ class Reader {
     ContentHash hash_;
 };
 
+/// The parts of `mine` that `theirs` has otherwise, as "part (there: part)"; parts are separated by ", ".
+std::string describe_difference(std::string mine, std::string theirs) {
+    const auto take_part = [](std::string& text) {
+        const size_t end = text.find(", ");
+        std::string part = text.substr(0, end);
+        text.erase(0, end == std::string::npos ? end : end + 2);
+        return part;
+    };
+    std::vector<std::string> differences;
+    while (!mine.empty() || !theirs.empty()) {
+        const std::string here = take_part(mine), there = take_part(theirs);
+        if (here != there) differences.push_back(fmt::format("{} (there: {})", here, there));
+    }
+    return fmt::format("{}", fmt::join(differences, ", "));
+}
+
 } // namespace
 
 void Film::write(std::ostream& stream, const std::string& identity) const {
@@ -95,7 +114,7 @@ void Film::read(std::istream& stream, const std::string& identity) {
     if (reader.take_text(kStart.size()) != kStart)
         refuse("this is no file of them, or one of another version");
     const std::string found = reader.take_text(1 << 16);
-    if (found != identity) refuse("they are of another picture: " + found + "; this one is " + identity);
+    if (found != identity) refuse("they are of another picture: " + describe_difference(identity, found));
     reader.take(sums_), reader.take(counts_), reader.take(hit_counts_), reader.take(depths_),
         reader.take(ids_);
     std::vector<int32_t> target(1);

@@ -111,6 +111,17 @@ void place_instance(const Affine& world_from_object, const Point& place, double 
     instance.is_in_place = from_origin == Affine{} && instance.world_from_object == Affine{};
 }
 
+/// Whether rays of the scene may start so far away that they are moved before they meet an object of this
+/// reach.
+bool may_be_far_away(const PreparedScene& scene, const Vec3f& center, float reach) {
+    const auto is_far = [&](const Vec3f& place, float around) {
+        return length(place - center) + around > scalar::kFarAway * reach;
+    };
+    return is_far(scene.camera.from, 0) || std::ranges::any_of(scene.instances, [&](const Instance& other) {
+               return is_far(other.world_from_object.translation, other.reach);
+           });
+}
+
 } // namespace
 
 std::vector<Vec3f> move_meshes_to_origin(Scene& scene) {
@@ -151,17 +162,6 @@ void place_instances(const Scene& scene, std::span<const Vec3f> taken_off, Scene
         place_instance(world_from_object, subtract(places[k], to_point(prepared.origin)),
                        reaches[instance.surface] * find_scale(world_from_object), instance);
     }
-}
-
-/// Whether rays of the scene may start so far away that they are moved before they meet an object of this
-/// reach.
-static bool may_be_far_away(const PreparedScene& scene, const Vec3f& center, float reach) {
-    const auto is_far = [&](const Vec3f& place, float around) {
-        return length(place - center) + around > scalar::kFarAway * reach;
-    };
-    return is_far(scene.camera.from, 0) || std::ranges::any_of(scene.instances, [&](const Instance& other) {
-               return is_far(other.world_from_object.translation, other.reach);
-           });
 }
 
 bool update_reach(PreparedScene& scene, uint32_t surface) {

@@ -47,7 +47,8 @@ TEST_F(Checkpoint, tells_what_cannot_be_gone_on_with) {
     EXPECT_EQ(render({"--spp", "2", "--checkpoint", "5", "-o", "a.exr"}).exit_code, 0);
     result = render({"--spp", "4", "--seed", "3", "--resume", "a.exr"});
     EXPECT_EQ(result.exit_code, 3);
-    EXPECT_NE(result.errors.find("of another picture"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("of another picture: seed 3 (there: seed 0)"), std::string::npos)
+        << result.errors;
     result = render({"--spp", "2", "--resume", "a.exr"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_NE(result.errors.find("had 2 samples already"), std::string::npos) << result.errors;
