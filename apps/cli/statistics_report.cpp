@@ -60,6 +60,7 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
                      {"height", settings.image.height},
                      {"spp", settings.image.spp},
                      {"bounces", settings.image.bounces},
+                     {"clamp_indirect", settings.image.clamp_indirect},
                      {"whole_samples", result.whole_samples},
                      {"is_complete", result.is_complete}};
     root["scene"] = {{"meshes", s.meshes},

@@ -12,10 +12,11 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 36> kOptions{{
+constexpr std::array<OptionName, 37> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
+    {"image.clamp_indirect", "--clamp-indirect"},
     {"image.noise", "--noise"},
     {"image.time_limit_s", "--time-limit"},
     {"image.seed", "--seed"},

@@ -74,6 +74,9 @@ struct ImageSettings {
     float noise = 0;
     double time_limit_s = 0; ///< above 0: no more samples after so many seconds, but one of each pixel
     int bounces = 4;         ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
+    /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, adds
+    /// no more than this to any component. Less noise, and less light; 0: all of it.
+    float clamp_indirect = 0;
     uint32_t seed = 0;
     /// Linear colour that camera rays see where they leave the scene; nullopt: the environment. Black makes
     /// films transparent: colours are then premultiplied by A. Bounces see the environment in any case.

@@ -87,12 +87,12 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
     std::erase(layers, "samples");
     std::ranges::sort(layers);
     return fmt::format(
-        "Relief {}, scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, "
+        "Relief {}, scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, clamp {}, "
         "background {},{},{}, layers {}, noise {}, surface {} {} {} {} {} {}, engine {}",
         RELIEF_VERSION_STRING, scene_hash, image.width, image.height, image.crop.x0, image.crop.y0,
-        image.crop.x1, image.crop.y1, image.seed, image.first_sample, image.bounces, background.x,
-        background.y, background.z, fmt::join(layers, ","), image.noise, int(surface.mode), surface.level,
-        surface.pixel_error, int(surface.lod), int(surface.bounce_levels), int(surface.leaf),
+        image.crop.x1, image.crop.y1, image.seed, image.first_sample, image.bounces, image.clamp_indirect,
+        background.x, background.y, background.z, fmt::join(layers, ","), image.noise, int(surface.mode),
+        surface.level, surface.pixel_error, int(surface.lod), int(surface.bounce_levels), int(surface.leaf),
         settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
 }
 

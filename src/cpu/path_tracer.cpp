@@ -75,6 +75,7 @@ class TileTracer {
     void reflect(size_t first, size_t count);
     PointMaterial make_material(uint32_t instance, const Vec2f& uv) const;
     void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
+    void add_found_light(Path& path, const Vec3f& light);
     void add_emission(size_t k, const Vec3f& emission);
     void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
     bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
@@ -230,9 +231,9 @@ void TileTracer::add_backgrounds() {
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];
-        path.result.radiance +=
-            path.throughput *
-            lights_.evaluate_mis({path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf}, behind);
+        add_found_light(path, path.throughput * lights_.evaluate_mis({path.previous, rays_[k].direction,
+                                                                      hits_[k].t, path.bsdf_pdf},
+                                                                     behind));
     };
     for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
     if (!lights_.has_analytic_lights()) return;
@@ -356,11 +357,17 @@ void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lan
     result.id = points_[k].instance + 1;
 }
 
+/// What a ray of the path met by chance: at the first vertex after a bounce it is direct light.
+void TileTracer::add_found_light(Path& path, const Vec3f& light) {
+    path.result.radiance +=
+        scalar::clamp_indirect(light, settings_.image.clamp_indirect, uint32_t(std::max(depth_ - 1, 0)));
+}
+
 void TileTracer::add_emission(size_t k, const Vec3f& emission) {
     Path& path = paths_[active_[k]];
     const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, points_[k]) : 0.0f;
     const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
-    path.result.radiance += path.throughput * emission * weight;
+    add_found_light(path, path.throughput * emission * weight);
 }
 
 /// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
@@ -378,7 +385,8 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
         ray.direction = normalize(to);
     }
     shadow_rays_.push_back(ray);
-    shadows_.push_back({active_[k], contribution});
+    shadows_.push_back(
+        {active_[k], scalar::clamp_indirect(contribution, settings_.image.clamp_indirect, uint32_t(depth_))});
     path.result.cost += 1;
 }
 

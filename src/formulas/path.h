@@ -45,6 +45,13 @@ FN Vec3 limit_color(Vec3 color) {
     return max(zero, min(color, one));
 }
 
+/// Light that arrives after so many bounces, none above `limit` in any component; 0: no limit. Biased: what
+/// is taken away is missing.
+FN Vec3 clamp_indirect(Vec3 light, float limit, uint bounces) {
+    float brightest = max(max(light.x, light.y), light.z);
+    return limit > 0.0f && bounces > 0u && brightest > limit ? light * (limit / brightest) : light;
+}
+
 /// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr et al. 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);

@@ -69,6 +69,8 @@ void validate_settings(const RenderSettings& s) {
             "the first sample is out of range", "0 to 1073741824");
     require(s.image.bounces >= 0 && s.image.bounces <= kMaxBounces, "the number of bounces is out of range",
             fmt::format("0 to {}", kMaxBounces));
+    require(s.image.clamp_indirect >= 0 && std::isfinite(s.image.clamp_indirect),
+            "the limit of indirect light is out of range", "radiance, at least 0 (no limit)");
     require(s.device.threads >= 0 && s.device.threads <= kMaxThreads, "the number of threads is out of range",
             "0 (all cores) to 4096");
     require(s.device.index >= -1, "the device is out of range",

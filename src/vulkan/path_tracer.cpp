@@ -164,6 +164,7 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     push.background = settings_.image.background.value_or(Vec3f{});
     push.capacity = capacity_;
     push.last_depth = uint32_t(settings_.image.bounces);
+    push.clamp_indirect = settings_.image.clamp_indirect;
     push.sample_index = sample_index;
     push.bounce_lod = make_bounce_lod(tracer_.scene(), settings_);
     return push;

@@ -31,6 +31,14 @@ void expect_refused(const std::function<void(RenderSettings&)>& change, const st
     expect([&] { Intersector(Scene{}, {settings.surface, settings.device, settings.experiment}); });
 }
 
+TEST(Settings, of_pictures_have_ranges) {
+    for (const float limit : {-1.0f, INFINITY, NAN}) {
+        RenderSettings settings;
+        settings.image.clamp_indirect = limit;
+        EXPECT_THROW(render(Scene{}, settings), Error) << limit;
+    }
+}
+
 void choose_vulkan(RenderSettings& s) { s.device.engine = EngineKind::vulkan; }
 
 TEST(Settings, of_one_engine_do_not_go_with_the_other) {

@@ -68,17 +68,33 @@ TEST(Furnace, environment_image_of_one_colour_equals_the_constant_one) {
     EXPECT_NEAR(mean.value, 0.8, 0.003 + 4 * mean.standard_error);
 }
 
+Scene make_glowing_hollow_sphere(double emission, double albedo) {
+    Material wall = make_matte(float(albedo));
+    wall.emission = {float(emission), float(emission), float(emission)};
+    Scene scene;
+    add_object(scene, make_sphere(8, SphereNormals::facets), wall);
+    scene.camera.from = {0.2f, 0.1f, 0.3f};
+    scene.camera.to = {0, 0, -1};
+    scene.camera.fov_degrees = 60;
+    return scene;
+}
+
+TEST(Furnace, clamped_indirect_light_leaves_emission_and_direct_light) {
+    const double e = 0.7, a = 0.6;
+    RenderSettings settings = make_small_settings(24, 128, 4);
+    settings.image.clamp_indirect = 1e-6f;
+    const Mean direct = render_mean(make_glowing_hollow_sphere(e, a), settings);
+    EXPECT_NEAR(direct.value, e * (1 + a), 0.004 + 4 * direct.standard_error);
+    settings.image.clamp_indirect = 1e6f;
+    const Mean all = render_mean(make_glowing_hollow_sphere(e, a), settings);
+    EXPECT_NEAR(all.value, e * (1 - std::pow(a, 6)) / (1 - a), 0.008 + 4 * all.standard_error);
+}
+
 TEST(Furnace, glowing_hollow_sphere_sums_up_the_series_of_its_bounces) {
     // Radiance e (1 + a + ... + a^(N+1)) with N bounces: each vertex adds the direct light of the wall.
     const double e = 0.7, a = 0.6;
     for (int bounces : {0, 1, 4}) {
-        Material wall = make_matte(float(a));
-        wall.emission = {float(e), float(e), float(e)};
-        Scene scene;
-        add_object(scene, make_sphere(8, SphereNormals::facets), wall);
-        scene.camera.from = {0.2f, 0.1f, 0.3f};
-        scene.camera.to = {0, 0, -1};
-        scene.camera.fov_degrees = 60;
+        Scene scene = make_glowing_hollow_sphere(e, a);
         const Mean mean = render_mean(std::move(scene), make_small_settings(24, 128, bounces));
         EXPECT_EQ(mean.pixels, 24u * 24u);
         const double expected = e * (1 - std::pow(a, bounces + 2)) / (1 - a);

@@ -47,6 +47,8 @@ void use_nothing_to_draw(Scene& scene, RenderSettings& settings) {
 
 void use_direct_light_alone(Scene&, RenderSettings& settings) { settings.image.bounces = 0; }
 
+void use_clamped_indirect_light(Scene&, RenderSettings& settings) { settings.image.clamp_indirect = 0.02f; }
+
 void use_long_paths(Scene& scene, RenderSettings& settings) {
     settings.image.bounces = 12;
     for (Material& material : scene.materials) material.roughness = 0.1f, material.metallic = 1;
@@ -114,6 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
                                          Variant{"with_emitters_alone", use_emitters_alone},
                                          Variant{"in_the_dark", use_nothing_to_draw},
                                          Variant{"with_direct_light_alone", use_direct_light_alone},
+                                         Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
                                          Variant{"with_long_paths", use_long_paths}),
                          [](const auto& info) { return info.param.name; });
 

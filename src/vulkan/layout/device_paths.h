@@ -69,6 +69,7 @@ struct PathPush {
     uint count; ///< of the path list, shadow rays or pixels
     uint capacity;
     uint depth, last_depth;
+    float clamp_indirect; ///< 0: none
     uint sample_index;
     uint source_count;
     uint emitter_count, emitter_range_count;

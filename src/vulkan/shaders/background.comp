@@ -33,7 +33,8 @@ void main() {
     if (push.depth > 0u) {
         PathData path = paths[path_index];
         float distance = is_hit(hit) ? hit.t : make_infinity();
-        paths[path_index].radiance = path.radiance + path.throughput * gather_light(path, direction, distance);
+        vec3 light = path.throughput * gather_light(path, direction, distance);
+        paths[path_index].radiance = path.radiance + clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
     } else if (!is_hit(hit)) {
         if (push.has_background != 0u)
             paths[path_index].radiance += push.background;

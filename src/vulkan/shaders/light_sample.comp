@@ -77,7 +77,8 @@ float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
 vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emission) {
     if (emission == vec3(0.0)) return vec3(0.0);
     if (push.depth == 0u) return path.throughput * emission;
-    return path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));
+    vec3 light = path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));
+    return clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
 }
 
 RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias) {
@@ -106,7 +107,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, Materi
     float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
-    paths[path_index].contribution = contribution;
+    paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
     paths[path_index].cost = path.cost + 1.0;
     rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.lod_bias);
     return true;
