@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/values.h"
+#include "relief/io.h"
 
 namespace relief::cli {
 
@@ -115,12 +116,21 @@ void add_display_options(CLI::App& verb, AimArguments& a) {
         if (text != "auto") parse_number("--exposure", text, -32, 32);
         a.exposure = text;
     });
-    add(verb, "--display", "NAME", "of PNG: agx (default), filmic or standard (clipped)",
+    add(verb, "--tonemap", "NAME", "of PNG: agx (default), aces, filmic, standard (clipped), raw (linear)",
         [&a](const std::string& text) {
-            constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
-                {{"agx", "agx"}, {"filmic", "filmic"}, {"standard", "standard"}}};
-            a.display = parse_word("--display", text, kNames);
+            constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames = {
+                {{"agx", "agx"},
+                 {"aces", "aces"},
+                 {"filmic", "filmic"},
+                 {"standard", "standard"},
+                 {"raw", "raw"}}};
+            a.tone_map = parse_word("--tonemap", text, kNames);
         });
+    add(verb, "--png-bits", "N", "of a value in a PNG: 8 (default) or 16", [&a](const std::string& text) {
+        constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kNames = {
+            {{"8", "8"}, {"16", "16"}}};
+        a.png_bits = parse_word("--png-bits", text, kNames);
+    });
     add(verb, "--save-scene", "FILE", "write the scene as it is rendered, to go on editing: FILE.json",
         [&a](const std::string& text) { a.saved_scene = text; });
 }
@@ -135,9 +145,11 @@ void add_aim_options(CLI::App& verb, AimArguments& arguments) {
 
 void apply_background(const AimArguments& arguments, const std::filesystem::path& output,
                       ImageSettings& image) {
-    if (get_lower_extension(output) == ".hdr" && (!arguments.exposure.empty() || !arguments.display.empty()))
+    if (get_lower_extension(output) == ".hdr" &&
+        !(arguments.exposure.empty() && arguments.tone_map.empty() && arguments.png_bits.empty()))
         throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
-                                       "--exposure and --display go with .png and .exr"});
+                                       "--exposure, --tonemap and --png-bits go with .png and .exr"});
+    if (!arguments.tone_map.empty()) check_tone_map(arguments.tone_map);
     if (arguments.background.empty()) return;
     // A PNG is laid over its colour after the tone curve, so that the colour is the one that was named.
     const bool is_over = arguments.background == "transparent" || is_png(output);
@@ -146,7 +158,8 @@ void apply_background(const AimArguments& arguments, const std::filesystem::path
 
 void add_display_entries(const AimArguments& arguments, const std::filesystem::path& output, Image& image) {
     if (!arguments.exposure.empty()) image.metadata["relief:exposure"] = arguments.exposure;
-    if (!arguments.display.empty()) image.metadata["relief:display"] = arguments.display;
+    if (!arguments.tone_map.empty()) image.metadata["relief:display"] = arguments.tone_map;
+    if (!arguments.png_bits.empty()) image.metadata["relief:png_bits"] = arguments.png_bits;
     if (arguments.background.empty()) return;
     const bool is_over = arguments.background == "transparent" || is_png(output);
     image.metadata["relief:background"] = is_over ? arguments.background : "linear " + arguments.background;

@@ -14,7 +14,8 @@ struct AimArguments {
     AimOptions scene;
     std::string background; ///< empty: the environment; "transparent"; "#rrggbb"
     std::string exposure;   ///< empty, EV as a number, or "auto"
-    std::string display;    ///< name of a display transform; empty: the default
+    std::string tone_map;   ///< name of a display transform; empty: the default
+    std::string png_bits;   ///< "8", "16" or empty
     int turntable = 0;      ///< pictures of one turn; 0: one picture that is not turned
     std::filesystem::path saved_scene;
 };
@@ -23,7 +24,7 @@ struct AimArguments {
 void add_aim_options(CLI::App& verb, AimArguments& arguments);
 
 /// Sets the background of camera rays for a picture of this name; throws Error{usage} for a display that goes
-/// with .png alone.
+/// with .png alone, Error{failed} for one whose libraries cannot be loaded.
 void apply_background(const AimArguments& arguments, const std::filesystem::path& output,
                       ImageSettings& image);
 

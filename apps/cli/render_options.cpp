@@ -58,6 +58,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
         [&o](const std::string& text) {
             o.settings.image.time_limit_s = parse_number("--time-limit", text, 1e-3, 1e9);
         });
+    add(verb, "--clamp-indirect", "F", "no more radiance than this by one path after its first bounce",
+        [&o](const std::string& text) {
+            o.settings.image.clamp_indirect = float(parse_number("--clamp-indirect", text, 1e-6, 1e9));
+        });
     verb.add_flag("--denoise", o.is_denoised,
                   "by Open Image Denoise 2, if it is installed; .exr keeps the noisy colour as a layer");
     add(verb, "--layers", "LIST", fmt::format("of {}", fmt::join(kLayers, ",")),
@@ -245,7 +249,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
     for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
-                             "--type", "--frame", "--lengths", "--encoding", "--wrap"})
+                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 

@@ -18,7 +18,7 @@ int run_guarded(const std::function<int()>& body);
 
 /// Groups of options that --help leaves out and --help-all shows.
 inline constexpr const char* kResearchGroup = "For research and comparison";
-inline constexpr const char* kMapDetailGroup = "Maps and meshes in detail";
+inline constexpr const char* kMapDetailGroup = "Maps, meshes and pictures in detail";
 
 /// Sets the help format and collects unknown arguments, so that errors can suggest the nearest option.
 void prepare_parsing(CLI::App& app);

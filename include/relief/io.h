@@ -143,6 +143,10 @@ Texture read_texture(const std::filesystem::path& file);
 /// Error{usage} for another extension, Error{failed} where it cannot be written, std::bad_alloc.
 void write_image(const Image& image, const std::filesystem::path& file);
 
+/// Throws Error{usage} for an unknown display transform of PNG files, Error{failed} where its libraries
+/// cannot be loaded: agx, aces, filmic, standard, raw, as the header entry "relief:display" names them.
+void check_tone_map(const std::string& name);
+
 /// Throws what write_image to this file would throw because of its name, folder or permissions.
 void check_writable(const std::filesystem::path& file);
 

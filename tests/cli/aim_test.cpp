@@ -80,14 +80,19 @@ TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
     EXPECT_EQ(read_texture(folder_ / "film.png").channel_count, 4u);
     const Image plain = render("plain.png", {}), bright = render("bright.png", {"--exposure", "3"});
     EXPECT_GT(bright.at(12, 8, 0), plain.at(12, 8, 0));
-    render("filmic.png", {"--display", "filmic"});
-    EXPECT_NE(read("plain.png"), read("filmic.png"));
+    for (const char* name : {"aces", "filmic", "standard", "raw"}) {
+        render(std::string(name) + ".png", {"--tonemap", name});
+        EXPECT_NE(read("plain.png"), read(std::string(name) + ".png")) << name;
+    }
+    render("deep.png", {"--png-bits", "16"});
+    EXPECT_EQ(read_texture(folder_ / "deep.png").source_type, SampleType::uint16);
 }
 
 TEST_F(AimOptionsTest, what_cannot_be_is_refused_before_the_render) {
     EXPECT_NE(refuse({"--view", "fornt"}).find("did you mean 'front'"), std::string::npos);
     EXPECT_NE(refuse({"--from", "1,2"}).find("x,y,z"), std::string::npos);
     EXPECT_NE(refuse({"--light", "moon:1,2"}).find("sun:AZIMUTH,ELEVATION"), std::string::npos);
+    EXPECT_NE(refuse({"--tonemap", "acess"}).find("did you mean 'aces'"), std::string::npos);
     EXPECT_NE(refuse({"--background", "blue"}).find("#rrggbb"), std::string::npos);
     EXPECT_NE(refuse({"--save-scene", "copy.txt"}).find(".json"), std::string::npos);
     EXPECT_NE(refuse({"--turntable", "2", "--stats", "s.json"}).find("several pictures"), std::string::npos);

@@ -1,6 +1,7 @@
 // What PNG files show: display transforms, exposure, backgrounds.
 #include <cmath>
 
+#include "formulas/tonemap.h"
 #include "io/picture/display_transform.h"
 #include "math/vec.h"
 #include "relief/io.h"
@@ -59,6 +60,49 @@ TEST_F(Display, standard_is_the_transfer_function_alone) {
     settings.transform = DisplayTransform::standard;
     EXPECT_NEAR(show_colour({0.2140411f, 0, 0}, settings).x, 0.5f, 1e-5f);
     EXPECT_NEAR(show_colour({7, 0, 0}, settings).x, 1, 1e-6f);
+    settings.transform = DisplayTransform::raw;
+    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).x, 0.25f);
+    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).y, 1);
+    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).z, 0);
+}
+
+/// Figures of ACES 1.0 (RRT and ODT for sRGB, Academy 2014): middle grey 0.18 shows as 0.10 of the white.
+TEST_F(Display, aces_shows_middle_grey_at_a_tenth_and_white_at_sixteen_times_white) {
+    Image image = make_image({0, 0, 0, 1});
+    image.metadata["relief:display"] = "aces";
+    const DisplaySettings aces = read_display_settings(image);
+    const Vec3f grey = show_colour({0.18f, 0.18f, 0.18f}, aces);
+    EXPECT_NEAR(scalar::decode_srgb(grey.x), 0.10f, 0.005f);
+    EXPECT_NEAR(grey.x, grey.z, 2e-3f) << "grey stays grey";
+    EXPECT_LT(show_colour({0, 0, 0}, aces).x, 0.01f);
+    EXPECT_GT(show_colour({16.3f, 16.3f, 16.3f}, aces).x, 0.99f);
+    const Vec3f broken = show_colour({NAN, -1, INFINITY}, aces);
+    for (const float value : {broken.x, broken.y, broken.z}) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+}
+
+TEST_F(Display, slow_gradients_are_dithered_and_whole_steps_are_not) {
+    Image image;
+    image.width = image.full_width = image.height = image.full_height = 64;
+    image.channels = {"R", "G", "B"};
+    // 100.3 and 200 steps of 255, and 7 of 65535.
+    for (int k = 0; k < 64 * 64; ++k)
+        image.pixels.insert(image.pixels.end(), {100.3f / 255, 200.0f / 255, 7.0f / 65535});
+    image.metadata["relief:display"] = "raw";
+    write_image(image, folder_ / "8.png");
+    const Image bytes = read_image(folder_ / "8.png");
+    double sum = 0;
+    for (size_t k = 0; k < bytes.pixels.size(); k += 3) {
+        const float steps = bytes.pixels[k] * 255;
+        EXPECT_TRUE(std::fabs(steps - 100) < 0.01f || std::fabs(steps - 101) < 0.01f) << steps;
+        EXPECT_NEAR(bytes.pixels[k + 1] * 255, 200, 0.01f);
+        sum += steps;
+    }
+    EXPECT_NEAR(sum / (64 * 64), 100.3, 0.01) << "the mean is kept";
+    image.metadata["relief:png_bits"] = "16";
+    write_image(image, folder_ / "16.png");
+    EXPECT_EQ(read_texture(folder_ / "16.png").source_type, SampleType::uint16);
+    EXPECT_NEAR(read_image(folder_ / "16.png").pixels[0], 100.3f / 255, 1.1f / 65535);
+    EXPECT_NEAR(read_image(folder_ / "16.png").pixels[2] * 65535, 7, 0.01f);
 }
 
 TEST_F(Display, automatic_exposure_puts_the_objects_in_the_middle) {

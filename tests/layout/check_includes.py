@@ -38,7 +38,7 @@ LIBRARIES = {
     r"opensubdiv/": ["src/surface"],
     r"xxhash\.h": ["src/base"],
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
-    r"OpenImageIO/": ["src/io/picture/module"],
+    r"OpenImageIO/|OpenColorIO/": ["src/io/picture/module"],
     r"Imath/|OpenEXR/|png\.h": ["src/io"],
     r"assimp/": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],

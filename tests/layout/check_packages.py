@@ -14,6 +14,8 @@ PACKAGES = {
     "OPENSUBDIV_FOLDER": ["libosd-dev"],
     # Its CMake file names the tools, and the headers those of Imath.
     "OpenImageIO": ["libopenimageio-dev", "openimageio-tools", "libimath-dev"],
+    "OPENCOLORIO_LIBRARY": ["libopencolorio-dev"],
+    "OPENCOLORIO_FOLDER": ["libopencolorio-dev"],
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
     "PNG": ["libpng-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],

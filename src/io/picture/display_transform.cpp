@@ -9,6 +9,7 @@
 
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
+#include "io/picture/picture_library.h"
 #include "math/vec.h"
 
 namespace relief {
@@ -77,6 +78,10 @@ Vec3f tone_map(const Vec3f& linear, DisplayTransform transform) {
     }
 }
 
+Vec3f clamp_to_unit(const Vec3f& c) {
+    return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
+}
+
 std::optional<std::string> find_entry(const Image& image, const char* key) {
     const auto found = image.metadata.find(key);
     return found == image.metadata.end() ? std::nullopt : std::optional(found->second);
@@ -109,7 +114,10 @@ DisplaySettings read_display_settings(const Image& image) {
         if (found != std::end(kDisplayTransforms))
             settings.transform = DisplayTransform(found - std::begin(kDisplayTransforms));
     }
+    if (settings.transform == DisplayTransform::aces)
+        settings.aces = get_picture_library("ACES").make_aces_display();
     settings.factor = std::exp2(read_exposure(image));
+    if (find_entry(image, "relief:png_bits") == "16") settings.bits = 16;
     if (const auto background = find_entry(image, "relief:background"))
         if (image.find_channel("A")) read_background(*background, settings);
     return settings;
@@ -117,7 +125,10 @@ DisplaySettings read_display_settings(const Image& image) {
 
 Vec3f show_colour(const Vec3f& linear, const DisplaySettings& settings) {
     const auto limit = [&](float x) { return x > 0 ? std::min(x * settings.factor, 1e6f) : 0.0f; };
-    const Vec3f shown = tone_map({limit(linear.x), limit(linear.y), limit(linear.z)}, settings.transform);
+    const Vec3f limited{limit(linear.x), limit(linear.y), limit(linear.z)};
+    if (settings.transform == DisplayTransform::aces) return clamp_to_unit(settings.aces->apply(limited));
+    if (settings.transform == DisplayTransform::raw) return clamp_to_unit(limited);
+    const Vec3f shown = tone_map(limited, settings.transform);
     const auto encode = [](float x) { return std::min(scalar::encode_srgb(x), 1.0f); };
     return {encode(shown.x), encode(shown.y), encode(shown.z)};
 }

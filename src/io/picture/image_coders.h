@@ -19,12 +19,15 @@ void encode_exr(const Texture& texture, CheckedFile& file);
 /// Fills row y, which has the right size: pictures are encoded without a second copy of the whole.
 template <class Value> using FillRow = std::function<void(int y, std::vector<Value>& row)>;
 
-enum class PngColours { rgb, rgba };
-/// Bytes, three or four a pixel, with the tags of sRGB.
-void encode_png(int width, int height, PngColours colours, const FillRow<uint8_t>& fill_row,
+/// What the values of a PNG file are. sRGB and linear ones are tagged as such; data are not.
+enum class PngMeaning { srgb, linear, data };
+struct PngKind {
+    int channels = 3; ///< RGB, or 4: RGBA
+    int bits = 8;     ///< of a value; of 16 the high byte comes first
+    PngMeaning meaning = PngMeaning::srgb;
+};
+void encode_png(int width, int height, const PngKind& kind, const FillRow<uint8_t>& fill_row,
                 CheckedFile& file);
-/// Six bytes a pixel, the high one of each value first; without a tag of colour, as data.
-void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file);
 /// Radiance RGBE: three mantissas and a common exponent, run lengths.
 void encode_hdr(int width, int height, const FillRow<Vec3f>& fill_row, CheckedFile& file);
 

@@ -65,20 +65,36 @@ class ShownPixel {
           alpha_channel_(image.find_channel("A")),
           is_over_(settings.is_transparent || settings.background) {}
 
-    /// Writes three bytes, or four for a transparent film.
-    uint8_t* write(const float* pixel, uint8_t* byte) const {
+    /// The values of pixel (x, y) of the display window: three, or four for a transparent film. Returns the
+    /// byte after them.
+    uint8_t* write(const float* pixel, uint32_t x, uint32_t y, uint8_t* byte) const {
         Vec3f colour{pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
         const float alpha = is_over_ ? std::clamp(pixel[*alpha_channel_], 0.0f, 1.0f) : 1;
         if (alpha > 0 && alpha < 1) colour = colour * (1 / alpha);
         Vec3f shown = show_colour(colour, settings_);
         if (settings_.background) shown = shown * alpha + *settings_.background * (1 - alpha);
-        for (const float value : {shown.x, shown.y, shown.z}) *byte++ = to_byte(value);
-        if (settings_.is_transparent) *byte++ = to_byte(alpha);
-        return byte;
+        const float dither = find_dither(x, y);
+        for (const float value : {shown.x, shown.y, shown.z}) byte = write_value(value, dither, byte);
+        return settings_.is_transparent ? write_value(alpha, dither, byte) : byte;
     }
 
   private:
-    static uint8_t to_byte(float value) { return uint8_t(value * 255.0f + 0.5f); }
+    /// In (0, 1), spread evenly over the picture: a lattice of the plastic number (Roberts 2018, "The
+    /// Unreasonable Effectiveness of Quasirandom Sequences"). Slow gradients keep their mean in place of
+    /// bands.
+    static float find_dither(uint32_t x, uint32_t y) {
+        constexpr uint32_t kStepX = 3242174889u, kStepY = 2447445414u; // 2^32 / 1.3247..., and again
+        return float((x * kStepX + y * kStepY) >> 8) * 0x1p-24f;
+    }
+    /// Values of whole steps stay what they are.
+    uint8_t* write_value(float value, float dither, uint8_t* byte) const {
+        constexpr float kMargin = 0.004f;
+        const float greatest = float((1 << settings_.bits) - 1);
+        const auto stored = uint32_t(value * greatest + kMargin + dither * (1 - 2 * kMargin));
+        if (settings_.bits == 16) *byte++ = uint8_t(stored >> 8);
+        *byte++ = uint8_t(stored);
+        return byte;
+    }
 
     DisplaySettings settings_;
     std::array<size_t, 3> channels_;
@@ -89,13 +105,16 @@ class ShownPixel {
 void encode_shown_png(const Image& image, CheckedFile& stream) {
     const DisplaySettings settings = read_display_settings(image);
     const ShownPixel shown(image, settings);
+    const PngKind kind{settings.is_transparent ? 4 : 3, settings.bits,
+                       settings.transform == DisplayTransform::raw ? PngMeaning::linear : PngMeaning::srgb};
     encode_png(
-        image.width, image.height, settings.is_transparent ? PngColours::rgba : PngColours::rgb,
+        image.width, image.height, kind,
         [&](int y, std::vector<uint8_t>& row) {
             const size_t channels = image.channels.size();
             const float* pixel = &image.pixels[size_t(y) * size_t(image.width) * channels];
             uint8_t* byte = row.data();
-            for (int x = 0; x < image.width; ++x, pixel += channels) byte = shown.write(pixel, byte);
+            for (int x = 0; x < image.width; ++x, pixel += channels)
+                byte = shown.write(pixel, uint32_t(image.x0 + x), uint32_t(image.y0 + y), byte);
         },
         stream);
 }
@@ -114,6 +133,16 @@ void write_image(const Image& image, const std::filesystem::path& file) {
         else
             encode_shown_png(image, stream);
     });
+}
+
+void check_tone_map(const std::string& name) {
+    if (std::find(std::begin(kDisplayTransforms), std::end(kDisplayTransforms), name) ==
+        std::end(kDisplayTransforms))
+        throw Error(ErrorKind::usage,
+                    {"no display transform of that name", name, suggest_word(name, kDisplayTransforms)});
+    Image image;
+    image.metadata["relief:display"] = name;
+    read_display_settings(image);
 }
 
 void check_writable(const std::filesystem::path& file) {

@@ -1,4 +1,5 @@
-// Loads relief_pictures: OpenImageIO, with some 250 shared libraries, on first use of such a format.
+// Loads relief_pictures: OpenImageIO and OpenColorIO, with some 250 shared libraries, on first use of what
+// only they read or know.
 #pragma once
 
 #include <memory>
@@ -6,8 +7,16 @@
 #include <string_view>
 
 #include "io/picture/pixel_source.h"
+#include "relief/types.h"
 
 namespace relief {
+
+/// Changes colours one by one. For any thread.
+class ColourTransform {
+  public:
+    virtual ~ColourTransform() = default;
+    virtual Vec3f apply(const Vec3f& colour) const = 0;
+};
 
 /// What the module offers. For any thread; may throw std::bad_alloc.
 class PictureLibrary {
@@ -18,11 +27,13 @@ class PictureLibrary {
     /// The same for the bytes of a file, which must outlive the source; `name` has its extension.
     virtual std::unique_ptr<PixelSource> open_bytes(std::string_view bytes,
                                                     const std::string& name) const = 0;
+    /// From linear Rec.709 to sRGB values in [0, 1]: the output transform of ACES 1.0 for SDR video.
+    virtual std::unique_ptr<ColourTransform> make_aces_display() const = 0;
 };
 
 /// The module's function that returns its library. Raise the number with every layout change of
-/// PictureLibrary, PixelSource and PixelHeader: other builds are then refused.
-#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_1
+/// PictureLibrary, ColourTransform, PixelSource and PixelHeader: other builds are then refused.
+#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_2
 
 /// Loads a module, for good. Throws Error{failed} with `name` where it is missing or of another layout.
 const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);

@@ -68,21 +68,22 @@ class PngStream {
     png_info* info_;
 };
 
-void set_header(PngStream& stream, int width, int height, int bits, int type) {
+void set_header(PngStream& stream, int width, int height, const PngKind& kind) {
     constexpr size_t kChunkBytes = 1u << 16;
     png_struct* png = stream.png();
     // By default no more than a million each.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), bits, type, PNG_INTERLACE_NONE,
+    png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), kind.bits,
+                 kind.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_buffer_size(png, kChunkBytes);
 }
 
-/// The chunk gAMA is for programs that do not know sRGB.
-void tag_as_srgb(PngStream& stream) {
-    constexpr png_fixed_point kGamma = 45455; // 1 / 2.2
-    png_set_sRGB(stream.png(), stream.info(), PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_gAMA_fixed(stream.png(), stream.info(), kGamma);
+void set_meaning(PngStream& stream, PngMeaning meaning) {
+    if (meaning == PngMeaning::data) return;
+    constexpr png_fixed_point kLinear = 100000, kSrgb = 45455; // 1 / 2.2, for programs that do not know sRGB
+    if (meaning == PngMeaning::srgb) png_set_sRGB(stream.png(), stream.info(), PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_gAMA_fixed(stream.png(), stream.info(), meaning == PngMeaning::srgb ? kSrgb : kLinear);
 }
 
 void write_rows(PngStream& stream, int height, const FillRow<uint8_t>& fill_row) {
@@ -97,20 +98,13 @@ void write_rows(PngStream& stream, int height, const FillRow<uint8_t>& fill_row)
 
 } // namespace
 
-void encode_png(int width, int height, PngColours colours, const FillRow<uint8_t>& fill_row,
+void encode_png(int width, int height, const PngKind& kind, const FillRow<uint8_t>& fill_row,
                 CheckedFile& file) {
     PngStream stream(file);
     stream.run([&] {
-        set_header(stream, width, height, 8,
-                   colours == PngColours::rgba ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB);
-        tag_as_srgb(stream);
+        set_header(stream, width, height, kind);
+        set_meaning(stream, kind.meaning);
     });
-    write_rows(stream, height, fill_row);
-}
-
-void encode_png_of_16_bits(int width, int height, const FillRow<uint8_t>& fill_row, CheckedFile& file) {
-    PngStream stream(file);
-    stream.run([&] { set_header(stream, width, height, 16, PNG_COLOR_TYPE_RGB); });
     write_rows(stream, height, fill_row);
 }
 

@@ -75,7 +75,8 @@ void write_png_map(const Texture& texture, CheckedFile& stream) {
                 row[at++] = uint8_t(value >> 8), row[at++] = uint8_t(value & 0xff);
             }
     };
-    encode_png_of_16_bits(int(texture.width), int(texture.height), fill_row, stream);
+    encode_png(int(texture.width), int(texture.height), {.bits = 16, .meaning = PngMeaning::data}, fill_row,
+               stream);
 }
 
 void write_tile(const Texture& texture, const std::filesystem::path& file, MapSamples samples) {

@@ -11,6 +11,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "io/picture/module/colour_transform_ocio.h"
 #include "io/picture/picture_error.h"
 #include "io/picture/picture_library.h"
 
@@ -171,6 +172,7 @@ class OiioLibrary final : public PictureLibrary {
     std::unique_ptr<PixelSource> open_bytes(std::string_view bytes, const std::string& name) const override {
         return std::make_unique<OiioSource>(name, bytes);
     }
+    std::unique_ptr<ColourTransform> make_aces_display() const override { return make_ocio_aces_display(); }
 };
 
 } // namespace

@@ -1,0 +1,13 @@
+// Colour transforms of OpenColorIO.
+#pragma once
+
+#include <memory>
+
+#include "io/picture/picture_library.h"
+
+namespace relief {
+
+/// PictureLibrary::make_aces_display. Throws Error{failed} where the library does not know the transform.
+std::unique_ptr<ColourTransform> make_ocio_aces_display();
+
+} // namespace relief
