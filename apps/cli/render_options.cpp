@@ -23,8 +23,9 @@ const char* const kMeshGroup = "With a mesh in place of a scene";
 
 template <class T> using Word = std::pair<std::string_view, T>;
 
-constexpr std::string_view kLayers[] = {"depth", "N",  "Ng",      "P",        "albedo",
-                                        "uv",    "id", "samples", "variance", "cost"};
+constexpr std::string_view kLayers[] = {"depth",    "N",    "Ng",           "P",
+                                        "albedo",   "uv",   "id",           "samples",
+                                        "variance", "cost", "CryptoObject", "CryptoMaterial"};
 
 /// Adds an option parsed by `parse`; its value is called `value` in the help.
 template <class Parse>

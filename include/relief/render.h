@@ -81,9 +81,11 @@ struct ImageSettings {
     /// Linear colour that camera rays see where they leave the scene; nullopt: the environment. Black makes
     /// films transparent: colours are then premultiplied by A. Bounces see the environment in any case.
     std::optional<Vec3f> background;
-    Window crop;                     ///< part of the picture to render
-    int first_sample = 0;            ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
-    std::vector<std::string> layers; ///< any of depth N Ng P albedo uv id samples variance cost
+    Window crop;          ///< part of the picture to render
+    int first_sample = 0; ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
+    /// Any of depth N Ng P albedo uv id samples variance cost CryptoObject CryptoMaterial. The last two are
+    /// of Cryptomatte 1.2: six ranks of id and coverage a pixel, their names in the picture's metadata.
+    std::vector<std::string> layers;
 };
 
 /// Alternative structures, traversals and methods, for comparison. All find the same hits.

@@ -1,6 +1,7 @@
 #include "api/picture_report.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,9 +74,11 @@ void collect_statistics(const Engine& engine, const Film& film, const PreparedSc
     count_scene(scene, statistics);
 }
 
-Film make_film(const ImageSettings& image) {
-    return Film(image.width, image.height, image.crop, image.layers,
-                image.noise > 0 ? ErrorEstimate::on : ErrorEstimate::off);
+Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes> mattes) {
+    Film film(image.width, image.height, image.crop, image.layers,
+              image.noise > 0 ? ErrorEstimate::on : ErrorEstimate::off);
+    film.name_instances(std::move(mattes));
+    return film;
 }
 
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {

@@ -1,6 +1,7 @@
 // Statistics and metadata common to all pictures.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "engine/engine.h"
@@ -16,8 +17,8 @@ void count_scene(const PreparedScene& scene, Statistics& statistics);
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
                         Statistics& statistics);
 
-/// An empty film for a picture.
-Film make_film(const ImageSettings& image);
+/// An empty film for a picture. `mattes`: null without Cryptomatte layers.
+Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes> mattes);
 
 /// All that the samples of a picture depend on, as text: films of another are not to be gone on with.
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash);

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <utility>
 
+#include "api/instance_mattes.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
 #include "base/machine.h"
@@ -25,7 +26,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
     const Timer total;
     with_threads(settings.device.threads, [&] {
         // First, so that a picture too large for memory is rejected before the scene is prepared.
-        Film film = make_film(settings.image);
+        Film film = make_film(settings.image, make_instance_mattes(scene, settings.image.layers));
         const std::string identity = describe_samples(settings, scene_hash);
         if (checkpoints.resume) film.read(*checkpoints.resume, identity);
         std::shared_ptr<const PreparedScene> prepared =

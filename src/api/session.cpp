@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/instance_mattes.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
 #include "base/machine.h"
@@ -17,6 +18,7 @@ namespace relief {
 struct Session::Implementation {
     RenderSettings settings;
     double prepare_s = 0; ///< since the last picture
+    std::shared_ptr<const InstanceMattes> mattes;
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
@@ -25,6 +27,7 @@ struct Session::Implementation {
         validate_settings(settings);
         validate_method(settings, scene.camera);
         const Timer timer;
+        mattes = make_instance_mattes(scene, settings.image.layers);
         with_threads(settings.device.threads, [&] {
             editor = std::make_unique<SceneEditor>(std::move(scene), settings);
             start_engine();
@@ -41,7 +44,7 @@ struct Session::Implementation {
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
         if (film) return engine->refresh(*film, observer);
-        auto fresh = std::make_unique<Film>(make_film(settings.image));
+        auto fresh = std::make_unique<Film>(make_film(settings.image, mattes));
         const bool is_complete = engine->render(*fresh, observer);
         film = std::move(fresh);
         return is_complete;

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "image/cryptomatte.h"
 #include "math/vec.h"
 #include "relief/error.h"
 
@@ -26,18 +27,21 @@ enum class Source {
     id,
     samples,
     variance,
-    cost
+    cost,
+    objects,
+    materials
 };
 
 struct LayerKind {
     const char* name;
     Source source;
-    std::array<const char*, 3> suffixes; ///< of its channels; empty strings beyond the last one
-    size_t sum_count;                    ///< sums a pixel that it needs
+    std::array<const char*, 3>
+        suffixes;     ///< of its channels; empty strings beyond the last one, and of mattes
+    size_t sum_count; ///< sums a pixel that it needs
 };
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 10> kLayerKinds{{
+constexpr std::array<LayerKind, 12> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"Ng", Source::geometric_normal, {"X", "Y", "Z"}, 3},
@@ -48,6 +52,8 @@ constexpr std::array<LayerKind, 10> kLayerKinds{{
     {"samples", Source::samples, {"Y", "", ""}, 0},
     {"variance", Source::variance, {"R", "G", "B"}, 3},
     {"cost", Source::cost, {"Y", "", ""}, 1},
+    {kObjectMattes, Source::objects, {"", "", ""}, 0},
+    {kMaterialMattes, Source::materials, {"", "", ""}, 0},
 }};
 
 constexpr size_t kRadianceSums = 4;
@@ -65,8 +71,19 @@ const LayerKind& find_kind(const std::string& name) {
     throw Error(ErrorKind::usage, {"there is no layer \"" + name + "\"", "", "layers are " + known});
 }
 
+bool is_matte(Source source) { return source == Source::objects || source == Source::materials; }
+
 size_t channel_count(const LayerKind& kind) {
+    if (is_matte(kind.source)) return 2 * kMatteRanks;
     return size_t(std::ranges::count_if(kind.suffixes, [](const char* s) { return *s != 0; }));
+}
+
+std::vector<std::string> name_channels(const LayerKind& kind) {
+    if (is_matte(kind.source)) return name_matte_channels(kind.name);
+    std::vector<std::string> names;
+    for (size_t k = 0; k < channel_count(kind); ++k)
+        names.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
+    return names;
 }
 
 template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
@@ -96,6 +113,8 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::depth:
     case Source::id:
     case Source::samples:
+    case Source::objects:
+    case Source::materials:
         return;
     }
 }
@@ -130,13 +149,18 @@ void require_memory(double pixels, size_t bytes_per_pixel) {
 
 } // namespace
 
+bool needs_mattes(const std::vector<std::string>& layers) {
+    return std::ranges::any_of(
+        layers, [](const std::string& name) { return name == kObjectMattes || name == kMaterialMattes; });
+}
+
 Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers,
            ErrorEstimate error)
     : full_width_(full_width), full_height_(full_height), window_(window), stride_(kRadianceSums) {
     for (const std::string& name : layers) find_kind(name);
     if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
     bool needs_hit_counts = false, needs_nearest = false;
-    size_t channels = kRadianceSums;
+    size_t channels = kRadianceSums, matte_layers = 0;
     for (const LayerKind& kind : kLayerKinds) {
         const bool is_requested = std::find(layers.begin(), layers.end(), kind.name) != layers.end();
         const bool is_needed = error == ErrorEstimate::on && kind.source == Source::variance;
@@ -147,14 +171,20 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         if (is_requested) channels += channel_count(kind);
         needs_hit_counts |= is_mean_of_hits(kind.source);
         needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
+        matte_layers += is_matte(kind.source) ? 1 : 0;
     }
     const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
     // Counts, hit counts, depths and ids are 4 bytes each, as are the channels of the resolved image.
-    require_memory(double(pixels), stride_ * sizeof(double) + (4 + channels) * 4);
+    require_memory(double(pixels),
+                   stride_ * sizeof(double) + (4 + channels) * 4 + matte_layers * MatteCounts::kPixelBytes);
     sums_.resize(pixels * stride_);
     counts_.resize(pixels);
     if (needs_hit_counts) hit_counts_.resize(pixels);
     if (needs_nearest) depths_.resize(pixels, std::numeric_limits<float>::infinity()), ids_.resize(pixels);
+    for (const Layer& layer : layers_) {
+        if (kLayerKinds[layer.kind].source == Source::objects) objects_.emplace(pixels);
+        if (kLayerKinds[layer.kind].source == Source::materials) materials_.emplace(pixels);
+    }
 }
 
 size_t Film::pixel_index(int x, int y) const {
@@ -173,6 +203,7 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     sums.albedo = sample.albedo;
     if (is_hit) sums.position = sample.position, sums.uv = sample.uv;
     sums.depth = sample.depth, sums.id = sample.id;
+    if (is_hit) sums.hit_ids = {&sample.id, 1};
     add(x, y, sums, sample.alpha);
 }
 
@@ -186,6 +217,7 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
     counts_[index] += added.count;
     if (!hit_counts_.empty()) hit_counts_[index] += added.hit_count;
     if (added.id != 0) add_nearest(index, added.depth, added.id);
+    if (needs_hit_ids()) add_mattes(index, added.hit_ids);
     for (const Layer& layer : layers_)
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
 }
@@ -200,6 +232,8 @@ void Film::clear(const Window& window) {
         fill(sums_, first, stride_, 0.0);
         fill(counts_, first, 1, 0u), fill(hit_counts_, first, 1, 0u), fill(ids_, first, 1, 0u);
         fill(depths_, first, 1, std::numeric_limits<float>::infinity());
+        if (objects_) objects_->clear(first, width);
+        if (materials_) materials_->clear(first, width);
     }
     passes = {};
 }
@@ -211,6 +245,14 @@ void Film::add_nearest(size_t pixel, float depth, uint32_t id) {
     if (!is_nearer && !(depth == depths_[pixel] && id < ids_[pixel])) return;
     depths_[pixel] = depth;
     ids_[pixel] = id;
+}
+
+void Film::add_mattes(size_t pixel, std::span<const uint32_t> hit_ids) {
+    DCHECK(mattes_);
+    for (const uint32_t id : hit_ids) {
+        if (objects_) objects_->add(pixel, mattes_->objects[id - 1]);
+        if (materials_) materials_->add(pixel, mattes_->materials[id - 1]);
+    }
 }
 
 void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
@@ -231,6 +273,10 @@ void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
         for (size_t c = 0; c < 3; ++c)
             target[c] = float(variance_of_mean(radiance_sums[c], sums[c], counts_[pixel]));
         return;
+    case Source::objects:
+        return objects_->write_ranks(pixel, counts_[pixel], target);
+    case Source::materials:
+        return materials_->write_ranks(pixel, counts_[pixel], target);
     case Source::position:
     case Source::uv:
     case Source::shading_normal:
@@ -253,10 +299,10 @@ Image Film::resolve(const Vec3f& origin) const {
     image.channels = {"R", "G", "B", "A"};
     for (const Layer& layer : layers_) {
         if (layer.is_hidden) continue;
-        const LayerKind& kind = kLayerKinds[layer.kind];
-        for (size_t k = 0; k < channel_count(kind); ++k)
-            image.channels.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
+        for (std::string& name : name_channels(kLayerKinds[layer.kind]))
+            image.channels.push_back(std::move(name));
     }
+    if (mattes_) image.metadata = mattes_->entries;
     image.pixels.resize(counts_.size() * image.channels.size());
     const size_t width = image.channels.size();
     parallel_for("resolve", counts_.size(), 1 << 14, [&](size_t begin, size_t end) {
@@ -306,7 +352,8 @@ double Film::estimate_error(const Window& window) const {
 size_t Film::byte_count() const {
     return sums_.size() * sizeof(double) +
            (counts_.size() + hit_counts_.size() + ids_.size()) * sizeof(uint32_t) +
-           depths_.size() * sizeof(float);
+           depths_.size() * sizeof(float) +
+           counts_.size() * MatteCounts::kPixelBytes * size_t(objects_.has_value() + materials_.has_value());
 }
 
 } // namespace relief

@@ -3,10 +3,15 @@
 
 #include <iosfwd>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "film/matte_counts.h"
 #include "relief/image.h"
 #include "relief/render.h"
 
@@ -34,7 +39,18 @@ struct FilmSums {
     Vec2f uv{};
     float depth = std::numeric_limits<float>::infinity(); ///< the least
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
+    /// Of each sample that hit, in their order; only a film that needs_hit_ids() asks for them.
+    std::span<const uint32_t> hit_ids{};
 };
+
+/// What the instances of a scene are in the Cryptomatte layers of a picture.
+struct InstanceMattes {
+    std::vector<uint32_t> objects, materials; ///< make_matte_id() of the name of each instance's object, ...
+    std::map<std::string, std::string> entries; ///< what the header of the picture says of them
+};
+
+/// Whether one of the layers is of Cryptomatte.
+bool needs_mattes(const std::vector<std::string>& layers);
 
 /// How far the passes over a picture are (engine/sample_plan.h).
 struct PassState {
@@ -54,6 +70,9 @@ class Film {
          ErrorEstimate error = ErrorEstimate::off);
 
     const Window& window() const { return window_; }
+    /// Before the first sample of a film with Cryptomatte layers.
+    void name_instances(std::shared_ptr<const InstanceMattes> mattes) { mattes_ = std::move(mattes); }
+    bool needs_hit_ids() const { return objects_ || materials_; }
     /// (x, y) in pixels of the whole picture, inside the window.
     void add_sample(int x, int y, const FilmSample& sample);
     /// As many samples at once as `sums` holds.
@@ -64,7 +83,8 @@ class Film {
 
     /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
-    /// hit; variance is that of the mean. Pixels without samples are 0, depth infinity.
+    /// hit; variance is that of the mean; mattes are shares of the samples. Pixels without samples are 0,
+    /// depth infinity.
     /// `origin`: what P was measured from.
     Image resolve(const Vec3f& origin = {}) const;
 
@@ -92,6 +112,7 @@ class Film {
     size_t pixel_index(int x, int y) const;
     void add(int x, int y, const FilmSums& added, float alpha);
     void add_nearest(size_t pixel, float depth, uint32_t id);
+    void add_mattes(size_t pixel, std::span<const uint32_t> hit_ids);
 
     int full_width_, full_height_;
     Window window_;
@@ -111,6 +132,8 @@ class Film {
     std::vector<uint32_t> hit_counts_; ///< samples a pixel that hit; empty unless P or uv is requested
     std::vector<float> depths_;        ///< nearest first hit; empty unless depth or id is requested
     std::vector<uint32_t> ids_;
+    std::shared_ptr<const InstanceMattes> mattes_;
+    std::optional<MatteCounts> objects_, materials_; ///< where these layers are requested
 };
 
 } // namespace relief

@@ -105,6 +105,8 @@ void Film::write(std::ostream& stream, const std::string& identity) const {
     Writer writer(stream);
     writer.add(kStart), writer.add(identity);
     writer.add(sums_), writer.add(counts_), writer.add(hit_counts_), writer.add(depths_), writer.add(ids_);
+    if (objects_) writer.add(objects_->slots());
+    if (materials_) writer.add(materials_->slots());
     writer.add(std::vector<int32_t>{passes.target}), writer.add(passes.is_active);
     writer.finish();
 }
@@ -117,6 +119,8 @@ void Film::read(std::istream& stream, const std::string& identity) {
     if (found != identity) refuse("they are of another picture: " + describe_difference(identity, found));
     reader.take(sums_), reader.take(counts_), reader.take(hit_counts_), reader.take(depths_),
         reader.take(ids_);
+    if (objects_) reader.take(objects_->slots());
+    if (materials_) reader.take(materials_->slots());
     std::vector<int32_t> target(1);
     reader.take(target), reader.take(passes.is_active, counts_.size(), 0);
     passes.target = target[0];

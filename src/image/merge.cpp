@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "image/cryptomatte.h"
 #include "image/sample_range.h"
 #include "relief/error.h"
 #include "relief/image.h"
@@ -32,7 +35,7 @@ struct PartPixel {
     size_t part = 0;
 };
 
-enum class Rule { mean, mean_of_hits, direction, variance, samples, depth, id };
+enum class Rule { mean, mean_of_hits, direction, variance, samples, depth, id, matte };
 
 [[noreturn]] void throw_bad(size_t part, const std::string& message, const std::string& hint) {
     throw Error(ErrorKind::bad_input, {message, fmt::format("part {}", part + 1), hint});
@@ -188,10 +191,21 @@ struct ChannelRules {
                 c + 2 < image.channels.size())
                 direction_starts.push_back(c);
         }
+        for (const char* layer : {kObjectMattes, kMaterialMattes}) add_mattes(image, layer);
     }
+    void add_mattes(const Image& image, const char* layer) {
+        std::vector<size_t> channels;
+        for (const std::string& name : name_matte_channels(layer))
+            if (const std::optional<size_t> channel = image.find_channel(name)) channels.push_back(*channel);
+        if (channels.size() != 2 * kMatteRanks) return;
+        for (const size_t channel : channels) rules[channel] = Rule::matte;
+        matte_layers.push_back(std::move(channels));
+    }
+
     std::vector<Rule> rules;
     std::vector<size_t> mean_channels;
-    std::vector<size_t> direction_starts; ///< first of three channels
+    std::vector<size_t> direction_starts;          ///< first of three channels
+    std::vector<std::vector<size_t>> matte_layers; ///< channels of each Cryptomatte layer, rank by rank
     std::optional<size_t> depth_channel;
 };
 
@@ -208,6 +222,8 @@ double merge_channel(const std::vector<PartPixel>& pixels, const ChannelRules& r
         return find_nearest(pixels, channel, channel).values[channel];
     case Rule::id:
         return find_id(pixels, rules.depth_channel, channel);
+    case Rule::matte: // merge_mattes, all ranks together
+        return pixels[0].values[channel];
     case Rule::samples:
         break;
     }
@@ -216,9 +232,31 @@ double merge_channel(const std::vector<PartPixel>& pixels, const ChannelRules& r
     return count;
 }
 
+/// Shares of one id are added, in samples, and all are ranked anew.
+void merge_mattes(const std::vector<PartPixel>& pixels, const std::vector<size_t>& channels, float* target) {
+    std::vector<MatteShare> shares;
+    double sample_count = 0;
+    for (const PartPixel& pixel : pixels) {
+        sample_count += pixel.count;
+        for (size_t k = 0; k < channels.size(); k += 2) {
+            const uint32_t id = std::bit_cast<uint32_t>(pixel.values[channels[k]]);
+            const double samples = std::round(double(pixel.values[channels[k + 1]]) * pixel.count);
+            const auto found = std::ranges::find(shares, id, &MatteShare::id);
+            if (found != shares.end())
+                found->samples += samples;
+            else
+                shares.push_back({id, samples});
+        }
+    }
+    std::array<float, 2 * kMatteRanks> ranks;
+    write_matte_ranks(shares, sample_count, ranks.data());
+    for (size_t k = 0; k < channels.size(); ++k) target[channels[k]] = ranks[k];
+}
+
 void merge_pixel(const std::vector<PartPixel>& pixels, const ChannelRules& rules, float* target) {
     for (size_t c = 0; c < rules.rules.size(); ++c) target[c] = float(merge_channel(pixels, rules, c));
     if (pixels.size() == 1) return;
+    for (const std::vector<size_t>& channels : rules.matte_layers) merge_mattes(pixels, channels, target);
     for (const size_t start : rules.direction_starts) {
         float* const v = target + start;
         const double length = std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]);

@@ -27,6 +27,9 @@ static_assert(sizeof(scalar::FilmSumsData) == 96);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
 
+/// Of one path, in all samples of a launch.
+constexpr uint64_t kFirstHitBytes = PathTracer::kSamplesPerLaunch * sizeof(uint32_t);
+
 Kernel make_kernel(const Device& device, const char* shader) {
     return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
 }
@@ -44,7 +47,8 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
                            .purpose = Purpose::ray_buffers});
 }
 
-FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
+/// `hit_ids` outlives the sums.
+FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count, std::span<const uint32_t> hit_ids) {
     FilmSums sums;
     sums.count = uint32_t(sample_count);
     sums.hit_count = uint32_t(data.hit_count);
@@ -55,6 +59,7 @@ FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count) {
     sums.position = data.position, sums.albedo = data.albedo;
     sums.uv = data.uv;
     sums.depth = data.depth, sums.id = data.id;
+    sums.hit_ids = hit_ids;
     return sums;
 }
 
@@ -65,6 +70,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       settings_(settings),
       camera_(make_camera_frame(tracer.scene())),
       capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
+      notes_first_hits_(needs_mattes(settings.image.layers)),
       lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
@@ -91,7 +97,8 @@ void PathTracer::make_buffers() {
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
     points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
                                                     is_lent ? RasterBuffers::kLeastVertexBytes : 0);
-    film_sums_ = make_buffer<scalar::FilmSumsData>(device, "film_sums", capacity_);
+    film_sums_ = make_buffer<std::byte>(
+        device, "film_sums", find_first_hits(0) + (notes_first_hits_ ? kFirstHitBytes : 0) * capacity_);
     if (device.is_cpu())
         whole_sums_ = make_buffer<scalar::FilmSumsData>(device, "whole_film_sums", capacity_);
     path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
@@ -139,8 +146,11 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
     try {
         commands.begin_stage(Stage::film);
         commands.fill(film_sums_, 0, sum_bytes, 0);
+        if (notes_first_hits_)
+            commands.fill(film_sums_, find_first_hits(0), find_first_hits(samples.count) - find_first_hits(0),
+                          0);
         for (; done < samples.count; ++done) {
-            trace_sample(uint32_t(samples.first + done));
+            trace_sample(uint32_t(samples.first + done), done);
             // A sample takes a CPU device seconds, and begins to add to the sums before it is whole.
             if (whole_sums_) commands.copy(film_sums_, 0, whole_sums_, 0, sum_bytes);
             if (whole_sums_ || done + 1 == samples.count) commands.run();
@@ -170,7 +180,12 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     return push;
 }
 
-void PathTracer::trace_sample(uint32_t sample_index) {
+/// Byte of the film's buffer; those of all paths of a sample lie together.
+uint64_t PathTracer::find_first_hits(int place) const {
+    return capacity_ * sizeof(scalar::FilmSumsData) + uint64_t(place) * pixels_.size() * sizeof(uint32_t);
+}
+
+void PathTracer::trace_sample(uint32_t sample_index, int place) {
     Commands& commands = tracer_.commands();
     const uint32_t pixel_count = uint32_t(pixels_.size());
     const Window& window = drawn_.window;
@@ -188,6 +203,7 @@ void PathTracer::trace_sample(uint32_t sample_index) {
     commands.dispatch(camera_kernel_, pixel_count, camera);
     scalar::PathPush push = make_push(sample_index);
     push.count = pixel_count;
+    if (notes_first_hits_) push.first_hit_offset = uint32_t(find_first_hits(place) / sizeof(uint32_t));
     for (; push.count > 0; ++push.depth) {
         CastStatistics cast = push.depth > 0 ? trace_bounces(push)
                               : rasteriser_  ? rasteriser_->first_hits(camera)
@@ -265,12 +281,26 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
 
 void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_count) {
     const Timer timer;
+    DCHECK(notes_first_hits_ || !film.needs_hit_ids());
     const std::vector<scalar::FilmSumsData> sums = device_sums.download<scalar::FilmSumsData>(pixels_.size());
-    for (size_t k = 0; k < sums.size(); ++k)
-        film.add_sums(int(pixels_[k] & 0xffff), int(pixels_[k] >> 16), make_sums(sums[k], sample_count));
+    const std::vector<uint32_t> first_hits = download_first_hits(sample_count);
+    std::vector<uint32_t> hit_ids;
+    for (size_t k = 0; k < sums.size(); ++k) {
+        hit_ids.clear();
+        for (size_t n = k; n < first_hits.size(); n += sums.size())
+            if (first_hits[n] != 0) hit_ids.push_back(first_hits[n]);
+        film.add_sums(int(pixels_[k] & 0xffff), int(pixels_[k] >> 16),
+                      make_sums(sums[k], sample_count, hit_ids));
+    }
     film_s_ += timer.seconds();
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
     batch_casts_.clear();
+}
+
+/// Sample by sample, a word a pixel; nothing where they are not noted.
+std::vector<uint32_t> PathTracer::download_first_hits(int sample_count) const {
+    if (!notes_first_hits_) return {};
+    return film_sums_.download<uint32_t>(pixels_.size() * size_t(sample_count), find_first_hits(0));
 }
 
 void PathTracer::add_statistics(Statistics& statistics) const {

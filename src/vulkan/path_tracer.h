@@ -58,7 +58,9 @@ class PathTracer {
     };
     void trace_batch(Film& film, SampleRange samples, const std::function<void(uint64_t)>& on_samples);
     void make_buffers();
-    void trace_sample(uint32_t sample_index);
+    /// `place`: of the sample in its launch.
+    void trace_sample(uint32_t sample_index, int place);
+    uint64_t find_first_hits(int place) const;
     CastStatistics trace_bounces(scalar::PathPush push);
     NextRays shade_depth(const scalar::PathPush& push);
     NextRays list_rays(const Kernel& kernel, const scalar::PathPush& push);
@@ -66,12 +68,14 @@ class PathTracer {
     NextRays read_lists();
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void add_to_film(Film& film, const Buffer& sums, int sample_count);
+    std::vector<uint32_t> download_first_hits(int sample_count) const;
     scalar::PathPush make_push(uint32_t sample_index) const;
 
     Tracer& tracer_;
     RenderSettings settings_;
     scalar::CameraFrame camera_;
     uint32_t capacity_;
+    bool notes_first_hits_; ///< of every sample, behind the film's sums
     DeviceLights lights_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;

@@ -1,6 +1,10 @@
 #include "film/film.h"
 
+#include <bit>
 #include <cmath>
+#include <memory>
+#include <sstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -10,8 +14,24 @@
 namespace relief {
 namespace {
 
-const std::vector<std::string> kAllLayers{"depth", "N",  "Ng",      "P",        "albedo",
-                                          "uv",    "id", "samples", "variance", "cost"};
+const std::vector<std::string> kAllLayers{"depth",    "N",    "Ng",           "P",
+                                          "albedo",   "uv",   "id",           "samples",
+                                          "variance", "cost", "CryptoObject", "CryptoMaterial"};
+
+/// Instance k is object 101 + k, of one of three materials.
+std::shared_ptr<const InstanceMattes> make_mattes() {
+    auto mattes = std::make_shared<InstanceMattes>();
+    for (uint32_t k = 0; k < 100; ++k)
+        mattes->objects.push_back(101 + k), mattes->materials.push_back(11 + k % 3);
+    mattes->entries["cryptomatte/3ae39a5/name"] = "CryptoObject";
+    return mattes;
+}
+
+Film make_whole_film(int width, int height, const Window& window = {}) {
+    Film film(width, height, window, kAllLayers);
+    film.name_instances(make_mattes());
+    return film;
+}
 
 FilmSample make_hit(float radiance, float depth, uint32_t id) {
     FilmSample hit;
@@ -61,7 +81,7 @@ TEST(Film, refuses_a_picture_that_memory_cannot_hold_and_says_what_it_needs) {
 }
 
 TEST(Film, averages_colour_and_describes_the_nearest_hit) {
-    Film film(8, 6, {2, 1, 6, 5}, kAllLayers);
+    Film film = make_whole_film(8, 6, {2, 1, 6, 5});
     film.add_sample(3, 2, make_hit(1, 10, 7));
     film.add_sample(3, 2, make_hit(3, 4, 9));
     film.add_sample(3, 2, FilmSample{});
@@ -94,7 +114,7 @@ TEST(Film, gives_the_unbiased_variance_of_the_mean) {
 }
 
 TEST(Film, leaves_untouched_pixels_black_and_infinitely_far) {
-    const Image image = Film(3, 2, {}, kAllLayers).resolve();
+    const Image image = make_whole_film(3, 2).resolve();
     EXPECT_EQ(image.width, 3);
     for (size_t c = 0; c < image.channels.size(); ++c) {
         if (image.channels[c] == "depth.Z")
@@ -114,7 +134,8 @@ TEST(Film, keeps_small_contributions_beside_large_sums) {
 Vec3<double> square(const Vec3f& v) { return {double(v.x) * v.x, double(v.y) * v.y, double(v.z) * v.z}; }
 
 TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
-    Film one_by_one(2, 1, {}, kAllLayers), summed(2, 1, {}, kAllLayers);
+    Film one_by_one = make_whole_film(2, 1), summed = make_whole_film(2, 1);
+    const std::vector<uint32_t> hit_ids{7, 9, 8};
     const FilmSample hits[3] = {make_hit(1, 10, 7), make_hit(3, 4, 9), make_hit(4, 4, 8)};
     FilmSums sums;
     for (const FilmSample& hit : hits) {
@@ -126,7 +147,7 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
         sums.position += hit.position, sums.albedo += hit.albedo;
         sums.uv = sums.uv + hit.uv;
     }
-    sums.depth = 4, sums.id = 8;
+    sums.depth = 4, sums.id = 8, sums.hit_ids = hit_ids;
     FilmSample miss;
     miss.radiance = {0.5f, 0, 2}, miss.cost = 1;
     one_by_one.add_sample(1, 0, miss);
@@ -138,7 +159,76 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     EXPECT_EQ(summed.resolve().pixels, one_by_one.resolve().pixels);
 }
 
+/// Ids and samples, of 1024, of the ranks of pixel (0, 0).
+std::vector<std::pair<uint32_t, int>> get_ranks(const Image& image, const std::string& layer) {
+    std::vector<std::pair<uint32_t, int>> ranks;
+    const size_t first = image.find_channel(layer + "00.r").value();
+    for (size_t k = first; k < first + 12; k += 2)
+        if (image.pixels[k] != 0)
+            ranks.emplace_back(std::bit_cast<uint32_t>(image.pixels[k]),
+                               int(std::lround(1024 * double(image.pixels[k + 1]))));
+    return ranks;
+}
+
+void add_hits(Film& film, uint32_t id, int count) {
+    for (int k = 0; k < count; ++k) film.add_sample(0, 0, make_hit(1, 1, id));
+}
+
+using Ranks = std::vector<std::pair<uint32_t, int>>;
+
+TEST(Film, ranks_mattes_by_their_share_of_the_samples) {
+    Film film = make_whole_film(1, 1);
+    add_hits(film, 3, 100), add_hits(film, 1, 300), add_hits(film, 4, 200);
+    for (int k = 0; k < 424; ++k) film.add_sample(0, 0, FilmSample{});
+    const Image image = film.resolve();
+    EXPECT_EQ(get_ranks(image, "CryptoObject"), (Ranks{{101, 300}, {104, 200}, {103, 100}}));
+    EXPECT_EQ(get_ranks(image, "CryptoMaterial"), (Ranks{{11, 500}, {13, 100}})) << "1 and 4 share one";
+    EXPECT_EQ(image.metadata.at("cryptomatte/3ae39a5/name"), "CryptoObject");
+    film.clear({0, 0, 1, 1});
+    EXPECT_TRUE(get_ranks(film.resolve(), "CryptoObject").empty());
+}
+
+TEST(Film, keeps_mattes_exactly_while_there_are_no_more_than_slots) {
+    Film film = make_whole_film(1, 1);
+    for (uint32_t id = 1; id <= 8; ++id) add_hits(film, id, int(id));
+    add_hits(film, 1, 988);
+    EXPECT_EQ(get_ranks(film.resolve(), "CryptoObject"),
+              (Ranks{{101, 989}, {108, 8}, {107, 7}, {106, 6}, {105, 5}, {104, 4}}));
+}
+
+TEST(Film, never_loses_a_matte_with_a_large_share) {
+    Film film(1, 1, {}, {"CryptoObject"});
+    film.name_instances(make_mattes());
+    for (int k = 0; k < 1024; ++k) // 50 is one in five, behind 49 others
+        add_hits(film, k % 5 == 4 ? 50 : 1 + uint32_t(k * 11 % 49), 1);
+    const Ranks ranks = get_ranks(film.resolve(), "CryptoObject");
+    EXPECT_EQ(ranks.front().first, 150u);
+    EXPECT_GE(ranks.front().second, 204) << "what it has";
+    EXPECT_LE(ranks.front().second, 204 + 1024 / 8) << "and at most what its slot had before";
+    int sum = 0;
+    for (const auto& [id, samples] : ranks) sum += samples;
+    EXPECT_LE(sum, 1024);
+    EXPECT_GE(sum, 1024 * 3 / 4) << "two of eight slots are beyond the ranks";
+}
+
+TEST(Film, goes_on_with_mattes_from_its_bytes) {
+    Film whole = make_whole_film(1, 1), first = make_whole_film(1, 1), second = make_whole_film(1, 1);
+    const auto add = [](Film& film, int begin, int end) {
+        for (int k = begin; k < end; ++k) add_hits(film, 1 + uint32_t(k * 13 % 31), 1);
+    };
+    add(whole, 0, 200), add(first, 0, 77);
+    std::stringstream bytes;
+    first.write(bytes, "a picture");
+    second.read(bytes, "a picture");
+    add(second, 77, 200);
+    EXPECT_EQ(second.resolve().pixels, whole.resolve().pixels);
+    std::stringstream again(bytes.str());
+    Film other(1, 1, {}, {"CryptoObject"});
+    EXPECT_THROW(other.read(again, "a picture"), Error);
+}
+
 TEST(Film, counts_its_bytes) {
+    EXPECT_EQ(Film(10, 10, {}, {"CryptoObject"}).byte_count(), 100 * (4 * sizeof(double) + 4 + 64));
     EXPECT_EQ(Film(10, 10, {}, {}).byte_count(), 100 * (4 * sizeof(double) + 4));
     EXPECT_GT(Film(10, 10, {}, kAllLayers).byte_count(), Film(10, 10, {}, {}).byte_count());
 }

@@ -3,9 +3,11 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "image/cryptomatte.h"
 #include "relief/error.h"
 #include "relief/image.h"
 
@@ -97,6 +99,31 @@ TEST(MergeImages, without_depths_takes_the_id_of_the_lowest_range_that_hit) {
     const Image merged = merge_images(std::array{b, a});
     EXPECT_EQ(merged.at(2, 3, id), 7);
     EXPECT_EQ(merged.at(1, 3, id), 5);
+}
+
+/// Ranks of one pixel: shares of samples.
+Image make_ranks(std::vector<MatteShare> shares, int first, int last, double sample_count) {
+    Image image;
+    image.width = image.height = image.full_width = image.full_height = 1;
+    image.metadata = {{"relief:samples", std::to_string(first) + ":" + std::to_string(last)}};
+    image.channels = name_matte_channels(kObjectMattes);
+    image.pixels.resize(image.channels.size());
+    write_matte_ranks(shares, sample_count, image.pixels.data());
+    image.channels.push_back("samples.Y");
+    image.pixels.push_back(float(sample_count));
+    return image;
+}
+
+TEST(MergeImages, adds_what_mattes_have_in_all_parts_and_ranks_them_anew) {
+    const Image merged = merge_images(
+        std::array{make_ranks({{7, 5}, {4, 3}}, 0, 9, 9), make_ranks({{9, 4}, {4, 3}, {2, 1}}, 9, 25, 16)});
+    EXPECT_EQ(merged.pixels, make_ranks({{4, 6}, {7, 5}, {9, 4}, {2, 1}}, 0, 25, 25).pixels);
+    const Image many =
+        merge_images(std::array{make_ranks({{1, 9}, {2, 8}, {3, 7}, {4, 6}, {5, 5}, {6, 4}}, 0, 64, 64),
+                                make_ranks({{11, 3}, {12, 3}, {6, 2}, {14, 9}}, 64, 96, 32)});
+    EXPECT_EQ(many.pixels, make_ranks({{1, 9}, {14, 9}, {2, 8}, {3, 7}, {4, 6}, {6, 6}}, 0, 96, 96).pixels);
+    const Image alone = make_ranks({{7, 5}, {4, 3}}, 0, 9, 9);
+    EXPECT_EQ(merge_images(std::array{alone}).pixels, alone.pixels);
 }
 
 TEST(MergeImages, weighs_each_pixel_by_its_own_samples) {

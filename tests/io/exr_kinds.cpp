@@ -137,6 +137,20 @@ TEST_F(ExrKinds, mixed_types_are_left_to_the_module) {
     expect_read_as_by_the_module(file);
 }
 
+TEST_F(ExrKinds, cryptomatte_layers_are_read) {
+    Imf::Header header = make_header();
+    for (const char* layer : {"CryptoMaterial00.", "CryptoObject00.", "CryptoObject01."})
+        for (const char* suffix : {"r", "g", "b", "a"})
+            header.channels().insert(std::string(layer) + suffix, Imf::Channel(Imf::FLOAT));
+    const auto file = write_rows("mattes.exr", header);
+    expect_plain(file);
+    EXPECT_EQ(read_image(file).channels[4], "CryptoMaterial00.g");
+    header.channels().insert("CryptoObject00.A", Imf::Channel(Imf::FLOAT));
+    const auto mixed = write_rows("both.exr", header);
+    EXPECT_FALSE(is_plain(mixed));
+    expect_read_as_by_the_module(mixed);
+}
+
 TEST_F(ExrKinds, many_parts_are_left_to_the_module) {
     std::vector<Imf::Header> headers = {make_header(), make_header(Imf::HALF)};
     headers[0].setName("first"), headers[1].setName("second");

@@ -12,6 +12,7 @@
 #include "io/picture/display_transform.h"
 #include "io/picture/image_coders.h"
 #include "io/picture/image_output.h"
+#include "io/same_pictures.h"
 #include "io/test_files.h"
 #include "relief/io.h"
 
@@ -66,6 +67,18 @@ TEST_F(PictureWriters, metadata_that_is_the_headers_own_is_left_out) {
     EXPECT_EQ(read.metadata.at("Copyright"), "first");
     for (const char* name : {"", "name", "type", "channels", "compression", "lineOrder", "pixelAspectRatio"})
         EXPECT_FALSE(read.metadata.contains(name)) << name;
+}
+
+TEST_F(PictureWriters, metadata_of_a_megabyte_and_of_any_characters_is_kept) {
+    Image image;
+    image.width = 2, image.height = 1, image.channels = {"R"}, image.pixels = {1, 2};
+    std::string manifest = "{";
+    for (int k = 0; manifest.size() < 1 << 20; ++k)
+        manifest += "\"\u03b4\xcf\x80 " + std::to_string(k) + "\":\"13851a76\",";
+    image.metadata["cryptomatte/3ae39a5/manifest"] = manifest;
+    write_image(image, folder_ / "a.exr");
+    EXPECT_TRUE(read_image(folder_ / "a.exr").metadata.at("cryptomatte/3ae39a5/manifest") == manifest);
+    expect_read_as_by_the_module(folder_ / "a.exr");
 }
 
 TEST_F(PictureWriters, radiance_beyond_rgbe_is_stored_as_the_nearest_that_it_holds) {

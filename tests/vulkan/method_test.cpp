@@ -10,7 +10,7 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers{"depth", "N", "Ng", "P", "albedo", "uv", "id", "cost"};
+const std::vector<std::string> kLayers{"depth", "N", "Ng", "P", "albedo", "uv", "id", "cost", "CryptoObject"};
 
 RenderSettings make_settings() {
     RenderSettings settings;
@@ -26,6 +26,14 @@ struct Picture {
     Statistics statistics;
 };
 
+Film make_film(const RenderSettings& settings, const PreparedScene& scene) {
+    Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
+    auto mattes = std::make_shared<InstanceMattes>();
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) mattes->objects.push_back(0x3f800000u + k);
+    film.name_instances(std::move(mattes));
+    return film;
+}
+
 /// On a validated device of its own.
 Picture render_with(RenderMethod method, const Scene& scene, RenderSettings settings) {
     settings.experiment.method = method;
@@ -35,7 +43,7 @@ Picture render_with(RenderMethod method, const Scene& scene, RenderSettings sett
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     const std::unique_ptr<Engine> engine =
         make_engine_on(std::move(device), prepared, settings, make_device_walk(*prepared, settings));
-    Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
+    Film film = make_film(settings, *prepared);
     EXPECT_TRUE(engine->render(film, nullptr));
     Picture picture{film.resolve(), {}};
     engine->add_statistics(picture.statistics);
@@ -158,7 +166,7 @@ TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
         Tracer tracer(device(), *prepared, device_scene, settings,
                       {.ray_capacity = rays, .pair_capacity = 3000});
         PathTracer paths(tracer, settings);
-        Film film(settings.image.width, settings.image.height, settings.image.crop, settings.image.layers);
+        Film film = make_film(settings, *prepared);
         constexpr uint64_t kPixels = 43 * 29;
         for (uint64_t first = 0; first < kPixels; first += paths.capacity()) {
             const PixelRange range{film.window(), first,

@@ -8,8 +8,9 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers{"depth", "N",  "Ng",      "P",        "albedo",
-                                       "uv",    "id", "samples", "variance", "cost"};
+const std::vector<std::string> kLayers{"depth",    "N",    "Ng",           "P",
+                                       "albedo",   "uv",   "id",           "samples",
+                                       "variance", "cost", "CryptoObject", "CryptoMaterial"};
 
 RenderSettings make_settings() {
     RenderSettings settings;
@@ -17,6 +18,7 @@ RenderSettings make_settings() {
     settings.image.spp = 4, settings.image.bounces = 4, settings.surface.pixel_error = 4;
     settings.image.first_sample = 2, settings.image.seed = 8;
     settings.image.crop = {3, 2, 30, 23};
+    settings.image.layers = kLayers;
     settings.device.threads = 2;
     return settings;
 }
@@ -68,7 +70,14 @@ class PathTracerTest : public GpuTest {
     };
 
     Film make_film() const {
-        return {settings_.image.width, settings_.image.height, settings_.image.crop, kLayers};
+        Film film(settings_.image.width, settings_.image.height, settings_.image.crop, kLayers);
+        auto mattes = std::make_shared<InstanceMattes>();
+        for (const Instance& instance : prepared_->instances) {
+            mattes->objects.push_back(0x3f800000u + (uint32_t(mattes->objects.size()) << 20));
+            mattes->materials.push_back(0x3f800000u + (instance.material << 20));
+        }
+        film.name_instances(std::move(mattes));
+        return film;
     }
 
     Picture trace_on_device(uint32_t ray_capacity, int samples_a_call,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <initializer_list>
 #include <limits>
 #include <new>
 #include <optional>
@@ -70,14 +71,21 @@ std::optional<std::vector<std::string>> order_channels(const Imf::ChannelList& c
         layers[name.substr(0, suffix)].insert(name.substr(suffix));
     }
     std::vector<std::string> names;
-    for (const auto& [layer, suffixes] : layers) {
-        size_t count = 0;
-        for (const std::string_view known : {"R", "G", "B", "A", "X", "Y", "Z"})
-            if (suffixes.contains(std::string(known))) names.push_back(layer + std::string(known)), ++count;
+    for (const auto& entry : layers) {
+        const std::set<std::string>& suffixes = entry.second;
+        const auto take = [&](std::initializer_list<std::string> known) {
+            size_t taken = 0;
+            for (const std::string& suffix : known)
+                if (suffixes.contains(suffix)) names.push_back(entry.first + suffix), ++taken;
+            return taken;
+        };
+        const size_t capitals = take({"R", "G", "B", "A", "X", "Y", "Z"});
+        const size_t small = take({"r", "g", "b", "a"}); // of Cryptomatte
         const bool is_mixed = (suffixes.contains("X") || suffixes.contains("Y") || suffixes.contains("Z")) &&
                               (suffixes.contains("R") || suffixes.contains("A"));
-        if (count == 0 && suffixes.size() == 1) names.push_back(layer + *suffixes.begin()), ++count;
-        if (count != suffixes.size() || is_mixed) return std::nullopt;
+        size_t count = capitals + small;
+        if (count == 0 && suffixes.size() == 1) names.push_back(entry.first + *suffixes.begin()), ++count;
+        if (count != suffixes.size() || is_mixed || (capitals > 0 && small > 0)) return std::nullopt;
     }
     return names;
 }

@@ -78,6 +78,9 @@ struct PathPush {
     Vec3 background;
     EnvironmentData environment;
     BounceLod bounce_lod;
+    /// Word of the film's buffer, behind the sums, from which on a sample notes its first hits: one a path,
+    /// 1 + instance. 0: they are not asked for.
+    uint first_hit_offset;
 };
 
 #include "formulas/end.h"

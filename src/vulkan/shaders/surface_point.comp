@@ -4,6 +4,7 @@
 #include "vulkan/shaders/surface_point.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
+layout(scalar, set = 0, binding = kBindFilm) buffer FirstHits { uint first_hits[]; };
 
 void make_point(uint path_index, HitData hit) {
     InstanceData instance = instances[hit.instance];
@@ -24,6 +25,7 @@ void record_first_hit(uint pixel, HitData hit) {
     film[pixel].position += points[pixel].position;
     FilmSumsData sums = film[pixel];
     uint id = hit.instance + 1u;
+    if (push.first_hit_offset != 0u) first_hits[push.first_hit_offset + pixel] = id;
     if (sums.id != 0u && (hit.t > sums.depth || (hit.t == sums.depth && id >= sums.id))) return;
     film[pixel].depth = hit.t;
     film[pixel].id = id;

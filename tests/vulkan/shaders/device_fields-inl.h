@@ -117,7 +117,8 @@ struct AllStructs {
     FIELD(s.source_count) FIELD(s.emitter_count) FIELD(s.emitter_range_count) \
     FIELD(s.has_environment) FIELD(s.has_background) FIELD3(s.background) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
     FIELD(s.environment.cos_turn) FIELD(s.environment.cells_x) FIELD(s.environment.cells_y) \
-    FIELD(s.environment.texture_index) FIELD3(s.bounce_lod.camera) FIELD(s.bounce_lod.cell_angle)
+    FIELD(s.environment.texture_index) FIELD3(s.bounce_lod.camera) FIELD(s.bounce_lod.cell_angle) \
+    FIELD(s.first_hit_offset)
 #define FIELDS_SORT_PUSH(s) \
     FIELD(s.counter_word) FIELD(s.capacity) FIELD(s.shift) FIELD(s.mask) FIELD(s.is_back)
 #define FIELDS_TREE_NODE(s) \
