@@ -10,7 +10,8 @@ import subprocess
 import sys
 
 SKIPPED = 77
-VERSIONS = {"bpy": ["bpy==4.5.15", "bpy==4.2.0"], "pyoidn": ["pyoidn==2.5.1.0"]}  # the first that can be had
+VERSIONS = {"bpy": ["bpy==4.5.15", "bpy==4.2.0"], "cryptomatte_api": ["cryptomatte-api==1.0.0"],
+            "pyoidn": ["pyoidn==2.5.1.0"]}  # the first that can be had
 
 
 def install(folder, package):
