@@ -129,7 +129,9 @@ struct Displacement {
     std::vector<MapTile> tiles;
 };
 
-/// Metallic-roughness material. Textures multiply the constants; row 0 of a texture is v = 1, wrap mode is
+/// The opaque part of OpenPBR 1.1: fuzz over a coat over a base, which is metal, a diffuse body under a clear
+/// dielectric surface, or a mix of the two. With what comes after the filters as it is, a metallic-roughness
+/// material. Colours are linear. Textures multiply the constants; row 0 of a texture is v = 1, wrap mode is
 /// repeat.
 struct Material {
     std::string name;
@@ -141,6 +143,18 @@ struct Material {
     std::shared_ptr<const Texture> base_color_texture; ///< linear values (the reader decodes sRGB)
     std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
     MapFilter base_color_filter = MapFilter::none, roughness_filter = MapFilter::none; ///< not mip
+    float base_weight = 1;            ///< [0, 1], times base_color
+    float base_diffuse_roughness = 0; ///< [0, 1]; 0 is Lambert's law
+    float specular_weight = 1;        ///< [0, 1], times the reflection of the base at normal incidence
+    Vec3f specular_color{1, 1, 1};    ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
+    float coat_weight = 0;            ///< [0, 1]; 0 removes the coat
+    Vec3f coat_color{1, 1, 1};        ///< each in [0, 1]: what is left of light straight down and up again
+    float coat_roughness = 0;         ///< [0, 1]
+    float coat_ior = 1.6f;            ///< >= 1
+    float coat_darkening = 1;         ///< [0, 1]: of the base, by what the coat reflects back onto it
+    float fuzz_weight = 0;            ///< [0, 1]; 0 removes the fuzz
+    Vec3f fuzz_color{1, 1, 1};        ///< each in [0, 1]
+    float fuzz_roughness = 0.5f;      ///< [0, 1]; below 0.07 as 0.07
 };
 
 /// Visibility mask with all bits set. Renders ignore masks and show all objects.

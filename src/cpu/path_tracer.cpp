@@ -37,6 +37,7 @@ struct Path {
 struct PointMaterial {
     Vec3f base_color, emission;
     float roughness, metallic, ior;
+    uint32_t layers; ///< record of PreparedScene::layers; kNoIndex: none
 };
 
 Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
@@ -45,6 +46,12 @@ Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
 
 void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
     vectors[0][lane] = v.x, vectors[1][lane] = v.y, vectors[2][lane] = v.z;
+}
+
+void add_layers(uint32_t record, size_t lane, VertexLanes& lanes) {
+    lanes.has_layers |= 1u << lane;
+    lanes.layers[lane] = record;
+    lanes.metallic[lane] = 0, lanes.ior[lane] = 1;
 }
 
 struct ShadowRay {
@@ -311,6 +318,8 @@ void TileTracer::reflect(size_t first, size_t count) {
         const size_t lane = n % 16;
         set_lane(m.base_color, lane, lanes.base_color);
         lanes.roughness[lane] = m.roughness, lanes.metallic[lane] = m.metallic, lanes.ior[lane] = m.ior;
+        if (lane == 0) lanes.has_layers = 0;
+        if (m.layers != kNoIndex) add_layers(m.layers, lane, lanes);
         emissions_[n] = m.emission;
         set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
@@ -318,6 +327,8 @@ void TileTracer::reflect(size_t first, size_t count) {
     for (size_t n = count; n % 16 != 0; ++n)
         lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
     const bool has_bounce = depth_ < settings_.image.bounces;
+    const MaterialLayers& found = tracer_.scene().layers;
+    const LayerView layers{found.records.data(), found.entries.data(), uint32_t(found.entries.size())};
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
         tracer_.shading_kernels().reflect(
@@ -325,16 +336,20 @@ void TileTracer::reflect(size_t first, size_t count) {
              .points = &points_[k],
              .rays = &rays_[k],
              .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
-             .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr},
+             .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr,
+             .layers = layers},
             lanes_[n / 16]);
     }
 }
 
 PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) const {
     const PreparedScene& scene = tracer_.scene();
-    const Material& material = scene.materials[scene.instances[instance].material];
-    PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
-                    material.ior};
+    const uint32_t index = scene.instances[instance].material;
+    const Material& material = scene.materials[index];
+    PointMaterial m{
+        material.base_color, material.emission,
+        material.roughness,  material.metallic,
+        material.ior,        scene.layers.empty() ? kNoIndex : scene.layers.record_of_material[index]};
     if (material.base_color_texture)
         m.base_color =
             m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);

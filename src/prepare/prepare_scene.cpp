@@ -211,6 +211,9 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->materials = std::move(scene.materials);
     prepare_textures(prepared->materials);
     prepared->materials.emplace_back();
+    for (Material& material : prepared->materials)
+        material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
+    prepared->layers = make_material_layers(prepared->materials);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
     prepared->camera = scene.camera;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/affine.h"
+#include "prepare/material_layers.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 #include "surface/map/gutter.h"
@@ -57,7 +58,8 @@ struct PreparedScene {
         surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
     std::vector<Instance> instances; ///< in the order of Scene::objects
     std::vector<PreparedMap> maps;   ///< of all displacements
-    std::vector<Material> materials; ///< the last one is the default material
+    std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
+    MaterialLayers layers;           ///< of the materials
     std::vector<Light> lights;
     std::optional<Environment> environment;
     Camera camera;

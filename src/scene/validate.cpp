@@ -180,6 +180,19 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "metallic", material.metallic, 0, 1);
     check_range(where, "ior", material.ior, 1, kHuge);
     check_range(where, "emission", material.emission, 0, kHuge);
+    for (const auto& [what, value] : {std::pair("base_weight", material.base_weight),
+                                      std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
+                                      std::pair("specular_weight", material.specular_weight),
+                                      std::pair("coat_weight", material.coat_weight),
+                                      std::pair("coat_roughness", material.coat_roughness),
+                                      std::pair("coat_darkening", material.coat_darkening),
+                                      std::pair("fuzz_weight", material.fuzz_weight),
+                                      std::pair("fuzz_roughness", material.fuzz_roughness)})
+        check_range(where, what, value, 0, 1);
+    check_range(where, "specular_color", material.specular_color, 0, 1);
+    check_range(where, "coat_color", material.coat_color, 0, 1);
+    check_range(where, "fuzz_color", material.fuzz_color, 0, 1);
+    check_range(where, "coat_ior", material.coat_ior, 1, kHuge);
     for (const MapFilter filter : {material.base_color_filter, material.roughness_filter})
         if (filter == MapFilter::mip || filter > MapFilter::bspline)
             fail(where, "a filter of its textures is neither none, cubic nor bspline");

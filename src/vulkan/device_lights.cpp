@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "formulas/ggx_table.h"
 #include "formulas/light_source.h"
 #include "prepare/environment_distribution.h"
 #include "prepare/light_sources.h"
@@ -33,10 +34,31 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
         return texture && is_smooth(filter) ? index | scalar::kSplineTexture : index;
     };
     for (const Material& material : scene.materials)
-        result.push_back({material.base_color, material.roughness, material.emission, material.metallic,
-                          material.ior, find_index(material.base_color_texture, material.base_color_filter),
-                          find_index(material.roughness_texture, material.roughness_filter)});
+        result.push_back({material.base_color,
+                          material.roughness,
+                          material.emission,
+                          material.metallic,
+                          material.ior,
+                          find_index(material.base_color_texture, material.base_color_filter),
+                          find_index(material.roughness_texture, material.roughness_filter),
+                          0,
+                          {}});
+    if (scene.layers.empty()) return result;
+    for (size_t k = 0; k < result.size(); ++k) {
+        const uint32_t record = scene.layers.record_of_material[k];
+        if (record == kNoIndex) continue;
+        result[k].has_layers = 1;
+        result[k].layers = scene.layers.records[record];
+    }
     return result;
+}
+
+/// The tables of formulas/ggx_table.h and of formulas/layer_table.h.
+std::vector<Vec2f> join_albedos(const MaterialLayers& layers) {
+    std::vector<Vec2f> entries(scalar::kGgxEntryCount);
+    for (uint32_t i = 0; i < entries.size(); ++i) entries[i] = scalar::read_ggx_table(i);
+    entries.insert(entries.end(), layers.entries.begin(), layers.entries.end());
+    return entries;
 }
 
 /// Emissive patches, followed by the ranges of their instances.
@@ -75,6 +97,8 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
         make_light_sources(scene, distribution.mean_luminance, emitters);
     description_.source_count = uint32_t(sources.size());
     sources_ = make_table(device, "light_sources", TexelFormat::none, sources);
+    if (!scene.layers.empty())
+        albedos_ = make_table(device, "albedos", TexelFormat::rg32_float, join_albedos(scene.layers));
 }
 
 void DeviceLights::bind(BindingTable& bindings) const {
@@ -82,6 +106,7 @@ void DeviceLights::bind(BindingTable& bindings) const {
     bindings.bind(scalar::kBindSources, sources_);
     bindings.bind(scalar::kBindEnvironment, environment_);
     bindings.bind(scalar::kBindEmitters, emitters_);
+    if (albedos_) bindings.bind(scalar::kBindAlbedos, *albedos_);
 }
 
 void DeviceLights::describe(scalar::PathPush& push) const {

@@ -1,6 +1,8 @@
 // Materials and lights in device memory, for the path tracing kernels.
 #pragma once
 
+#include <optional>
+
 #include "prepare/prepared_scene.h"
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/kernel.h"
@@ -20,6 +22,7 @@ class DeviceLights {
 
   private:
     Buffer materials_, sources_, environment_, emitters_;
+    std::optional<Buffer> albedos_; ///< where materials have layers; else those of every table
     scalar::PathPush description_{};
 };
 

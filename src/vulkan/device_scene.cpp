@@ -90,6 +90,14 @@ std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) c
     return constants;
 }
 
+std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
+    constants = add_filter(std::move(constants));
+    if (!has_layers_) return constants;
+    constants.resize(scalar::kLayersConstant + 1);
+    constants[scalar::kLayersConstant] = 1;
+    return constants;
+}
+
 void DeviceScene::add_textures(const Device& device, const PreparedScene& scene) {
     TexelStore store;
     const auto add = [&](const std::shared_ptr<const Texture>& texture) {
@@ -109,6 +117,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
         has_smooth_ |= is_smooth(material.base_color_filter) || is_smooth(material.roughness_filter);
     }
     if (scene.environment) add(scene.environment->texture);
+    has_layers_ = !scene.layers.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }

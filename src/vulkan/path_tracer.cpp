@@ -40,6 +40,11 @@ Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
                   {.shader = shader, .constants = tracer.device_scene().add_filter({kGroupSize})});
 }
 
+Kernel make_scattering_kernel(const Tracer& tracer, const char* shader) {
+    return Kernel(tracer.device(),
+                  {.shader = shader, .constants = tracer.device_scene().add_layers({kGroupSize})});
+}
+
 template <class T>
 Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint64_t least_bytes = 0) {
     return Buffer(device, {.name = name,
@@ -78,8 +83,8 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     background_ = make_kernel(device, "background");
     surface_point_ = make_reading_kernel(tracer, "surface_point");
     shading_normal_ = make_reading_kernel(tracer, "shading_normal");
-    light_sample_ = make_reading_kernel(tracer, "light_sample");
-    bounce_ = make_reading_kernel(tracer, "bounce");
+    light_sample_ = make_scattering_kernel(tracer, "light_sample");
+    bounce_ = make_scattering_kernel(tracer, "bounce");
     far_rays_ = make_kernel(device, "far_rays");
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
     shadow_light_ = make_kernel(device, "shadow_light");

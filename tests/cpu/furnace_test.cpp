@@ -58,6 +58,28 @@ TEST(Furnace, white_base_under_a_coat_is_invisible) {
     }
 }
 
+TEST(Furnace, white_stack_of_layers_is_invisible) {
+    for (const float metallic : {0.0f, 0.5f, 1.0f})
+        for (const float roughness : {0.0f, 0.4f, 1.0f}) {
+            Material stack;
+            stack.base_color = {1, 1, 1}, stack.roughness = roughness, stack.metallic = metallic;
+            stack.base_diffuse_roughness = roughness;
+            stack.coat_weight = 0.8f, stack.coat_roughness = 0.3f * roughness;
+            stack.fuzz_weight = 0.7f;
+            const Mean mean =
+                render_mean(make_furnace(stack, SphereNormals::smooth), make_small_settings(32, 64, 4));
+            EXPECT_NEAR(mean.value, 1, 0.01 + 4 * mean.standard_error) << metallic << ' ' << roughness;
+            EXPECT_LT(mean.standard_error, 0.01);
+        }
+}
+
+TEST(Furnace, base_weight_is_a_factor_of_the_base) {
+    Material grey = make_matte(0.8f);
+    grey.base_weight = 0.5f;
+    const Mean mean = render_mean(make_furnace(grey, SphereNormals::facets), make_small_settings(32, 64, 2));
+    EXPECT_NEAR(mean.value, 0.4, 0.002 + 4 * mean.standard_error);
+}
+
 TEST(Furnace, environment_image_of_one_colour_equals_the_constant_one) {
     Scene scene = make_furnace(make_matte(0.8f), SphereNormals::facets);
     auto texture = std::make_shared<Texture>();

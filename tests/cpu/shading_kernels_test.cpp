@@ -13,10 +13,12 @@
 #include "cpu/shading/shading_kernels.h"
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
+#include "formulas/layered_bsdf.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"
 #include "formulas/warp.h"
+#include "prepare/material_layers.h"
 #include "relief/render.h"
 #include "support/shading_scenes.h"
 
@@ -113,10 +115,27 @@ struct Case {
     cpu::SurfacePoint point;
     cpu::TraceRay ray;
     scalar::BsdfParameters material;
+    uint32_t layers; ///< record of make_layers; kNoIndex: without
     Vec3f light;
     float light_pdf;
     Vec2f pick, u;
 };
+
+/// One material with all layers and one with some of each sort, the roughness of one textured.
+MaterialLayers make_layers() {
+    std::vector<Material> materials(6);
+    materials[0].coat_weight = 0.7f, materials[0].coat_color = {0.9f, 0.5f, 0.2f};
+    materials[0].fuzz_weight = 0.8f, materials[0].base_diffuse_roughness = 0.6f;
+    materials[0].metallic = 0.3f, materials[0].specular_color = {1, 0.8f, 0.5f};
+    materials[1].base_diffuse_roughness = 1, materials[1].ior = 1;
+    materials[2].coat_weight = 1, materials[2].coat_roughness = 0.3f;
+    materials[3].fuzz_weight = 1, materials[3].fuzz_roughness = 0.2f;
+    materials[4].metallic = 1, materials[4].specular_weight = 0.8f;
+    auto texture = std::make_shared<Texture>();
+    texture->width = texture->height = 1, texture->floats = {1, 1, 1, 1};
+    materials[5].coat_weight = 0.4f, materials[5].roughness_texture = texture;
+    return make_material_layers(materials);
+}
 
 /// Every kind of material in one batch, points seen from both sides and at grazing angles, lights behind the
 /// surface and none at all.
@@ -138,6 +157,9 @@ std::vector<Case> make_cases() {
                       numbers.next(),
                       is_diffuse ? 0 : numbers.next(),
                       is_diffuse ? 1 : 1 + numbers.next()};
+        // Batches without layers, with some, and of layers alone.
+        const size_t batch = k / 16 % 5;
+        c.layers = batch == 4 || (batch % 2 == 1 && k % 4 != 0) ? uint32_t(k % 6) : kNoIndex;
         c.light = numbers.direction();
         c.light_pdf = k % 7 == 0 ? 0 : numbers.next() + 0.1f;
         c.pick = numbers.pair(), c.u = numbers.pair();
@@ -156,10 +178,42 @@ void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
     }
     lanes.roughness[lane] = c.material.roughness, lanes.metallic[lane] = c.material.metallic;
     lanes.ior[lane] = c.material.ior, lanes.light_pdf[lane] = c.light_pdf;
+    lanes.layers[lane] = c.layers;
+    if (lane == 0) lanes.has_layers = 0;
+    if (c.layers != kNoIndex) lanes.has_layers |= 1u << lane;
 }
 
+cpu::LayerView view(const MaterialLayers& layers) {
+    return {layers.records.data(), layers.entries.data(), uint32_t(layers.entries.size())};
+}
+
+/// The BSDF of a case, with or without layers.
+struct CaseBsdf {
+    CaseBsdf(const Case& c, const MaterialLayers& layers, const Vec3f& viewer)
+        : wo(viewer), has_layers(c.layers != kNoIndex), table{layers.entries.data()} {
+        plain = scalar::make_bsdf(c.material, wo.z);
+        if (has_layers)
+            layered = scalar::make_layered_bsdf(
+                {c.material.base_color, c.material.roughness, layers.records[c.layers]}, table, wo.z);
+    }
+    scalar::BsdfValue evaluate(const Vec3f& wi) const {
+        return has_layers ? scalar::evaluate_layered_bsdf(layered, table, wo, wi)
+                          : scalar::evaluate_bsdf(plain, wo, wi);
+    }
+    scalar::BsdfSample sample(float lobe, const Vec2f& u) const {
+        return has_layers ? scalar::sample_layered_bsdf(layered, table, wo, lobe, u)
+                          : scalar::sample_bsdf(plain, wo, lobe, u);
+    }
+
+    Vec3f wo;
+    bool has_layers;
+    scalar::LayerTable table;
+    scalar::Bsdf plain;
+    scalar::LayeredBsdf layered{};
+};
+
 /// The same with the formulas for one.
-void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
+void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexLanes& lanes, size_t lane) {
     const Vec3f wo = -c.ray.direction;
     const bool is_behind = dot(c.point.geometric_normal, wo) < 0;
     const Vec3f geometric = is_behind ? -c.point.geometric_normal : c.point.geometric_normal;
@@ -168,9 +222,9 @@ void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
     EXPECT_EQ(get_lane(lanes.shading_normal, lane), shading);
     const scalar::Basis basis = scalar::make_basis(scalar::bend_normal(shading, geometric, wo));
     const Vec3f wo_local = scalar::lift_viewer(scalar::to_local(basis, wo));
-    const scalar::Bsdf bsdf = scalar::make_bsdf(c.material, wo_local.z);
+    const CaseBsdf bsdf(c, layers, wo_local);
 
-    const scalar::BsdfValue value = scalar::evaluate_bsdf(bsdf, wo_local, scalar::to_local(basis, c.light));
+    const scalar::BsdfValue value = bsdf.evaluate(scalar::to_local(basis, c.light));
     const bool needs_shadow_ray = c.light_pdf > 0 && dot(c.light, geometric) > 0 && !(value.value == Vec3f{});
     ASSERT_EQ(lanes.needs_shadow_ray >> lane & 1, needs_shadow_ray);
     EXPECT_EQ(get_lane(lanes.light_reflected, lane), value.value);
@@ -180,7 +234,7 @@ void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
     };
     EXPECT_EQ(get_lane(lanes.shadow_origin, lane), offset(c.light));
 
-    const scalar::BsdfSample drawn = scalar::sample_bsdf(bsdf, wo_local, c.pick.y, c.u);
+    const scalar::BsdfSample drawn = bsdf.sample(c.pick.y, c.u);
     const Vec3f direction = normalize(scalar::from_local(basis, drawn.direction));
     const bool has_bounce = !(drawn.weight == Vec3f{}) && dot(geometric, direction) > 0;
     ASSERT_EQ(lanes.has_bounce >> lane & 1, has_bounce);
@@ -193,6 +247,7 @@ void expect_lane(const Case& c, const cpu::VertexLanes& lanes, size_t lane) {
 
 TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_one) {
     const std::vector<Case> cases = make_cases();
+    const MaterialLayers layers = make_layers();
     for (const std::string& isa : available_isas()) {
         uint32_t lit = 0, going = 0;
         for (size_t first = 0; first < cases.size(); first += 16) {
@@ -208,10 +263,11 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
                 set_lane(c, lane, lanes);
             }
             cpu::find_shading_kernels(isa.c_str())
-                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data()}, lanes);
+                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data(), view(layers)},
+                         lanes);
             EXPECT_EQ((lanes.needs_shadow_ray | lanes.has_bounce) >> count, 0);
             for (size_t lane = 0; lane < count; ++lane) {
-                expect_lane(cases[first + lane], lanes, lane);
+                expect_lane(cases[first + lane], layers, lanes, lane);
                 ASSERT_FALSE(testing::Test::HasFailure()) << isa << ", case " << first + lane;
             }
             lit += uint32_t(std::popcount(lanes.needs_shadow_ray)),
@@ -228,7 +284,7 @@ TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
         cpu::VertexLanes lanes{};
         set_lane(c, 0, lanes);
         lanes.has_bounce = 1;
-        cpu::find_shading_kernels(isa.c_str()).reflect({1, &c.point, &c.ray, nullptr, nullptr}, lanes);
+        cpu::find_shading_kernels(isa.c_str()).reflect({1, &c.point, &c.ray, nullptr, nullptr, {}}, lanes);
         EXPECT_EQ(lanes.has_bounce, 0) << isa;
     }
 }

@@ -139,6 +139,19 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
 TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].roughness = 1.5f; }), "roughness is 1.5");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].ior = 0.5f; }), "ior");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].base_weight = 2; }), "base_weight is 2");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].base_diffuse_roughness = -1; }),
+               "base_diffuse_roughness");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].specular_weight = kNan; }), "specular_weight");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].specular_color.y = 2; }), "specular_color");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_weight = 2; }), "coat_weight");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_color.z = -1; }), "coat_color");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_roughness = 2; }), "coat_roughness");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_ior = 0.9f; }), "coat_ior");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_darkening = 2; }), "coat_darkening");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_weight = 2; }), "fuzz_weight");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_color.x = 2; }), "fuzz_color");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_roughness = 2; }), "fuzz_roughness");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].direction = {}; }), "light 0: direction");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].strength = -1; }), "light 0: strength");
     EXPECT_HAS(complaint([](Scene& s) { s.environment->strength = kNan; }), "environment");

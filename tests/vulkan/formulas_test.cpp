@@ -18,6 +18,7 @@
 #include "formulas/environment.h"
 #include "formulas/environment_data.h"
 #include "formulas/ggx_albedo.h"
+#include "formulas/layered_bsdf.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
 #include "formulas/local_start.h"
@@ -33,6 +34,15 @@
 #include "vulkan/test_shaders.h"
 
 namespace relief::scalar {
+/// The table that devices always have, in place of one of layers.
+inline LayerTable make_test_layers() {
+    static const auto entries = [] {
+        std::array<Vec2, kGgxEntryCount> table;
+        for (uint i = 0; i < kGgxEntryCount; ++i) table[i] = read_ggx_table(i);
+        return table;
+    }();
+    return {entries.data()};
+}
 #define FN inline
 #include "vulkan/shaders/formula_cases-inl.h"
 #undef FN
@@ -45,7 +55,7 @@ using scalar::FormulaInput;
 using scalar::FormulaOutput;
 
 constexpr uint32_t kCount = 1u << 14;
-constexpr uint32_t kPartCount = 8;
+constexpr uint32_t kPartCount = 9;
 
 std::vector<FormulaInput> make_inputs() {
     std::mt19937 random(1);
@@ -78,9 +88,9 @@ std::vector<FormulaOutput> run_on_device(const Device& device, const std::vector
 }
 
 FormulaOutput run_in_cpp(const FormulaInput& input) {
-    return {scalar::run_exact(input),   scalar::run_warp(input),   scalar::run_camera(input),
-            scalar::run_shading(input), scalar::run_light(input),  scalar::run_tone(input),
-            scalar::run_source(input),  scalar::run_surface(input)};
+    return {scalar::run_exact(input),   scalar::run_warp(input),    scalar::run_camera(input),
+            scalar::run_shading(input), scalar::run_light(input),   scalar::run_tone(input),
+            scalar::run_source(input),  scalar::run_surface(input), scalar::run_layers(input)};
 }
 
 /// Largest |device - cpp| / (1 + |cpp|) over the floats of one part.
@@ -127,6 +137,7 @@ TEST_F(Formulas, of_integers_and_of_topology_are_equal) {
 TEST_F(Formulas, of_warps_are_close) { expect_close(&FormulaOutput::warp, 1e-5f); }
 TEST_F(Formulas, of_the_camera_are_close) { expect_close(&FormulaOutput::camera, 1e-4f); }
 TEST_F(Formulas, of_the_bsdf_are_close) { expect_close(&FormulaOutput::shading, 2e-4f); }
+TEST_F(Formulas, of_layers_are_close) { expect_close(&FormulaOutput::layers, 5e-4f); }
 TEST_F(Formulas, of_lights_are_close) { expect_close(&FormulaOutput::light, 1e-4f); }
 TEST_F(Formulas, of_tones_are_close) { expect_close(&FormulaOutput::tone, 1e-5f); }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "cpu/shading/lights.h"
@@ -13,6 +14,7 @@
 #include "formulas/bsdf.h"
 #include "formulas/cell_place.h"
 #include "formulas/constants.h"
+#include "formulas/layered_bsdf.h"
 #include "formulas/path.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
@@ -80,6 +82,8 @@ inline Scene make_shading_scene() {
     shiny.roughness_texture = make_half_greys(8, 5);
     colored.base_color_filter = MapFilter::cubic, shiny.roughness_filter = MapFilter::bspline;
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
+    shiny.coat_weight = 0.7f, shiny.coat_color = {0.9f, 0.5f, 0.2f}, shiny.coat_roughness = 0.2f;
+    shiny.fuzz_weight = 0.6f, shiny.base_diffuse_roughness = 0.5f, shiny.specular_color = {1, 0.8f, 0.6f};
     glowing.emission = {4, 3, 1};
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
     scene.displacements.back().filter = MapFilter::mip, scene.displacements.back().autobump = true;
@@ -163,7 +167,7 @@ class ShadingBench {
     }
 
     template <class Push> void run(const char* shader, const Push& push) {
-        const Kernel kernel(device_, {.shader = shader, .constants = device_scene.add_filter({64})});
+        const Kernel kernel(device_, {.shader = shader, .constants = device_scene.add_layers({64})});
         commands.dispatch(kernel, push.count, push);
         commands.run();
     }
@@ -240,6 +244,17 @@ struct CpuVertex {
     scalar::Basis basis;
     Vec3f wo_local;
     scalar::Bsdf bsdf;
+    std::optional<scalar::LayeredBsdf> layered;
+    scalar::LayerTable table;
+
+    scalar::BsdfValue evaluate(const Vec3f& wi) const {
+        return layered ? scalar::evaluate_layered_bsdf(*layered, table, wo_local, wi)
+                       : scalar::evaluate_bsdf(bsdf, wo_local, wi);
+    }
+    scalar::BsdfSample sample(float lobe, const Vec2f& u) const {
+        return layered ? scalar::sample_layered_bsdf(*layered, table, wo_local, lobe, u)
+                       : scalar::sample_bsdf(bsdf, wo_local, lobe, u);
+    }
 };
 
 inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
@@ -262,6 +277,11 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     v.basis = scalar::make_basis(scalar::bend_normal(v.point.shading_normal, v.point.geometric_normal, wo));
     v.wo_local = scalar::lift_viewer(scalar::to_local(v.basis, wo));
     v.bsdf = scalar::make_bsdf({m.base_color, m.roughness, m.metallic, m.ior}, v.wo_local.z);
+    v.table = {scene.layers.entries.data()};
+    const uint32_t record = scene.layers.record_of_material.at(scene.instances[c.hit.instance].material);
+    if (record != kNoIndex)
+        v.layered = scalar::make_layered_bsdf({m.base_color, m.roughness, scene.layers.records[record]},
+                                              v.table, v.wo_local.z);
     return v;
 }
 

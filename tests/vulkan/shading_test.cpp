@@ -170,8 +170,7 @@ std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const Shadi
     bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
     if (!(light.pdf > 0) || dot(light.direction, v.point.geometric_normal) <= 0) return std::nullopt;
     bench.cpu_lights.complete_weight({&light, 1}, {&first, 1});
-    const scalar::BsdfValue bsdf =
-        scalar::evaluate_bsdf(v.bsdf, v.wo_local, scalar::to_local(v.basis, light.direction));
+    const scalar::BsdfValue bsdf = v.evaluate(scalar::to_local(v.basis, light.direction));
     const Vec3f contribution =
         c.path.throughput * bsdf.value * light.weight * scalar::power_heuristic(light.pdf, bsdf.pdf);
     if (contribution == Vec3f{} || !is_finite(contribution)) return std::nullopt;
@@ -255,8 +254,7 @@ std::optional<ExpectedBounce> expect_bounce(const ShadingBench& bench, const Sha
     const auto draw = [&](uint32_t kind) {
         return scalar::draw_bounce_pair(c.path.pixel_seed, push.sample_index, push.depth, kind);
     };
-    const scalar::BsdfSample drawn =
-        scalar::sample_bsdf(v.bsdf, v.wo_local, draw(scalar::kPickPair).y, draw(scalar::kBsdfPair));
+    const scalar::BsdfSample drawn = v.sample(draw(scalar::kPickPair).y, draw(scalar::kBsdfPair));
     const Vec3f direction = normalize(scalar::from_local(v.basis, drawn.direction));
     if (drawn.weight == Vec3f{} || dot(v.point.geometric_normal, direction) <= 0) return std::nullopt;
     const Vec3f throughput = c.path.throughput * drawn.weight;

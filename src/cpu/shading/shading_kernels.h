@@ -7,6 +7,7 @@
 #include "cpu/shading/environment_light.h"
 #include "cpu/tracer.h"
 #include "formulas/camera.h"
+#include "formulas/layer_parameters.h"
 
 namespace relief::cpu {
 
@@ -20,6 +21,13 @@ struct PointBatch {
     SurfacePoint* points;
 };
 
+/// Layers of all materials of a scene that have some; they outlive whatever reads them.
+struct LayerView {
+    const scalar::LayerParameters* records = nullptr;
+    const Vec2f* entries = nullptr; ///< the albedo table
+    uint32_t entry_count = 0;
+};
+
 /// Hits that paths of a wave have come to.
 struct VertexBatch {
     size_t count; ///< 1 to 16
@@ -27,6 +35,7 @@ struct VertexBatch {
     const TraceRay* rays;    ///< that came there
     const Vec2f* pick_pairs; ///< random numbers, y picks the lobe; null: no path goes on
     const Vec2f* bsdf_pairs;
+    LayerView layers; ///< read where VertexLanes::has_layers says so
 };
 
 /// Sixteen vertices, a lane each. Masks have a bit a lane.
@@ -34,6 +43,8 @@ struct VertexLanes {
     // Given. Lanes beyond the batch may hold anything; with metallic 0 and ior 1 they cost nothing.
     alignas(64) float base_color[3][16], roughness[16], metallic[16], ior[16];
     alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn, any direction
+    uint32_t has_layers;             ///< bits of lanes with layers; metallic 0 and ior 1 spare those work
+    alignas(64) uint32_t layers[16]; ///< of such a lane, its record
     // Found. Normals are on the viewer's side; origins are moved off the surface.
     alignas(64) float geometric_normal[3][16], shading_normal[3][16];
     alignas(64) float light_reflected[3][16]; ///< BSDF times cosine
@@ -52,7 +63,7 @@ struct ShadingKernels {
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*sample_2d)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                       Vec2f* drawn);
-    /// What the vertices of a batch reflect (formulas/bsdf.h).
+    /// What the vertices of a batch reflect (formulas/bsdf.h, formulas/layered_bsdf.h).
     void (*reflect)(const VertexBatch&, VertexLanes&);
     /// As the functions of EnvironmentLight for one direction, place or pair.
     void (*look_up_environment)(const EnvironmentTables&, const Vec3f* directions, size_t count,

@@ -166,15 +166,59 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
     return environment;
 }
 
+namespace {
+
+/// The key under one of two names.
+const char* choose_key(const JsonNode& node, const char* key, const char* open_pbr) {
+    const auto other = node.find(open_pbr);
+    if (other && node.find(key))
+        other->fail(fmt::format("means the same as '{}', which is there too", key),
+                    "leave one of the two out");
+    return other ? open_pbr : key;
+}
+
+void read_emission(const JsonNode& node, Vec3f& emission) {
+    choose_key(node, "emission", "emission_luminance");
+    choose_key(node, "emission", "emission_color");
+    read_vec3(node, "emission", emission, 0);
+    const auto color = node.find("emission_color");
+    const auto luminance = node.find("emission_luminance");
+    if (color && !luminance)
+        color->fail("is multiplied by emission_luminance, which is not there", "give both, or 'emission'");
+    if (!luminance) return;
+    Vec3f scale{1, 1, 1};
+    read_vec3(node, "emission_color", scale, 0, 1);
+    emission = scale * luminance->as_float(0);
+}
+
+void read_layers(const JsonNode& node, Material& material) {
+    for (const auto& [key, value] : {std::pair("base_weight", &material.base_weight),
+                                     std::pair("base_diffuse_roughness", &material.base_diffuse_roughness),
+                                     std::pair("specular_weight", &material.specular_weight),
+                                     std::pair("coat_weight", &material.coat_weight),
+                                     std::pair("coat_roughness", &material.coat_roughness),
+                                     std::pair("coat_darkening", &material.coat_darkening),
+                                     std::pair("fuzz_weight", &material.fuzz_weight),
+                                     std::pair("fuzz_roughness", &material.fuzz_roughness)})
+        read_float(node, key, *value, 0, 1);
+    read_vec3(node, "specular_color", material.specular_color, 0, 1);
+    read_vec3(node, "coat_color", material.coat_color, 0, 1);
+    read_vec3(node, "fuzz_color", material.fuzz_color, 0, 1);
+    read_float(node, "coat_ior", material.coat_ior, 1);
+}
+
+} // namespace
+
 Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets) {
     node.check_keys(scene_keys::kMaterial);
     Material material;
     material.name = name;
     read_vec3(node, "base_color", material.base_color, 0, 1);
-    read_float(node, "roughness", material.roughness, 0, 1);
-    read_float(node, "metallic", material.metallic, 0, 1);
-    read_float(node, "ior", material.ior, 1);
-    read_vec3(node, "emission", material.emission, 0);
+    read_float(node, choose_key(node, "roughness", "specular_roughness"), material.roughness, 0, 1);
+    read_float(node, choose_key(node, "metallic", "base_metalness"), material.metallic, 0, 1);
+    read_float(node, choose_key(node, "ior", "specular_ior"), material.ior, 1);
+    read_emission(node, material.emission);
+    read_layers(node, material);
     read_filtered_texture(node, "base_color_texture", TextureUse::colour, assets)
         .move_to(material.base_color_texture, material.base_color_filter);
     read_filtered_texture(node, "roughness_texture", TextureUse::data, assets)

@@ -26,6 +26,25 @@ Json write_camera(const Camera& camera) {
             {"focus_distance", to_json(camera.focus_distance)}};
 }
 
+void write_layers(const Material& material, Json& node) {
+    const Material plain;
+    const auto write = [&](const char* key, const auto Material::*member) {
+        if (!(material.*member == plain.*member)) node[key] = to_json(material.*member);
+    };
+    write("base_weight", &Material::base_weight);
+    write("base_diffuse_roughness", &Material::base_diffuse_roughness);
+    write("specular_weight", &Material::specular_weight);
+    write("specular_color", &Material::specular_color);
+    write("coat_weight", &Material::coat_weight);
+    write("coat_color", &Material::coat_color);
+    write("coat_roughness", &Material::coat_roughness);
+    write("coat_ior", &Material::coat_ior);
+    write("coat_darkening", &Material::coat_darkening);
+    write("fuzz_weight", &Material::fuzz_weight);
+    write("fuzz_color", &Material::fuzz_color);
+    write("fuzz_roughness", &Material::fuzz_roughness);
+}
+
 void write_environment(const Environment& environment, Json& node) {
     node["color"] = to_json(environment.color);
     node["strength"] = to_json(environment.strength);

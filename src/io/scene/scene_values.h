@@ -14,6 +14,9 @@ Json to_json(const Vec3f& v);
 Json write_picture(const PictureDefaults& picture);
 Json write_camera(const Camera& camera);
 Json write_light(const Light& light);
+/// What of base, coat and fuzz differs from a material that only has a base colour, roughness, metallic and
+/// ior.
+void write_layers(const Material& material, Json& node);
 /// All but its picture.
 void write_environment(const Environment& environment, Json& node);
 

@@ -157,6 +157,7 @@ class SceneWriter {
             node["metallic"] = to_json(material.metallic);
             node["ior"] = to_json(material.ior);
             node["emission"] = to_json(material.emission);
+            write_layers(material, node);
             if (material.base_color_texture)
                 node["base_color_texture"] =
                     add_texture(material.base_color_texture, material.base_color_filter,

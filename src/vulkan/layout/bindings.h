@@ -60,7 +60,7 @@ const uint kBindFloatTexels = 43u;  ///< rgba32f: maps and textures
 const uint kBindHalfTexels = 44u;   ///< rgba16f: maps and textures
 const uint kBindEnvironment = 45u;  ///< r32f: cumulative distributions
 const uint kBindEmitters = 46u;     ///< rg32ui: cumulative distribution of emissive patches
-const uint kBindAlbedos = 47u;      ///< rg32f: ggx_table.h; bound in every table
+const uint kBindAlbedos = 47u;      ///< rg32f: ggx_table.h, bound in every table; then layer_table.h
 const uint kTexelBindingCount = 16u;
 
 // Indirect launches, in the order of kBindArguments.
@@ -86,6 +86,8 @@ const uint kMaxPushBytes = 128u;
 // Specialization constant of kernels that read maps or textures: not 0 where any of the scene is smooth.
 // Without one such kernels are compiled without what only those need.
 const uint kSmoothConstant = 7u;
+// Likewise of kernels that scatter: not 0 where a material of the scene has layers.
+const uint kLayersConstant = 8u;
 
 #include "formulas/end.h"
 #endif

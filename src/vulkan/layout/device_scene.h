@@ -2,6 +2,8 @@
 // block layout, members of 4 bytes, identical in C++ and GLSL.
 #ifndef RELIEF_DEVICE_SCENE_H
 #define RELIEF_DEVICE_SCENE_H
+#include "formulas/layer_parameters.h"
+
 #include "formulas/begin.h"
 
 /// Affine map p -> (dot(x, p), dot(y, p), dot(z, p)) + t.
@@ -67,6 +69,8 @@ struct MaterialData {
     float metallic;
     float ior;
     uint color_texture, roughness_texture;
+    uint has_layers;
+    LayerParameters layers;
 };
 
 /// A tile of a patch above level 5: its tree index = number of all patches + its index among tile records.

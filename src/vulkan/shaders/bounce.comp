@@ -14,7 +14,7 @@ bool continue_path(uint path_index, HitData hit) {
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
     Scattering scattering = make_scattering(point, materials[instances[hit.instance].material], -ray.direction);
-    BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, pick.y, u);
+    BsdfSample drawn = sample_scattering(scattering, pick.y, u);
     vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
     if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return false;
     vec3 throughput = path.throughput * drawn.weight;

@@ -103,7 +103,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, Materi
     if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
-    BsdfValue bsdf = evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
+    BsdfValue bsdf = evaluate_scattering(scattering, wi);
     float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;

@@ -11,6 +11,7 @@
 #include "vulkan/shaders/ggx_table.glsl"
 #include "formulas/ggx_albedo.h"
 #include "formulas/bsdf.h"
+#include "formulas/layered_bsdf.h"
 #include "formulas/light.h"
 #include "formulas/environment.h"
 #include "formulas/path.h"
@@ -32,20 +33,41 @@ layout(scalar, set = 0, binding = kBindShadowList) buffer ShadowList { uint shad
 
 bool is_hit(HitData hit) { return hit.instance != kNone; }
 
-/// The BSDF for one outgoing direction, in a local frame.
+layout(constant_id = kLayersConstant) const uint kHasLayers = 0;
+
+/// The BSDF for one outgoing direction, in a local frame: one of the two.
 struct Scattering {
     Basis basis;
     vec3 wo_local;
+    bool has_layers; ///< false wherever kHasLayers is 0, which removes what needs them
     Bsdf bsdf;
+    LayeredBsdf layered;
 };
 
 Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 wo) {
     Scattering result;
     result.basis = make_basis(point.bent_normal);
     result.wo_local = lift_viewer(to_local(result.basis, wo));
+    result.has_layers = kHasLayers != 0u && material.has_layers != 0u;
+    if (result.has_layers) {
+        LayeredSurface surface = {point.base_color, point.roughness, material.layers};
+        result.layered = make_layered_bsdf(surface, kLayerTable, result.wo_local.z);
+        return result;
+    }
     BsdfParameters parameters = {point.base_color, point.roughness, material.metallic, material.ior};
     result.bsdf = make_bsdf(parameters, result.wo_local.z);
     return result;
+}
+
+BsdfValue evaluate_scattering(Scattering scattering, vec3 wi) {
+    if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, wi);
+    return evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
+}
+
+BsdfSample sample_scattering(Scattering scattering, float u_lobe, vec2 u) {
+    if (scattering.has_layers)
+        return sample_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, u_lobe, u);
+    return sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
 }
 
 #endif

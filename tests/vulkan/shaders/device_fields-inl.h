@@ -59,9 +59,15 @@ struct AllStructs {
     FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.is_smooth)
 #define FIELDS_TEXTURE(s) \
     FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
+#define FIELDS_LAYERS(s) \
+    FIELD3(s.specular_color) FIELD(s.specular_weight) FIELD(s.metallic) FIELD(s.dielectric_f0) \
+    FIELD(s.dielectric_f90) FIELD(s.diffuse_roughness) FIELD(s.coat_weight) FIELD(s.coat_roughness) \
+    FIELD(s.coat_f0) FIELD(s.coat_f90) FIELD(s.coat_inverse_ior2) FIELD3(s.coat_depth) FIELD(s.coat_darkening) \
+    FIELD(s.coat_inside) FIELD3(s.fuzz_color) FIELD(s.fuzz_weight) FIELD(s.fuzz_exponent) FIELD(s.fuzz_scale) \
+    FIELD(s.row_scale) FIELD(s.first_entry)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
-    FIELD(s.color_texture) FIELD(s.roughness_texture)
+    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \

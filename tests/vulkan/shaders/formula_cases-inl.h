@@ -38,6 +38,14 @@ struct ShadingResults {
     GgxAlbedo albedo;
 };
 
+struct LayerResults {
+    Vec3 value;
+    float pdf;
+    Vec3 direction, weight;
+    Vec3 diffuse;
+    float power, logarithm;
+};
+
 struct LightResults {
     float weight;
     Vec2 place;
@@ -75,6 +83,7 @@ struct FormulaOutput {
     ToneResults tone;
     SourceResults source;
     SurfaceResults surface;
+    LayerResults layers;
 };
 
 FN ExactResults run_exact(FormulaInput from) {
@@ -162,6 +171,50 @@ FN ShadingResults run_shading(FormulaInput from) {
     r.direction = s.direction;
     r.weight = s.weight;
     r.albedo = lookup_ggx_albedo(p.roughness, wo.z);
+    return r;
+}
+
+/// Of a material with all layers. The table of rests is one of numbers in [0, 1]: make_test_layers().
+FN LayerResults run_layers(FormulaInput from) {
+    LayeredSurface s;
+    s.base_color = make_triple(from.u[0], from.u[1], from.u[2]);
+    s.roughness = 0.3f + 0.7f * from.u[3];
+    LayerParameters l;
+    l.specular_color = make_triple(from.u[4], from.u[5], 1.0f);
+    l.specular_weight = from.u[6];
+    l.metallic = from.u[7];
+    l.dielectric_f0 = 0.1f * from.u[8];
+    l.dielectric_f90 = 1.0f;
+    l.diffuse_roughness = from.u[9];
+    l.coat_weight = from.u[10];
+    l.coat_roughness = 0.3f + 0.7f * from.u[11];
+    l.coat_f0 = 0.05f;
+    l.coat_f90 = 1.0f;
+    l.coat_inverse_ior2 = 0.4f;
+    l.coat_depth = make_triple(from.u[0], 2.0f * from.u[1], 3.0f * from.u[2]);
+    l.coat_darkening = from.u[3];
+    l.coat_inside = 0.6f;
+    l.fuzz_color = make_triple(from.u[4], from.u[6], from.u[8]);
+    l.fuzz_weight = from.u[5];
+    l.fuzz_exponent = 1.0f + 10.0f * from.u[7];
+    l.fuzz_scale = 0.9f;
+    l.row_scale = 3.0f;
+    l.first_entry = 32u;
+    s.layers = l;
+    Vec3 wo = square_to_cone(make_pair(from.u[6], from.u[7]), 0.95f);
+    Vec3 wi = square_to_cone(make_pair(from.u[8], from.u[9]), 0.95f);
+    LayeredBsdf b = make_layered_bsdf(s, make_test_layers(), wo.z);
+    BsdfValue v = evaluate_layered_bsdf(b, make_test_layers(), wo, wi);
+    BsdfSample drawn =
+        sample_layered_bsdf(b, make_test_layers(), wo, from.u[2], make_pair(from.u[10], from.u[11]));
+    LayerResults r;
+    r.value = v.value;
+    r.pdf = v.pdf;
+    r.direction = drawn.direction;
+    r.weight = drawn.weight;
+    r.diffuse = evaluate_eon(s.base_color, from.u[9], wo, wi);
+    r.power = find_power_of_two(20.0f * from.u[10] - 10.0f);
+    r.logarithm = find_logarithm(1e-6f + from.u[11]);
     return r;
 }
 

@@ -1,6 +1,8 @@
 // Runs every shared formula on the device.
 #extension GL_EXT_scalar_block_layout : require
 #include "all_formulas.glsl"
+/// Another table that is always bound.
+LayerTable make_test_layers() { return 0u; }
 #include "formula_cases-inl.h"
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kPart = 0u;
@@ -20,4 +22,5 @@ void main() {
     if (kPart == 5u) outputs[i].tone = run_tone(from);
     if (kPart == 6u) outputs[i].source = run_source(from);
     if (kPart == 7u) outputs[i].surface = run_surface(from);
+    if (kPart == 8u) outputs[i].layers = run_layers(from);
 }

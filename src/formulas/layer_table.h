@@ -1,0 +1,20 @@
+// The albedo table of layered materials: a block for each, filled by prepare/material_layers.h. Rows of
+// kLayerColumns entries, one a roughness; their averages; a row of the fuzz.
+#ifndef RELIEF_LAYER_TABLE_H
+#define RELIEF_LAYER_TABLE_H
+#include "formulas/begin.h"
+
+const uint kLayerColumnCount = 32u;
+const float kLayerColumns = 32.0f;
+
+#ifdef __cplusplus
+struct LayerTable {
+    const Vec2* entries;
+};
+
+/// Kernels read the same numbers from memory of their own (vulkan/shaders/ggx_table.glsl).
+FN Vec2 read_layer_entry(LayerTable table, uint i) { return table.entries[i]; }
+#endif
+
+#include "formulas/end.h"
+#endif
