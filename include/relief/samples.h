@@ -11,7 +11,7 @@ namespace relief {
 
 enum class Instancing { none, shared };
 
-/// Valid names for make_sample_scene: pumpkin, bark, barks, party, ear.
+/// Valid names for make_sample_scene: pumpkin, bark, barks, party, ear, materials.
 std::vector<std::string> sample_scene_names();
 
 /// Builds a sample scene in memory. Throws Error{usage} for an unknown name.

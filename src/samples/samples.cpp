@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "relief/error.h"
+#include "samples/materials.h"
 #include "samples/noise.h"
 #include "samples/party.h"
 #include "samples/stage.h"
@@ -86,11 +87,9 @@ Scene make_ear_scene(Instancing instancing, const ProgressFunction& on_progress)
 
 using Maker = Scene (*)(Instancing, const ProgressFunction&);
 
-constexpr std::pair<const char*, Maker> kScenes[] = {{"pumpkin", make_pumpkin_scene},
-                                                     {"bark", make_bark_scene},
-                                                     {"barks", make_barks_scene},
-                                                     {"party", make_party_scene},
-                                                     {"ear", make_ear_scene}};
+constexpr std::pair<const char*, Maker> kScenes[] = {
+    {"pumpkin", make_pumpkin_scene}, {"bark", make_bark_scene}, {"barks", make_barks_scene},
+    {"party", make_party_scene},     {"ear", make_ear_scene},   {"materials", make_materials_scene}};
 
 } // namespace
 

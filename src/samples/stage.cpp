@@ -53,6 +53,8 @@ void Stage::tint_last(uint32_t model, const std::string& name, const Vec3f& tint
     scene_.objects.back().material = add_material(material);
 }
 
+void Stage::paint_last(const Material& material) { scene_.objects.back().material = add_material(material); }
+
 void Stage::add_plain(Mesh mesh, const std::string& name, const Material& material,
                       const Affine& world_from_object) {
     const uint32_t index = add_mesh(std::move(mesh), name);

@@ -24,6 +24,9 @@ class Stage {
     /// The last object takes its model's material with colours multiplied by `tint`, in [0, 1].
     void tint_last(uint32_t model, const std::string& name, const Vec3f& tint);
 
+    /// The last object takes a material of its own.
+    void paint_last(const Material& material);
+
     /// A plain object with its mesh.
     void add_plain(Mesh mesh, const std::string& name, const Material& material,
                    const Affine& world_from_object);

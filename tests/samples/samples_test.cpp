@@ -91,8 +91,27 @@ TEST(SampleScenes, of_several_trunks_own_their_meshes_or_share_one) {
     EXPECT_EQ(shared.meshes.size(), 2u) << "the trunk and the ground";
 }
 
+TEST(SampleScenes, of_materials_show_twelve_of_them_on_one_displaced_body) {
+    const Scene scene = make_sample_scene("materials", Instancing::shared);
+    validate_scene(scene);
+    EXPECT_EQ(scene.displacements.size(), 1u);
+    std::set<uint32_t> materials;
+    bool has_coat = false, has_fuzz = false, has_metal = false;
+    for (const Object& object : scene.objects) {
+        if (object.displacement == kNoIndex) continue;
+        materials.insert(object.material);
+        const Material& material = scene.materials.at(object.material);
+        EXPECT_EQ(material.name, object.name);
+        has_coat |= material.coat_weight > 0, has_fuzz |= material.fuzz_weight > 0;
+        has_metal |= material.metallic == 1;
+    }
+    EXPECT_EQ(materials.size(), 12u);
+    EXPECT_TRUE(has_coat && has_fuzz && has_metal);
+}
+
 TEST(SampleScenes, names_are_known_and_others_refused) {
-    EXPECT_EQ(sample_scene_names(), (std::vector<std::string>{"pumpkin", "bark", "barks", "party", "ear"}));
+    EXPECT_EQ(sample_scene_names(),
+              (std::vector<std::string>{"pumpkin", "bark", "barks", "party", "ear", "materials"}));
     try {
         make_sample_scene("pumpkn", Instancing::none);
         FAIL() << "an unknown name must be refused";

@@ -124,7 +124,8 @@ TEST_P(Samples, answer_the_rays_of_other_programs_alike) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Samples,
                          testing::Values(Subject{"pumpkin"}, Subject{"ear"}, Subject{"bark"},
-                                         Subject{"barks"}, Subject{"barks", Instancing::shared}),
+                                         Subject{"barks"}, Subject{"barks", Instancing::shared},
+                                         Subject{"materials", Instancing::shared}),
                          [](const auto& info) {
                              const bool is_shared = info.param.instancing == Instancing::shared;
                              return std::string(info.param.scene) + (is_shared ? "_shared" : "");
