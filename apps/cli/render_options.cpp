@@ -249,8 +249,9 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
-                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits"})
+    for (const char* name :
+         {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate", "--type", "--frame",
+          "--lengths", "--encoding", "--wrap", "--png-bits", "--clamp-indirect"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 
