@@ -119,7 +119,7 @@ struct AllStructs {
     FIELD(s.camera.aperture_radius) FIELD(s.camera.focus_distance) FIELD(s.x0) FIELD(s.y0) FIELD(s.width) FIELD(s.height) \
     FIELD(s.first_pixel) FIELD(s.count) FIELD(s.sample_index) FIELD(s.seed)
 #define FIELDS_PATH_PUSH(s) \
-    FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.sample_index) \
+    FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.clamp_indirect) FIELD(s.sample_index) \
     FIELD(s.source_count) FIELD(s.emitter_count) FIELD(s.emitter_range_count) \
     FIELD(s.has_environment) FIELD(s.has_background) FIELD3(s.background) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
     FIELD(s.environment.cos_turn) FIELD(s.environment.cells_x) FIELD(s.environment.cells_y) \
