@@ -34,12 +34,11 @@ def main():
     common = ["render", scene, "--size", "320x240", "--progress", "none"]
     run(*common, "--spp", 8, "-o", folder / "noisy.exr")
     run(*common, "--spp", 8, "--denoise", "-o", folder / "clean.exr")
-    run(*common, "--spp", 128, "-o", folder / "longer.exr")
-    run(*common, "--spp", 2048, "--seed", 1, "-o", folder / "reference.exr")
+    run(*common, "--spp", 512, "--seed", 1, "-o", folder / "reference.exr")
     clean = difference(folder / "clean.exr", folder / "reference.exr")["rms"]
-    longer = difference(folder / "longer.exr", folder / "reference.exr")["rms"]
-    print(f"rms error: denoised at 8 samples {clean:.5f}, 128 samples {longer:.5f}")
-    assert clean < longer
+    noisy = difference(folder / "noisy.exr", folder / "reference.exr")["rms"]
+    print(f"rms error of 8 samples: {noisy:.5f}, denoised {clean:.5f}")
+    assert clean < 0.5 * noisy, "as much as four times the samples take away"
     # Parts are joined, then denoised.
     for part in ("0:4", "4:8"):
         run(*common, "--samples", part, "--layers", "albedo,N", "-o", folder / f"part{part[0]}.exr")
