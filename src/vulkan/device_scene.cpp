@@ -233,16 +233,16 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         data.surface = instance.surface;
         data.material = instance.material;
         data.root = arrays.surface_roots[instance.surface];
-        data.is_mirrored = instance.is_mirrored;
         data.visibility_mask = instance.visibility_mask;
-        data.first_level = kNone;
+        data.levels = 0;
         if (instance.levels->is_uniform()) {
             data.levels = surface.patch_count() > 0 ? instance.levels->packed_at(0) : 0;
         } else {
-            data.first_level = uint32_t(arrays.levels.size());
+            data.levels = uint32_t(arrays.levels.size()) | scalar::kManyLevels;
             for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
                 arrays.levels.push_back(instance.levels->packed_at(patch));
         }
+        if (instance.is_mirrored) data.levels |= scalar::kMirrored;
         if (surface.has_displacement) add_tree_levels(surface, *instance.levels);
         tables_.instances.push_back(data);
     }

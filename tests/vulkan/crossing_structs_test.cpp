@@ -25,7 +25,8 @@ namespace relief::scalar {
 namespace relief::vulkan::tests {
 namespace {
 
-static_assert(sizeof(scalar::InstanceData) == 35 * 4);
+static_assert(sizeof(scalar::InstanceData) == 33 * 4);
+static_assert(sizeof(scalar::InstanceData) * 1000000 <= 1 << 27, "one buffer holds a million instances");
 static_assert(sizeof(scalar::SurfaceData) == 14 * 4);
 static_assert(sizeof(scalar::MapData) == 18 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);

@@ -11,6 +11,10 @@ struct AffineData {
     Vec3 x, y, z, t;
 };
 
+/// Of InstanceData::levels. A million instances have to fit into a buffer of 128 MiB.
+const uint kManyLevels = 0x80000000u;
+const uint kMirrored = 0x40000000u; ///< winding reversed
+
 struct InstanceData {
     AffineData object_from_origin, world_from_object;
     Vec3 origin;   ///< what places are measured from first, world space: 0 but for objects that lie far away
@@ -18,9 +22,7 @@ struct InstanceData {
     uint surface;  ///< index into surfaces
     uint material; ///< index into materials
     uint root;     ///< node of the surface's tree; kNone: the surface is empty
-    uint first_level; ///< index into levels; kNone: all patches have `levels`
-    uint levels;      ///< packed
-    uint is_mirrored; ///< winding reversed
+    uint levels;   ///< packed ones of all patches, or kManyLevels and an index into levels; and kMirrored
     uint visibility_mask;
 };
 

@@ -80,8 +80,9 @@ uint load_mips(SurfaceData s, uint patch_index) {
 
 /// Packed levels of a patch of an instance, without LOD bias.
 uint find_levels(InstanceData instance, uint patch_index) {
-    if (instance.first_level == kNone) return instance.levels;
-    return texelFetch(field_levels, int(instance.first_level + patch_index)).x;
+    uint levels = instance.levels & ~(kManyLevels | kMirrored);
+    if ((instance.levels & kManyLevels) == 0u) return levels;
+    return texelFetch(field_levels, int(levels + patch_index)).x;
 }
 
 /// Texel (x, y); must lie inside the texture.

@@ -46,7 +46,7 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
     CellPoint point;
     point.triangle =
         make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
-                            transform_vector(m, corner[2] - corner[0]), instance.is_mirrored != 0u ? -1.0 : 1.0,
+                            transform_vector(m, corner[2] - corner[0]), (instance.levels & kMirrored) != 0u ? -1.0 : 1.0,
                             triangle_uv_area(is_triangle(corners.quad), side));
     point.position_error = bound_error(instance, corner[0], corner[1], corner[2], point.triangle.position);
     return point;

@@ -48,7 +48,7 @@ struct AllStructs {
     FIELD3(s.object_from_origin.x) FIELD3(s.object_from_origin.y) FIELD3(s.object_from_origin.z) \
     FIELD3(s.object_from_origin.t) FIELD3(s.origin) FIELD(s.reach) FIELD3(s.world_from_object.x) FIELD3(s.world_from_object.y) \
     FIELD3(s.world_from_object.z) FIELD3(s.world_from_object.t) FIELD(s.surface) FIELD(s.material) \
-    FIELD(s.root) FIELD(s.first_level) FIELD(s.levels) FIELD(s.is_mirrored) FIELD(s.visibility_mask)
+    FIELD(s.root) FIELD(s.levels) FIELD(s.visibility_mask)
 #define FIELDS_SURFACE(s) \
     FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
     FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
