@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "formulas/hemisphere.h"
 #include "formulas/layered_bsdf.h"
 #include "formulas/sobol.h"
 #include "formulas/statistics.h"
@@ -14,11 +15,6 @@ namespace relief {
 namespace {
 
 const float kCosines[] = {0.02f, 0.1f, 0.3f, 0.6f, 0.95f};
-
-Vec3f direction(float cosine, float phi) {
-    const float sine = std::sqrt(1 - cosine * cosine);
-    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
-}
 
 /// A material with its tables.
 class Layered {
@@ -149,42 +145,22 @@ TEST(LayeredBsdf, of_any_numbers_gains_no_energy_is_reciprocal_and_has_a_density
     EXPECT_GT(most, 0.98); // white enough that a gain would show
 }
 
-/// Sum of squared differences of counts and densities over cells of the hemisphere, in variances.
-double measure_chi2(const Layered& layered, const Vec3f& wo, int rows, int columns) {
-    constexpr int fine = 8, samples = 200000;
-    const scalar::LayeredBsdf bsdf = layered.make(wo.z);
-    std::vector<double> counts(size_t(rows * columns));
-    Random random(6);
-    for (int k = 0; k < samples; ++k) {
-        const float lobe = random.next();
-        const Vec3f d = layered.sample(bsdf, wo, lobe, random.next_pair()).direction;
-        if (d.z <= 0) continue;
-        double phi = std::atan2(double(d.y), double(d.x)) / (2 * std::numbers::pi);
-        phi -= std::floor(phi);
-        counts[size_t(std::min(rows - 1, int(d.z * float(rows))) * columns +
-                      std::min(columns - 1, int(phi * columns)))] += 1;
-    }
-    double chi2 = 0;
-    for (int cell = 0; cell < rows * columns; ++cell) {
-        double integral = 0;
-        for (int k = 0; k < fine * fine; ++k) {
-            const float z = float((cell / columns + (k / fine + 0.5) / fine) / rows);
-            const double phi = 2 * std::numbers::pi * (cell % columns + (k % fine + 0.5) / fine) / columns;
-            integral += double(layered.evaluate(wo, direction(z, float(phi))).pdf);
-        }
-        integral *= samples * 2 * std::numbers::pi / (rows * columns * fine * fine);
-        const double difference = counts[size_t(cell)] - integral;
-        if (integral > 5) chi2 += difference * difference / integral;
-    }
-    return chi2;
-}
-
 TEST(LayeredBsdf, draws_directions_of_each_lobe_as_its_density_says) {
     const std::vector<Material> lobes = make_lobes();
-    for (size_t k = 0; k < lobes.size(); ++k)
-        EXPECT_LT(measure_chi2(Layered(lobes[k]), direction(0.5f, 0.7f), 12, 20),
-                  chi_square_limit(12 * 20 - 1))
+    const Vec3f wo = direction(0.5f, 0.7f);
+    const HemisphereCells cells;
+    for (size_t k = 0; k < lobes.size(); ++k) {
+        const Layered layered(lobes[k]);
+        const scalar::LayeredBsdf bsdf = layered.make(wo.z);
+        Random random(6);
+        const auto draw = [&] {
+            const float lobe = random.next();
+            return layered.sample(bsdf, wo, lobe, random.next_pair()).direction;
+        };
+        const auto get_density = [&](const Vec3f& wi) { return layered.evaluate(wo, wi).pdf; };
+        EXPECT_LT(measure_chi2(cells, draw, get_density), chi_square_limit(cells.count() - 1))
             << "lobe " << k;
+    }
 }
 
 TEST(LayeredBsdf, agrees_with_its_integral_by_quadrature) {

@@ -5,6 +5,7 @@
 #include "formulas/bsdf.h"
 #include "formulas/ggx_albedo.h"
 #include "formulas/sobol.h"
+#include "hemisphere.h"
 #include "statistics.h"
 
 namespace relief {
@@ -18,11 +19,6 @@ const float kCosines[] = {0.02f, 0.1f, 0.3f, 0.6f, 0.95f};
 
 /// What the table's spacing costs: more at the horizon, where narrow lobes change fast.
 double tolerance(float cosine) { return cosine < 0.05f ? 0.02 : 0.01; }
-
-Vec3f direction(float cosine, float phi) {
-    const float sine = std::sqrt(1 - cosine * cosine);
-    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
-}
 
 /// Mean of the sample weights: the directional albedo, from a stratified set.
 Vec3f estimate_albedo(const BsdfParameters& parameters, float cosine) {
@@ -110,36 +106,19 @@ TEST(Bsdf, has_a_density_that_sums_up_to_the_directions_above_the_surface) {
 }
 
 TEST(Bsdf, draws_directions_as_its_density_says) {
-    constexpr int rows = 12, columns = 20, fine = 12, samples = 200000;
+    const HemisphereCells cells{.fine = 12};
     for (float roughness : {0.4f, 0.8f})
         for (float metallic : {0.0f, 1.0f}) {
             const Vec3f wo = direction(0.5f, 0.7f);
             const Bsdf bsdf = scalar::make_bsdf({{0.6f, 0.6f, 0.6f}, roughness, metallic, 1.5f}, wo.z);
-            std::vector<double> counts(rows * columns), expected(rows * columns);
             Random random(6);
-            for (int k = 0; k < samples; ++k) {
+            const auto draw = [&] {
                 const float lobe = random.next();
-                const Vec3f d = scalar::sample_bsdf(bsdf, wo, lobe, random.next_pair()).direction;
-                if (d.z <= 0) continue;
-                double phi = std::atan2(d.y, d.x) / (2 * std::numbers::pi);
-                phi -= std::floor(phi);
-                counts[size_t(std::min(rows - 1, int(d.z * rows)) * columns +
-                              std::min(columns - 1, int(phi * columns)))] += 1;
-            }
-            double chi2 = 0;
-            for (int cell = 0; cell < rows * columns; ++cell) {
-                double integral = 0;
-                for (int k = 0; k < fine * fine; ++k) {
-                    const float z = float((cell / columns + (k / fine + 0.5) / fine) / rows);
-                    const double phi =
-                        2 * std::numbers::pi * (cell % columns + (k % fine + 0.5) / fine) / columns;
-                    integral += scalar::evaluate_bsdf(bsdf, wo, direction(z, float(phi))).pdf;
-                }
-                integral *= samples * 2 * std::numbers::pi / (rows * columns * fine * fine);
-                const double difference = counts[size_t(cell)] - integral;
-                if (integral > 5) chi2 += difference * difference / integral;
-            }
-            EXPECT_LT(chi2, chi_square_limit(rows * columns - 1)) << roughness << ' ' << metallic;
+                return scalar::sample_bsdf(bsdf, wo, lobe, random.next_pair()).direction;
+            };
+            const auto get_density = [&](const Vec3f& wi) { return scalar::evaluate_bsdf(bsdf, wo, wi).pdf; };
+            EXPECT_LT(measure_chi2(cells, draw, get_density), chi_square_limit(cells.count() - 1))
+                << roughness << ' ' << metallic;
         }
 }
 
