@@ -105,6 +105,13 @@ void read_background(const std::string& text, DisplaySettings& settings) {
         Vec3f{float(rgb >> 16 & 255), float(rgb >> 8 & 255), float(rgb & 255)} * (1.0f / 255);
 }
 
+/// Made once, which takes half a second, and never destroyed: its library may be gone by then.
+std::shared_ptr<const ColourTransform> get_aces_display() {
+    static const auto* const transform =
+        new std::shared_ptr<const ColourTransform>(get_picture_library("ACES").make_aces_display());
+    return *transform;
+}
+
 } // namespace
 
 DisplaySettings read_display_settings(const Image& image) {
@@ -114,8 +121,7 @@ DisplaySettings read_display_settings(const Image& image) {
         if (found != std::end(kDisplayTransforms))
             settings.transform = DisplayTransform(found - std::begin(kDisplayTransforms));
     }
-    if (settings.transform == DisplayTransform::aces)
-        settings.aces = get_picture_library("ACES").make_aces_display();
+    if (settings.transform == DisplayTransform::aces) settings.aces = get_aces_display();
     settings.factor = std::exp2(read_exposure(image));
     if (find_entry(image, "relief:png_bits") == "16") settings.bits = 16;
     if (const auto background = find_entry(image, "relief:background"))
