@@ -138,8 +138,10 @@ int convert_map_file(const ConvertOptions& options) {
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement converted = convert_map(from, make_target(options, from, mesh_or_null, samples),
                                                mesh_or_null, &warnings, progress.part(kRead, kConverted));
+    if (!warnings.empty()) progress.end_line();
     print_warnings(options, warnings);
     write_map(converted, options.output, samples, progress.part(kConverted, 1));
+    progress.end_line();
     fmt::print("wrote {}: {}\n", options.output, describe(converted));
     return kExitDone;
 }
@@ -170,6 +172,7 @@ int convert_surface(const ConvertOptions& options) {
         const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()});
         progress.tell(kRead);
         write_mesh(mesh, options.output, progress.part(kRead, 1));
+        progress.end_line();
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }
@@ -179,10 +182,12 @@ int convert_surface(const ConvertOptions& options) {
     const Scene scene = load_surface(options);
     progress.tell(kRead);
     keep_files(list_files(scene), options.output);
+    if (!scene.warnings.empty()) progress.end_line();
     print_warnings(options, scene.warnings);
     const Mesh mesh =
         make_displaced_mesh(scene, options.level.value_or(kUsualLevel), progress.part(kRead, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));
+    progress.end_line();
     fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
                mesh.face_sizes.size());
     return kExitDone;

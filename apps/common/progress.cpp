@@ -96,8 +96,11 @@ ProgressPrinter::ProgressPrinter(const ProgressOptions& options)
         style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
 }
 
-ProgressPrinter::~ProgressPrinter() {
+ProgressPrinter::~ProgressPrinter() { end_line(); }
+
+void ProgressPrinter::end_line() {
     if (has_bar_) fmt::print(stderr, "\n");
+    has_bar_ = false;
 }
 
 void ProgressPrinter::print(const Progress& progress, const std::string& step) {

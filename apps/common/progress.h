@@ -41,6 +41,9 @@ class ProgressPrinter {
     /// A fraction below 0 is not known. A new step has its line at once.
     void print(const Progress& progress, const std::string& step = {});
 
+    /// Before other output: what follows begins below the bar.
+    void end_line();
+
   private:
     void print_bar(const Progress& progress, const std::string& step);
 
@@ -62,6 +65,7 @@ class WorkProgress {
     void tell(double fraction);
     /// The next step of work whose end is not known.
     void begin_step(const std::string& step);
+    void end_line() { printer_.end_line(); }
 
   private:
     void print(double fraction, const std::string& step);
