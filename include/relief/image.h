@@ -33,6 +33,9 @@ struct Image {
     float at(int x, int y, size_t channel) const;
 };
 
+/// Entry of the header of every rendered picture: which samples it holds, "A:B".
+inline constexpr const char* kRenderedTag = "relief:samples";
+
 /// Texels as stored in the file, never colour converted: four interleaved channels (missing ones are 0, a
 /// missing fourth is 1; `channel_count` is the number in the file), row 0 at the top. Exactly one of `floats`
 /// and `halves` is filled.
@@ -43,7 +46,9 @@ struct Texture {
     std::vector<float> floats;    ///< 4 * width * height, or empty; integers are scaled to [0, 1]
     std::vector<uint16_t> halves; ///< 4 * width * height IEEE 754 binary16 bits, or empty
     std::string file;             ///< for messages
-    std::string colour_tag; ///< what in the file marks the values as colours ("sRGB chunk"); empty: nothing
+    /// What in the file marks the values as colours ("sRGB chunk"), kRenderedTag: as a picture of Relief's
+    /// own; empty: nothing.
+    std::string colour_tag;
     /// Bytes of texel data.
     size_t byte_count() const { return floats.size() * sizeof(float) + halves.size() * sizeof(uint16_t); }
 };

@@ -277,7 +277,7 @@ Image merge_images(std::span<const Image> images) {
         first = std::min(first, parts.back().first), last = std::max(last, parts.back().last);
     }
     Image result = make_empty_union(images);
-    result.metadata[kSamplesKey] = fmt::format("{}:{}", first, last);
+    result.metadata[kRenderedTag] = fmt::format("{}:{}", first, last);
     for (const Image& image : images)
         if (image.metadata.contains(kInterruptedKey)) result.metadata[kInterruptedKey] = "yes";
     const ChannelRules rules(result);

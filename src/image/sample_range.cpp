@@ -11,7 +11,7 @@
 namespace relief {
 
 std::pair<int, int> read_sample_range(const Image& image, size_t part) {
-    const auto found = image.metadata.find(kSamplesKey);
+    const auto found = image.metadata.find(kRenderedTag);
     const std::string range = found == image.metadata.end() ? std::string() : found->second;
     const char* const end = range.data() + range.size();
     std::pair<int, int> result;
@@ -22,7 +22,7 @@ std::pair<int, int> read_sample_range(const Image& image, size_t part) {
             return result;
     }
     throw Error(ErrorKind::bad_input,
-                {fmt::format("no sample range \"A:B\" in the header entry {}", kSamplesKey),
+                {fmt::format("no sample range \"A:B\" in the header entry {}", kRenderedTag),
                  fmt::format("part {}", part + 1), "merge joins EXR files written by relief render"});
 }
 

@@ -8,8 +8,6 @@
 
 namespace relief {
 
-inline constexpr const char* kSamplesKey = "relief:samples"; ///< entry of the header, "A:B"
-
 /// [first, last) of the header; throws Error{bad_input} without one. `part`: number, from 0, for messages.
 std::pair<int, int> read_sample_range(const Image& image, size_t part);
 

@@ -81,7 +81,11 @@ void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSt
                     "values are in [{:.4g}, {:.4g}]; say midlevel and scale, or export float",
                     find_low(statistics), find_high(statistics));
     find_unsigned(map, meaning, statistics, findings);
-    if (!statistics.colour_tag.empty())
+    if (statistics.colour_tag == kRenderedTag)
+        add_warning(findings, "W-PICTURE",
+                    "a picture that Relief rendered, not a map: it is seen by oiiotool "
+                    "or a viewer of EXR, and compared by relief compare");
+    else if (!statistics.colour_tag.empty())
         add_warning(findings, "W-SRGB",
                     "the file calls its values colours ({}); they are read raw, but the program that wrote "
                     "it may have converted them: export as data (Non-Color, Raw, linear)",

@@ -73,6 +73,16 @@ TEST_F(Inspect, a_map_is_read_as_the_options_say) {
     }
 }
 
+TEST_F(Inspect, a_rendered_picture_is_no_map) {
+    ASSERT_EQ(render_bump("picture.exr", {}).exit_code, 0);
+    EXPECT_TRUE(contains(run({"inspect", "picture.exr"}).output, "W-PICTURE"));
+    EXPECT_FALSE(contains(run({"inspect", "bump.exr"}).output, "W-PICTURE"));
+    const CommandResult displaced =
+        run({"render", "plane.obj", "--vdm", "picture.exr", "--strict", "-o", "b.exr"});
+    EXPECT_EQ(displaced.exit_code, 6);
+    EXPECT_TRUE(contains(displaced.errors, "a picture that Relief rendered")) << displaced.errors;
+}
+
 TEST_F(Inspect, a_map_that_no_render_takes_is_inspected) {
     write_bump("nan.exr", [](Image& image) { image.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN(); });
     const CommandResult result = run({"inspect", "nan.exr"});

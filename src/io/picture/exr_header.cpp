@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "relief/image.h"
+
 namespace relief {
 
 namespace {
@@ -150,6 +152,7 @@ std::string find_exr_colour_tag(std::istream& stream) {
     if (!read_start(stream)) return {};
     while (const std::optional<Attribute> attribute = read_attribute(stream)) {
         if (attribute->name == "chromaticities") return "attribute chromaticities";
+        if (attribute->name == kRenderedTag) return kRenderedTag;
         stream.seekg(std::streamoff(attribute->bytes), std::ios::cur);
     }
     return {};

@@ -15,7 +15,8 @@ namespace relief {
 /// when all fit or it is no EXR. `stream_bytes`: its whole length; the position moves.
 std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
 
-/// What the header of an EXR stream says of colours: "attribute chromaticities"; empty: nothing, or no EXR.
+/// What the header of an EXR stream says of colours: "attribute chromaticities", kRenderedTag for a picture
+/// that Relief rendered; empty: nothing, or no EXR.
 std::string find_exr_colour_tag(std::istream& stream);
 
 } // namespace relief
