@@ -55,7 +55,7 @@ const char* method_name(RenderMethod method) {
 }
 
 /// One variant of rendering a scene, its frames, and the first and last picture.
-struct Way {
+struct Variant {
     RenderSettings settings;
     std::vector<Statistics> runs;
     std::optional<Image> first, last;
@@ -64,20 +64,20 @@ struct Way {
     bool is_measured() const { return refusal.empty() && first; }
 };
 
-std::vector<Way> list_ways(const RenderSettings& base) {
+std::vector<Variant> list_variants(const RenderSettings& base) {
     std::vector<RenderMethod> methods = {RenderMethod::compute};
     if (base.device.engine == EngineKind::vulkan)
         methods = {RenderMethod::compute, RenderMethod::fragment, RenderMethod::hybrid};
-    std::vector<Way> ways;
+    std::vector<Variant> variants;
     for (const Pair& pair : kPairs)
         for (const RenderMethod method : methods) {
-            Way way{base, {}, {}, {}, {}};
-            way.settings.experiment.structure = pair.structure,
-            way.settings.experiment.traversal = pair.traversal;
-            way.settings.experiment.method = method;
-            ways.push_back(std::move(way));
+            Variant variant{base, {}, {}, {}, {}};
+            variant.settings.experiment.structure = pair.structure,
+            variant.settings.experiment.traversal = pair.traversal;
+            variant.settings.experiment.method = method;
+            variants.push_back(std::move(variant));
         }
-    return ways;
+    return variants;
 }
 
 std::string describe(const RenderSettings& s) {
@@ -86,48 +86,48 @@ std::string describe(const RenderSettings& s) {
 }
 
 /// Negative runs are warm-up.
-void render_way(const Scene& scene, Way& way, int run) {
-    if (!way.refusal.empty()) return;
+void render_variant(const Scene& scene, Variant& variant, int run) {
+    if (!variant.refusal.empty()) return;
     try {
-        RenderResult result = render(scene, way.settings);
-        if (run >= 0) way.runs.push_back(std::move(result.statistics));
-        if (!way.first) way.first = result.image;
-        way.last = std::move(result.image);
+        RenderResult result = render(scene, variant.settings);
+        if (run >= 0) variant.runs.push_back(std::move(result.statistics));
+        if (!variant.first) variant.first = result.image;
+        variant.last = std::move(result.image);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::out_of_memory) throw;
-        way.refusal = error.what();
-        way.runs.clear();
+        variant.refusal = error.what();
+        variant.runs.clear();
     }
 }
 
 /// Reference for all others: the first measured one, or null.
-const Way* find_reference(const std::vector<Way>& ways) {
-    const auto found =
-        std::find_if(ways.begin(), ways.end(), [](const Way& way) { return way.is_measured(); });
-    return found == ways.end() ? nullptr : &*found;
+const Variant* find_reference(const std::vector<Variant>& variants) {
+    const auto found = std::find_if(variants.begin(), variants.end(),
+                                    [](const Variant& variant) { return variant.is_measured(); });
+    return found == variants.end() ? nullptr : &*found;
 }
 
 /// For either picture.
-uint64_t count_different_pixels(const Way& way, const Way& reference) {
+uint64_t count_different_pixels(const Variant& variant, const Variant& reference) {
     const auto count = [&](const Image& picture) {
         return uint64_t(compare_images(picture, *reference.first, "", 0).over_threshold);
     };
-    return std::max(count(*way.first), count(*way.last));
+    return std::max(count(*variant.first), count(*variant.last));
 }
 
-Value describe_way(const Way& way, const Way* reference) {
-    Value entry = {{"structure", structure_name(way.settings.experiment.structure)},
-                   {"traversal", traversal_name(way.settings.experiment.traversal)},
-                   {"method", method_name(way.settings.experiment.method)},
-                   {"outcome", way.refusal.empty() ? "measured" : "refused"}};
-    if (!way.refusal.empty()) {
-        entry["reason"] = way.refusal;
+Value describe_variant(const Variant& variant, const Variant* reference) {
+    Value entry = {{"structure", structure_name(variant.settings.experiment.structure)},
+                   {"traversal", traversal_name(variant.settings.experiment.traversal)},
+                   {"method", method_name(variant.settings.experiment.method)},
+                   {"outcome", variant.refusal.empty() ? "measured" : "refused"}};
+    if (!variant.refusal.empty()) {
+        entry["reason"] = variant.refusal;
         return entry;
     }
-    entry.update(describe_frames(way.runs));
-    entry["camera_rays"] = way.runs.back().camera_rays;
-    entry["shadow_rays"] = way.runs.back().shadow_rays;
-    entry["pixels_that_differ"] = count_different_pixels(way, *reference);
+    entry.update(describe_frames(variant.runs));
+    entry["camera_rays"] = variant.runs.back().camera_rays;
+    entry["shadow_rays"] = variant.runs.back().shadow_rays;
+    entry["pixels_that_differ"] = count_different_pixels(variant, *reference);
     return entry;
 }
 
@@ -137,9 +137,9 @@ Value make_goals(const Value& result) {
     for (const Value& scene : result["scenes"]) {
         double different = 0;
         int compared = 0;
-        for (const Value& way : scene["ways"]) {
-            if (!way.contains("pixels_that_differ")) continue;
-            different = std::max(different, way["pixels_that_differ"].get<double>());
+        for (const Value& variant : scene["ways"]) {
+            if (!variant.contains("pixels_that_differ")) continue;
+            different = std::max(different, variant["pixels_that_differ"].get<double>());
             ++compared;
         }
         goals.push_back({{"name", fmt::format("{}, pixels that differ between any two of {} ways",
@@ -204,19 +204,20 @@ class Paper3 {
         RenderSettings base = options_.settings;
         base.image.spp = 1, base.image.bounces = 0;
         base.experiment.sah_costs = SahCosts{}; // as in the paper
-        std::vector<Way> ways = list_ways(base);
+        std::vector<Variant> variants = list_variants(base);
         for (int run = -options_.warm_up_runs; run < options_.runs; ++run)
-            for (Way& way : ways) {
-                report_(fmt::format("{}: {}, {}", name, describe(way.settings),
+            for (Variant& variant : variants) {
+                report_(fmt::format("{}: {}, {}", name, describe(variant.settings),
                                     run < 0 ? std::string("warm-up") : fmt::format("run {}", run + 1)));
-                render_way(scene, way, run);
+                render_variant(scene, variant, run);
             }
         Value entry = {{"scene", name}, {"ways", Value::list()}};
-        for (const Way& way : ways) {
-            entry["ways"].push_back(describe_way(way, find_reference(ways)));
-            if (way.runs.empty()) continue;
-            entry["patches"] = way.runs.back().patches, entry["triangles"] = way.runs.back().triangles;
-            if (!result_.contains("device")) result_["device"] = describe_device(way.runs.back());
+        for (const Variant& variant : variants) {
+            entry["ways"].push_back(describe_variant(variant, find_reference(variants)));
+            if (variant.runs.empty()) continue;
+            entry["patches"] = variant.runs.back().patches,
+            entry["triangles"] = variant.runs.back().triangles;
+            if (!result_.contains("device")) result_["device"] = describe_device(variant.runs.back());
         }
         result_["scenes"].push_back(std::move(entry));
     }

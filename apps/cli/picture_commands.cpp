@@ -144,7 +144,7 @@ Command add_merge(CLI::App& verb) {
         ->type_name("PARTS");
     verb.add_option("-o", options->output, "the joined picture")->type_name("FILE");
     verb.add_flag("--allow-gaps", options->allows_gaps,
-                  "join parts of a picture that lack pixels or samples of it, which is refused else");
+                  "join parts of a picture that lack pixels or samples of it, otherwise refused");
     verb.add_flag("--denoise", options->is_denoised,
                   "denoise the joined picture, by Open Image Denoise 2: parts need the layers albedo and N");
     return [options] { return run_merge(*options); };

@@ -88,7 +88,7 @@ int get_exit_code(const RenderResult& result, const Saved& saved) {
 }
 
 /// Start of the wait for a picture, and the time spent reading.
-struct Waiting {
+struct PendingTimes {
     double start, load_s;
 };
 
@@ -111,10 +111,10 @@ int denoise_picture(const RenderOptions& options, RenderResult& result) {
     return exit_code;
 }
 
-/// `told`: warnings printed before the render.
+/// `printed_warnings`: how many of the warnings were printed before the render.
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
-                   const std::filesystem::path& output, const Waiting& waiting, RenderResult& result,
-                   size_t told) {
+                   const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
+                   size_t printed_warnings) {
     Statistics& statistics = result.statistics;
     if (result.whole_samples == 0) {
         fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
@@ -130,8 +130,9 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
     if (!options.progress.is_quiet)
-        print_warnings(std::span(statistics.warnings).subspan(std::min(told, statistics.warnings.size())),
-                       true);
+        print_warnings(
+            std::span(statistics.warnings).subspan(std::min(printed_warnings, statistics.warnings.size())),
+            true);
     if (options.is_verbose) print_summary(result, settings);
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // the sender of edits waits for it
@@ -142,26 +143,26 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
 }
 
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                   const std::filesystem::path& output, const Waiting& waiting) {
+                   const std::filesystem::path& output, const PendingTimes& waiting) {
     catch_interrupts();
     RenderResult result;
-    size_t told = 0;
+    size_t printed_warnings = 0;
     FilmKeeper keeper(options.checkpoint, output);
     {
-        RenderWatcher watcher(options, told); // its end prints the last line
+        RenderWatcher watcher(options, printed_warnings); // its end prints the last line
         result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
     if (!options.checkpoint.resumed.empty() && result.is_complete && result.statistics.camera_rays == 0)
         fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
                    result.whole_samples, settings.image.spp);
-    const int exit_code = finish_picture(options, settings, output, waiting, result, told);
+    const int exit_code = finish_picture(options, settings, output, waiting, result, printed_warnings);
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }
 
 /// The pictures of a turntable, one after the other.
 int render_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
-                 Waiting waiting) {
+                 PendingTimes waiting) {
     const std::vector<std::string> files = list_files(scene);
     for (int k = 0; k < options.aim.turntable; ++k) keep_files(files, name_turn(options.output, k));
     int exit_code = kExitDone;
@@ -209,7 +210,8 @@ void check_edits(const std::string& path, const std::string& only_displacement, 
 }
 
 /// The first picture, then one after each edit with an output.
-int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene, Waiting waiting) {
+int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene,
+                 PendingTimes waiting) {
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
     std::vector<std::string> files = list_files(scene);
@@ -218,17 +220,17 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
         scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
                      options.edits == "-" ? "standard input" : options.edits, only_displacement);
-    size_t told = 0; // warnings
+    size_t printed_warnings = 0;
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
         RenderResult result;
         {
-            RenderWatcher watcher(options, told);
+            RenderWatcher watcher(options, printed_warnings);
             result = session.render(&watcher);
             if (watcher.is_refused()) return kExitWarnings;
         }
-        return finish_picture(options, settings, output, waiting, result, told);
+        return finish_picture(options, settings, output, waiting, result, printed_warnings);
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet
@@ -263,7 +265,7 @@ int render_input(const RenderOptions& options, double start) {
     apply_background(options.aim, options.output, settings.image);
     aim_scene(scene, options.aim.scene, float(settings.image.width) / float(settings.image.height));
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
-    const Waiting waiting{start, load_s};
+    const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
     if (options.aim.turntable > 0) return render_turns(options, settings, scene, waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);

@@ -64,7 +64,7 @@ enum class ErrorEstimate { off, on };
 /// order. Different pixels may be fed at the same time.
 class Film {
   public:
-    /// `layers`: names of design order, "depth", "N", ...; throws Error{usage} for an unknown one,
+    /// `layers`: names of the table of layers, "depth", "N", ...; throws Error{usage} for an unknown one,
     /// Error{out_of_memory} when the sums and the resolved image do not fit into the memory that is free.
     Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers,
          ErrorEstimate error = ErrorEstimate::off);
@@ -124,7 +124,7 @@ class Film {
 
     void write_layer(size_t pixel, const Layer& layer, float* target) const;
 
-    std::vector<Layer> layers_;            ///< requested or needed, in design order
+    std::vector<Layer> layers_;            ///< requested or needed, in the order of that table
     std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel

@@ -16,7 +16,7 @@ struct BsdfParameters {
     Vec3 base_color; ///< reflectance of the diffuse base; of the metal at normal incidence
     Float roughness; ///< [0, 1]; alpha is its square, at least kMinAlpha
     Float metallic;  ///< [0, 1]
-    Float ior;       ///< of the dielectric coat, >= 1; 1: no coat
+    Float ior;       ///< of the clear surface, >= 1; 1: none
 };
 
 /// Evaluated for one outgoing direction.

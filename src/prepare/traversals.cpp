@@ -1,6 +1,8 @@
 // Which traversals go with which structure and engine, and their names.
 #include "prepare/traversals.h"
 
+#include <iterator>
+
 namespace relief {
 
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure) {
@@ -34,6 +36,7 @@ const char* traversal_name(TraversalKind traversal) {
     constexpr const char* kNames[] = {"auto",        "wide",      "stack",    "restart-trail",
                                       "parent-link", "skip-link", "trail",    "pair-trail",
                                       "restart",     "push-down", "backtrack"};
+    static_assert(std::size(kNames) == size_t(TraversalKind::backtrack) + 1);
     return kNames[size_t(traversal)];
 }
 

@@ -52,7 +52,7 @@ float value(const Image& image, int x, int y, const char* channel) {
     return image.at(x, y, image.find_channel(channel).value());
 }
 
-TEST(Film, names_its_channels_in_the_order_of_the_design) {
+TEST(Film, names_its_channels_in_the_order_of_its_table) {
     const Film film(4, 4, {}, {"cost", "depth", "id", "uv"});
     const std::vector<std::string> expected{"R", "G", "B", "A", "depth.Z", "uv.X", "uv.Y", "id.I", "cost.Y"};
     EXPECT_EQ(film.resolve().channels, expected);

@@ -1,4 +1,5 @@
-// docs/scene.schema.json and the reader agree: the same keys in every section, the same names and limits.
+// docs/scene.schema.json and the reader agree: the same keys in every section, the same names, and the limits
+// of `render`.
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -60,10 +61,12 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/environment", scene_keys::kEnvironment);
     expect_keys("/properties/materials/additionalProperties", scene_keys::kMaterial);
     expect_keys("/properties/displacements/additionalProperties", scene_keys::kDisplacement);
+    expect_keys("/properties/materials/additionalProperties/properties/base_color_texture/oneOf/1",
+                scene_keys::kColourTexture);
     for (const char* texture :
-         {"/properties/materials/additionalProperties/properties/base_color_texture/oneOf/1",
-          "/properties/materials/additionalProperties/properties/roughness_texture/oneOf/1"})
-        expect_keys(texture, scene_keys::kTexture);
+         {"/properties/materials/additionalProperties/properties/roughness_texture/oneOf/1",
+          "/properties/materials/additionalProperties/properties/metallic_texture/oneOf/1"})
+        expect_keys(texture, scene_keys::kDataTexture);
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
     expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
     expect_keys("/properties/objects/items", scene_keys::kObject);
@@ -75,7 +78,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 16u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 17u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

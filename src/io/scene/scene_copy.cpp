@@ -23,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kComments
      {"camera",
       "Position, target and up axis in scene units; vertical angle; radius and distance for depth of field."},
      {"environment", "A latitude-longitude picture or a colour; strength is a factor on its radiance."},
-     {"materials", "base_color is linear, 0 to 1; roughness and metallic 0 to 1; ior 1 has no coat."},
+     {"materials", "base_color is linear, 0 to 1; roughness and metallic 0 to 1; ior 1: no clear surface."},
      {"displacements", "(value - midlevel) * scale, channel by channel, along the axes in this order."},
      {"meshes", "Paths are relative to this file."},
      {"objects", "A mesh with its displacement, material and transform."},
