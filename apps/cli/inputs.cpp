@@ -16,7 +16,7 @@ std::vector<std::string> list_files(const Scene& scene) {
     for (const Displacement& displacement : scene.displacements)
         for (const auto& tile : displacement.tiles) add(tile.texture);
     for (const Material& material : scene.materials)
-        add(material.base_color_texture), add(material.roughness_texture);
+        visit_textures(material, [&](const char*, const auto& texture, MapFilter) { add(texture); });
     if (scene.environment) add(scene.environment->texture);
     return files;
 }

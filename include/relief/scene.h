@@ -138,24 +138,33 @@ struct Material {
     Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
     float roughness = 0.5f;                            ///< [0, 1]; GGX alpha is its square
     float metallic = 0.0f;                             ///< [0, 1]
-    float ior = 1.5f;                                  ///< of the dielectric coat, >= 1; 1 removes it
+    float ior = 1.5f;                                  ///< of the clear surface, >= 1; 1 removes it
     Vec3f emission{0, 0, 0};                           ///< radiance, >= 0
     std::shared_ptr<const Texture> base_color_texture; ///< linear values (the reader decodes sRGB)
     std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
-    MapFilter base_color_filter = MapFilter::none, roughness_filter = MapFilter::none; ///< not mip
-    float base_weight = 1;            ///< [0, 1], times base_color
-    float base_diffuse_roughness = 0; ///< [0, 1]; 0 is Lambert's law
-    float specular_weight = 1;        ///< [0, 1], times the reflection of the base at normal incidence
-    Vec3f specular_color{1, 1, 1};    ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
-    float coat_weight = 0;            ///< [0, 1]; 0 removes the coat
-    Vec3f coat_color{1, 1, 1};        ///< each in [0, 1]: what is left of light straight down and up again
-    float coat_roughness = 0;         ///< [0, 1]
-    float coat_ior = 1.6f;            ///< >= 1
-    float coat_darkening = 1;         ///< [0, 1]: of the base, by what the coat reflects back onto it
-    float fuzz_weight = 0;            ///< [0, 1]; 0 removes the fuzz
-    Vec3f fuzz_color{1, 1, 1};        ///< each in [0, 1]
-    float fuzz_roughness = 0.5f;      ///< [0, 1]; below 0.07 as 0.07
+    std::shared_ptr<const Texture> metallic_texture;   ///< first channel, raw
+    MapFilter base_color_filter = MapFilter::none, roughness_filter = MapFilter::none,
+              metallic_filter = MapFilter::none; ///< not mip
+    float base_weight = 1;                       ///< [0, 1], times base_color
+    float base_diffuse_roughness = 0;            ///< [0, 1]; 0 is Lambert's law
+    float specular_weight = 1;     ///< [0, 1], times the reflection of the base at normal incidence
+    Vec3f specular_color{1, 1, 1}; ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
+    float coat_weight = 0;         ///< [0, 1]; 0 removes the coat
+    Vec3f coat_color{1, 1, 1};     ///< each in [0, 1]: what is left of light straight down and up again
+    float coat_roughness = 0;      ///< [0, 1]
+    float coat_ior = 1.6f;         ///< >= 1
+    float coat_darkening = 1;      ///< [0, 1]: of the base, by what the coat reflects back onto it
+    float fuzz_weight = 0;         ///< [0, 1]; 0 removes the fuzz
+    Vec3f fuzz_color{1, 1, 1};     ///< each in [0, 1]
+    float fuzz_roughness = 0.5f;   ///< [0, 1]; below 0.07 as 0.07
 };
+
+/// Calls visit(name, texture, filter) for each texture that a material may have, also where it has none.
+template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& material, const Visit& visit) {
+    visit("base_color_texture", material.base_color_texture, material.base_color_filter);
+    visit("roughness_texture", material.roughness_texture, material.roughness_filter);
+    visit("metallic_texture", material.metallic_texture, material.metallic_filter);
+}
 
 /// Visibility mask with all bits set. Renders ignore masks and show all objects.
 inline constexpr uint32_t kVisibleToAll = 0xffffffff;

@@ -51,6 +51,7 @@ void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
 void add_layers(uint32_t record, size_t lane, VertexLanes& lanes) {
     lanes.has_layers |= 1u << lane;
     lanes.layers[lane] = record;
+    lanes.layered_metallic[lane] = lanes.metallic[lane];
     lanes.metallic[lane] = 0, lanes.ior[lane] = 1;
 }
 
@@ -355,8 +356,11 @@ PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) cons
             m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);
     if (material.roughness_texture)
         m.roughness *= fetch_texture(*material.roughness_texture, material.roughness_filter, uv).x;
+    if (material.metallic_texture)
+        m.metallic *= fetch_texture(*material.metallic_texture, material.metallic_filter, uv).x;
     m.base_color = scalar::limit_color(m.base_color);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
+    m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     return m;
 }
 

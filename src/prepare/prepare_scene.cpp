@@ -91,15 +91,12 @@ class SplineCache {
 /// Textures of materials with a smooth filter become coefficients.
 void prepare_textures(std::vector<Material>& materials) {
     SplineCache splines;
-    const auto prepare = [&](std::shared_ptr<const Texture>& texture, MapFilter& filter) {
-        if (!is_smooth(filter)) return;
-        texture = splines.get_or_make(texture, make_spline_form(filter));
-        filter = MapFilter::bspline;
-    };
-    for (Material& material : materials) {
-        prepare(material.base_color_texture, material.base_color_filter);
-        prepare(material.roughness_texture, material.roughness_filter);
-    }
+    for (Material& material : materials)
+        visit_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
+            if (!is_smooth(filter)) return;
+            texture = splines.get_or_make(texture, make_spline_form(filter));
+            filter = MapFilter::bspline;
+        });
 }
 
 /// Lists the maps and their smaller copies, dilated, smooth ones as coefficients: in copies, since textures

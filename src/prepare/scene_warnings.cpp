@@ -52,7 +52,9 @@ void warn_of_degenerate_faces(const Mesh& mesh, std::vector<std::string>& warnin
 }
 
 bool has_texture(const Material& material) {
-    return material.base_color_texture || material.roughness_texture;
+    bool has_one = false;
+    visit_textures(material, [&](const char*, const auto& texture, MapFilter) { has_one |= !!texture; });
+    return has_one;
 }
 
 /// Of a mesh that is displaced, or whose material reads a texture.

@@ -193,12 +193,11 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "coat_color", material.coat_color, 0, 1);
     check_range(where, "fuzz_color", material.fuzz_color, 0, 1);
     check_range(where, "coat_ior", material.coat_ior, 1, kHuge);
-    for (const MapFilter filter : {material.base_color_filter, material.roughness_filter})
+    visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
         if (filter == MapFilter::mip || filter > MapFilter::bspline)
             fail(where, "a filter of its textures is neither none, cubic nor bspline");
-    if (material.base_color_texture)
-        check_texture(where + ", base_color_texture", *material.base_color_texture);
-    if (material.roughness_texture) check_texture(where + ", roughness_texture", *material.roughness_texture);
+        if (texture) check_texture(fmt::format("{}, {}", where, name), *texture);
+    });
 }
 
 /// Largest coordinate of a transformed box, in double precision: it may be beyond all floats.

@@ -41,6 +41,7 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           material.ior,
                           find_index(material.base_color_texture, material.base_color_filter),
                           find_index(material.roughness_texture, material.roughness_filter),
+                          find_index(material.metallic_texture, material.metallic_filter),
                           0,
                           {}});
     if (scene.layers.empty()) return result;

@@ -111,11 +111,11 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
             for (uint32_t mip = 1; tile.mips && mip <= tile.mips->count(); ++mip)
                 add(tile.mips->copy(mip).texture);
         }
-    for (const Material& material : scene.materials) {
-        add(material.base_color_texture);
-        add(material.roughness_texture);
-        has_smooth_ |= is_smooth(material.base_color_filter) || is_smooth(material.roughness_filter);
-    }
+    for (const Material& material : scene.materials)
+        visit_textures(material, [&](const char*, const auto& texture, MapFilter filter) {
+            add(texture);
+            has_smooth_ |= is_smooth(filter);
+        });
     if (scene.environment) add(scene.environment->texture);
     has_layers_ = !scene.layers.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});

@@ -22,7 +22,7 @@ constexpr uint32_t kGroupSize = 64;
 
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
-static_assert(sizeof(scalar::PathData) == 60 && sizeof(scalar::SurfacePointData) == 64);
+static_assert(sizeof(scalar::PathData) == 60 && sizeof(scalar::SurfacePointData) == 68);
 static_assert(sizeof(scalar::FilmSumsData) == 96);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));

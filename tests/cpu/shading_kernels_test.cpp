@@ -178,7 +178,7 @@ void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
     }
     lanes.roughness[lane] = c.material.roughness, lanes.metallic[lane] = c.material.metallic;
     lanes.ior[lane] = c.material.ior, lanes.light_pdf[lane] = c.light_pdf;
-    lanes.layers[lane] = c.layers;
+    lanes.layers[lane] = c.layers, lanes.layered_metallic[lane] = c.material.metallic;
     if (lane == 0) lanes.has_layers = 0;
     if (c.layers != kNoIndex) lanes.has_layers |= 1u << lane;
 }
@@ -192,9 +192,10 @@ struct CaseBsdf {
     CaseBsdf(const Case& c, const MaterialLayers& layers, const Vec3f& viewer)
         : wo(viewer), has_layers(c.layers != kNoIndex), table{layers.entries.data()} {
         plain = scalar::make_bsdf(c.material, wo.z);
-        if (has_layers)
-            layered = scalar::make_layered_bsdf(
-                {c.material.base_color, c.material.roughness, layers.records[c.layers]}, table, wo.z);
+        if (!has_layers) return;
+        scalar::LayeredSurface surface{c.material.base_color, c.material.roughness, layers.records[c.layers]};
+        surface.layers.metallic = c.material.metallic;
+        layered = scalar::make_layered_bsdf(surface, table, wo.z);
     }
     scalar::BsdfValue evaluate(const Vec3f& wi) const {
         return has_layers ? scalar::evaluate_layered_bsdf(layered, table, wo, wi)

@@ -56,7 +56,8 @@ TEST_F(SceneFiles, every_field_is_read) {
       "environment": {"file": "env.exr", "color": [1, 1, 0.5], "strength": 2, "rotate_degrees": 40}, /* more */
       "materials": {"clay": {"base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metallic": 1, "ior": 1.3,
         "emission": [1, 2, 3], "base_color_texture": "color.png",
-        "roughness_texture": {"file": "color.png", "filter": "cubic"}}},
+        "roughness_texture": {"file": "color.png", "filter": "cubic"},
+        "metallic_texture": {"file": "color.png", "channel": "g"}}},
       "displacements": {"ear": {"type": "vector", "file": "map.exr", "preset": "mudbox", "midlevel": 0.25,
         "scale": [1, 2, 3], "flip_v": true, "wrap": "mirror", "dilate": false, "filter": "mip",
         "autobump": true, "frame": "dpdu", "lengths": "relative"}},
@@ -72,6 +73,7 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
     EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
     EXPECT_EQ(scene.materials[0].roughness_texture->floats.at(1), 128 / 255.f);
+    EXPECT_EQ(scene.materials[0].metallic_texture->floats.at(0), 128 / 255.f);
     EXPECT_EQ(scene.materials[0].base_color_filter, MapFilter::none);
     EXPECT_EQ(scene.materials[0].roughness_filter, MapFilter::cubic);
     const Displacement& map = scene.displacements.at(0);
@@ -111,6 +113,15 @@ TEST_F(SceneFiles, smooth_filters_are_read_and_refused_where_they_make_no_sense)
     EXPECT_HAS(
         error_of(R"({"materials": {"a": {"base_color_texture": {"file": "steps.png", "fliter": "cubic"}}}})"),
         "did you mean 'filter'?");
+    EXPECT_HAS(
+        error_of(R"({"materials": {"a": {"metallic_texture": {"file": "steps.png", "channel": "a"}}}})"),
+        "no channel a: there are 3");
+    EXPECT_HAS(
+        error_of(R"({"materials": {"a": {"metallic_texture": {"file": "steps.png", "channel": "z"}}}})"),
+        "unknown channel 'z'");
+    EXPECT_HAS(
+        error_of(R"({"materials": {"a": {"base_color_texture": {"file": "steps.png", "channel": "g"}}}})"),
+        "channel");
     Scene scene =
         parse(with_map(R"("file": "steps.png", "midlevel": 0.5, "filter": "cubic", "dequantize": true)"));
     EXPECT_HAS(message_of([&] { save_scene(scene, folder_ / "out"); }), "maps are written as floats");

@@ -82,6 +82,8 @@ inline Scene make_shading_scene() {
     shiny.roughness_texture = make_half_greys(8, 5);
     colored.base_color_filter = MapFilter::cubic, shiny.roughness_filter = MapFilter::bspline;
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
+    shiny.metallic_texture = make_half_greys(5, 8), colored.metallic_texture = shiny.roughness_texture;
+    colored.metallic = 0.5f;
     shiny.coat_weight = 0.7f, shiny.coat_color = {0.9f, 0.5f, 0.2f}, shiny.coat_roughness = 0.2f;
     shiny.fuzz_weight = 0.6f, shiny.base_diffuse_roughness = 0.5f, shiny.specular_color = {1, 0.8f, 0.6f};
     glowing.emission = {4, 3, 1};
@@ -268,7 +270,10 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
             m.base_color * cpu::fetch_texture(*m.base_color_texture, m.base_color_filter, v.point.uv);
     if (m.roughness_texture)
         m.roughness *= cpu::fetch_texture(*m.roughness_texture, m.roughness_filter, v.point.uv).x;
+    if (m.metallic_texture)
+        m.metallic *= cpu::fetch_texture(*m.metallic_texture, m.metallic_filter, v.point.uv).x;
     m.base_color = scalar::limit_color(m.base_color);
+    m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     const Vec3f wo = -c.ray.direction;
     v.is_flipped = dot(v.point.geometric_normal, wo) < 0;
     if (v.is_flipped)
@@ -279,9 +284,10 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     v.bsdf = scalar::make_bsdf({m.base_color, m.roughness, m.metallic, m.ior}, v.wo_local.z);
     v.table = {scene.layers.entries.data()};
     const uint32_t record = scene.layers.record_of_material.at(scene.instances[c.hit.instance].material);
-    if (record != kNoIndex)
-        v.layered = scalar::make_layered_bsdf({m.base_color, m.roughness, scene.layers.records[record]},
-                                              v.table, v.wo_local.z);
+    if (record == kNoIndex) return v;
+    scalar::LayeredSurface surface{m.base_color, m.roughness, scene.layers.records[record]};
+    surface.layers.metallic = m.metallic;
+    v.layered = scalar::make_layered_bsdf(surface, v.table, v.wo_local.z);
     return v;
 }
 

@@ -99,6 +99,7 @@ TEST_F(ShadingKernels, make_the_surface_points_of_the_cpu_engine) {
         ASSERT_LT(compare(point.bent_normal, v.basis.n), 2e-3f) << k;
         ASSERT_LT(compare(point.base_color, v.material.base_color), 1e-4f) << k;
         ASSERT_NEAR(point.roughness, v.material.roughness, 1e-4f) << k;
+        ASSERT_NEAR(point.metallic, v.material.metallic, 1e-4f) << k;
         ASSERT_NEAR(point.area_per_uv, v.point.area_per_uv, 1e-3f * v.point.area_per_uv) << k;
         ASSERT_NEAR(point.position_error / v.point.position_error, 1, 1e-4f) << k;
         ASSERT_EQ(point.is_flipped != 0, v.is_flipped) << k;

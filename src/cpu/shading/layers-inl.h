@@ -116,8 +116,9 @@ HWY_NOINLINE void reflect_layers(const cpu::VertexBatch& batch, const PointLanes
     LayeredLanes layered{.basis = basis, .wo_local = wo_local};
     layered.table = {&batch.layers.entries->x, batch.layers.entry_count};
     layered.has_layers = is_set(marks);
-    const LayeredSurface surface{load_vectors(v.base_color), Float::load(v.roughness),
-                                 gather_layers(batch.layers.records, Uint::load(index))};
+    LayeredSurface surface{load_vectors(v.base_color), Float::load(v.roughness),
+                           gather_layers(batch.layers.records, Uint::load(index))};
+    surface.layers.metallic = Float::load(v.layered_metallic);
     layered.bsdf = make_layered_bsdf(surface, layered.table, wo_local.z);
     reflect_light(point, layered, v);
     if (batch.pick_pairs)

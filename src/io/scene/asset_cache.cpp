@@ -1,6 +1,7 @@
 #include "io/scene/asset_cache.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,6 +37,17 @@ void spread_grey(Texture& texture) {
         for (size_t i = 0; i < texels.size(); i += 4) texels[i + 1] = texels[i + 2] = texels[i];
     };
     spread(texture.floats), spread(texture.halves);
+}
+
+void move_first(Texture& texture, uint32_t channel) {
+    if (channel >= texture.channel_count)
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("no channel {}: there are {}", "rgba"[channel], texture.channel_count),
+                     texture.file, "name another channel"});
+    const auto move = [channel](auto& texels) {
+        for (size_t i = 0; i < texels.size(); i += 4) std::swap(texels[i], texels[i + channel]);
+    };
+    move(texture.floats), move(texture.halves);
 }
 
 bool lift_negatives(Texture& texture) {
@@ -79,11 +91,12 @@ fs::path AssetCache::resolve(const std::string& file) const {
     return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
 }
 
-std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use) {
+std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel) {
     const fs::path path = resolve(file);
-    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use}];
+    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel}];
     if (cached) return cached;
     auto texture = std::make_shared<Texture>(read_texture(path));
+    if (channel > 0) move_first(*texture, channel);
     if (use != TextureUse::data) {
         check_finite(*texture, 0);
         if (use == TextureUse::colour) decode_colours(*texture);

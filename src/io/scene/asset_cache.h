@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "relief/scene.h"
@@ -21,7 +21,9 @@ class AssetCache {
     explicit AssetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     std::filesystem::path resolve(const std::string& file) const;
-    std::shared_ptr<const Texture> load(const std::string& file, TextureUse use);
+    /// `channel`, from 0, comes first in the texture. Throws Error{bad_input} as read_texture, and for a
+    /// channel that the file lacks.
+    std::shared_ptr<const Texture> load(const std::string& file, TextureUse use, uint32_t channel = 0);
     /// The tiles of a displacement map as they are: one for a plain file, all that exist for a name with a
     /// token (io/scene/tile_names.h). A plain file that is one tile of several is warned of.
     std::vector<MapTile> load_displacement(const std::string& file);
@@ -31,7 +33,7 @@ class AssetCache {
 
   private:
     std::filesystem::path folder_;
-    std::map<std::pair<std::string, TextureUse>, std::shared_ptr<const Texture>> textures_;
+    std::map<std::tuple<std::string, TextureUse, uint32_t>, std::shared_ptr<const Texture>> textures_;
     std::vector<std::string> warnings_;
 };
 

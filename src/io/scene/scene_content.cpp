@@ -28,7 +28,7 @@ void add_scene_content(ContentHash& hash, const Scene& scene) {
             add_texture(tile.texture);
         }
     for (const Material& material : scene.materials)
-        add_texture(material.base_color_texture), add_texture(material.roughness_texture);
+        visit_textures(material, [&](const char*, const auto& texture, MapFilter) { add_texture(texture); });
     if (scene.environment) add_texture(scene.environment->texture);
 }
 

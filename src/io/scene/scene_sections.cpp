@@ -1,5 +1,6 @@
 #include "io/scene/scene_sections.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
@@ -35,11 +36,20 @@ std::optional<int> read_int(const JsonNode& node, std::string_view key, int64_t 
 }
 
 std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::string_view key, TextureUse use,
-                                                AssetCache& assets) {
+                                                AssetCache& assets, uint32_t channel = 0) {
     const auto found = node.find(key);
     if (!found) return nullptr;
     const std::string file = found->as_string();
-    return found->with_place([&] { return assets.load(file, use); });
+    return found->with_place([&] { return assets.load(file, use, channel); });
+}
+
+/// Which of a texel's values is the number.
+uint32_t read_channel(const JsonNode& node) {
+    constexpr std::string_view kNames[] = {"r", "g", "b", "a"};
+    const std::string name = node.as_string();
+    const auto found = std::find(std::begin(kNames), std::end(kNames), name);
+    if (found == std::end(kNames)) node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a");
+    return uint32_t(found - std::begin(kNames));
 }
 
 struct FilteredTexture {
@@ -56,14 +66,18 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
                                       AssetCache& assets) {
     const auto found = node.find(key);
     if (!found || found->is_string()) return {read_texture_key(node, key, use, assets), MapFilter::none};
-    found->check_keys(scene_keys::kTexture);
+    if (use == TextureUse::colour)
+        found->check_keys(scene_keys::kColourTexture);
+    else
+        found->check_keys(scene_keys::kDataTexture);
     FilteredTexture result;
     if (const auto filter = found->find("filter")) {
         const std::string name = filter->as_string();
         result.filter = filter->with_place([&] { return parse_texture_filter(name); });
     }
     found->get("file");
-    result.texture = read_texture_key(*found, "file", use, assets);
+    const auto channel = found->find("channel");
+    result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0);
     return result;
 }
 
@@ -223,6 +237,8 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
         .move_to(material.base_color_texture, material.base_color_filter);
     read_filtered_texture(node, "roughness_texture", TextureUse::data, assets)
         .move_to(material.roughness_texture, material.roughness_filter);
+    read_filtered_texture(node, "metallic_texture", TextureUse::data, assets)
+        .move_to(material.metallic_texture, material.metallic_filter);
     return material;
 }
 

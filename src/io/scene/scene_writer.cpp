@@ -101,7 +101,9 @@ class SceneWriter {
         std::set<const Texture*> textures;
         if (scene.environment) textures.insert(scene.environment->texture.get());
         for (const Material& material : scene.materials)
-            textures.insert({material.base_color_texture.get(), material.roughness_texture.get()});
+            visit_textures(material, [&](const char*, const auto& texture, MapFilter) {
+                textures.insert(texture.get());
+            });
         for (const Displacement& map : scene.displacements)
             for (const MapTile& tile : map.tiles) textures.insert(tile.texture.get());
         textures.erase(nullptr);
@@ -158,13 +160,12 @@ class SceneWriter {
             node["ior"] = to_json(material.ior);
             node["emission"] = to_json(material.emission);
             write_layers(material, node);
-            if (material.base_color_texture)
-                node["base_color_texture"] =
-                    add_texture(material.base_color_texture, material.base_color_filter,
-                                material_names_.back() + "_color");
-            if (material.roughness_texture)
-                node["roughness_texture"] = add_texture(material.roughness_texture, material.roughness_filter,
-                                                        material_names_.back() + "_roughness");
+            visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
+                const std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
+                if (texture)
+                    node[name] =
+                        add_texture(texture, filter, fmt::format("{}_{}", material_names_.back(), input));
+            });
         }
     }
 

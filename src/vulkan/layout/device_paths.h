@@ -28,6 +28,7 @@ struct SurfacePointData {
     Vec3 bent_normal; ///< shading normal, bent (bend_normal)
     float roughness;
     Vec3 base_color;
+    float metallic;
     uint is_flipped; ///< the viewer is on the side opposite to the winding
 };
 

@@ -70,7 +70,7 @@ struct MaterialData {
     Vec3 emission;
     float metallic;
     float ior;
-    uint color_texture, roughness_texture;
+    uint color_texture, roughness_texture, metallic_texture;
     uint has_layers;
     LayerParameters layers;
 };

@@ -51,10 +51,11 @@ Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 w
     result.has_layers = kHasLayers != 0u && material.has_layers != 0u;
     if (result.has_layers) {
         LayeredSurface surface = {point.base_color, point.roughness, material.layers};
+        surface.layers.metallic = point.metallic;
         result.layered = make_layered_bsdf(surface, kLayerTable, result.wo_local.z);
         return result;
     }
-    BsdfParameters parameters = {point.base_color, point.roughness, material.metallic, material.ior};
+    BsdfParameters parameters = {point.base_color, point.roughness, point.metallic, material.ior};
     result.bsdf = make_bsdf(parameters, result.wo_local.z);
     return result;
 }

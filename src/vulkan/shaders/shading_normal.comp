@@ -10,7 +10,7 @@ struct Appearance {
     vec3 shading_normal; ///< on the viewer's side
     vec2 uv;
     vec3 base_color;
-    float roughness;
+    float roughness, metallic;
 };
 
 vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
@@ -21,20 +21,14 @@ vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
 }
 
 void apply_material(MaterialData material, inout Appearance appearance) {
-    vec3 color = vec3(1.0);
-    float roughness = 1.0;
-    uint indices[2] = {material.color_texture, material.roughness_texture};
+    uint indices[3] = {material.color_texture, material.roughness_texture, material.metallic_texture};
+    vec3 values[3] = {vec3(1.0), vec3(1.0), vec3(1.0)};
     // A loop, so that the look-up is inlined only once.
-    for (uint k = 0u; k < 2u; ++k) {
-        if (indices[k] == kNone) continue;
-        vec3 value = fetch_texture(indices[k], appearance.uv);
-        if (k == 0u)
-            color = value;
-        else
-            roughness = value.x;
-    }
-    appearance.base_color = limit_color(material.base_color * color);
-    appearance.roughness = clamp(material.roughness * roughness, 0.0, 1.0);
+    for (uint k = 0u; k < 3u; ++k)
+        if (indices[k] != kNone) values[k] = fetch_texture(indices[k], appearance.uv);
+    appearance.base_color = limit_color(material.base_color * values[0]);
+    appearance.roughness = clamp(material.roughness * values[1].x, 0.0, 1.0);
+    appearance.metallic = clamp(material.metallic * values[2].x, 0.0, 1.0);
 }
 
 Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
@@ -65,6 +59,7 @@ void main() {
         bend_normal(appearance.shading_normal, geometric_normal, -rays[path_index].direction);
     points[path_index].base_color = appearance.base_color;
     points[path_index].roughness = appearance.roughness;
+    points[path_index].metallic = appearance.metallic;
     if (push.depth > 0u) return;
     film[path_index].shading_normal += appearance.shading_normal;
     film[path_index].albedo += appearance.base_color;

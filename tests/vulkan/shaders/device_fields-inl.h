@@ -67,7 +67,7 @@ struct AllStructs {
     FIELD(s.row_scale) FIELD(s.first_entry)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
-    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
+    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
@@ -104,7 +104,7 @@ struct AllStructs {
     FIELD(s.cost) FIELD3(s.contribution)
 #define FIELDS_POINT(s) \
     FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
-    FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.is_flipped)
+    FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)
 #define FIELDS_FILM(s) \
     FIELD3(s.radiance) FIELD3(s.squares) FIELD(s.cost) FIELD(s.hit_count) FIELD3(s.shading_normal) \
     FIELD3(s.geometric_normal) FIELD3(s.position) FIELD3(s.albedo) FIELD2(s.uv) FIELD(s.depth) FIELD(s.id)
