@@ -129,10 +129,10 @@ struct Displacement {
     std::vector<MapTile> tiles;
 };
 
-/// The opaque part of OpenPBR 1.1: fuzz over a coat over a base, which is metal, a diffuse body under a clear
-/// dielectric surface, or a mix of the two. With what comes after the filters as it is, a metallic-roughness
-/// material. Colours are linear. Textures multiply the constants; row 0 of a texture is v = 1, wrap mode is
-/// repeat.
+/// OpenPBR 1.1 without transmission, subsurface and anisotropy: fuzz over a coat over a base, which is metal,
+/// a diffuse body under a clear dielectric surface, or a mix of the two. With what comes after the filters as
+/// it is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a
+/// texture is v = 1, wrap mode is repeat.
 struct Material {
     std::string name;
     Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
@@ -157,6 +157,11 @@ struct Material {
     float fuzz_weight = 0;         ///< [0, 1]; 0 removes the fuzz
     Vec3f fuzz_color{1, 1, 1};     ///< each in [0, 1]
     float fuzz_roughness = 0.5f;   ///< [0, 1]; below 0.07 as 0.07
+    /// [0, 1]: the part of rays that the surface stops, a cut-out below 1; not of an emitter. Intersectors
+    /// take all surfaces for opaque.
+    float opacity = 1;
+    std::shared_ptr<const Texture> opacity_texture; ///< first channel, raw
+    MapFilter opacity_filter = MapFilter::none;     ///< not mip
 };
 
 /// Calls visit(name, texture, filter) for each texture that a material may have, also where it has none.
@@ -164,7 +169,11 @@ template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& mater
     visit("base_color_texture", material.base_color_texture, material.base_color_filter);
     visit("roughness_texture", material.roughness_texture, material.roughness_filter);
     visit("metallic_texture", material.metallic_texture, material.metallic_filter);
+    visit("opacity_texture", material.opacity_texture, material.opacity_filter);
 }
+
+/// Whether some rays pass through a surface of the material.
+inline bool is_cut_out(const Material& material) { return material.opacity < 1 || material.opacity_texture; }
 
 /// Visibility mask with all bits set. Renders ignore masks and show all objects.
 inline constexpr uint32_t kVisibleToAll = 0xffffffff;

@@ -8,6 +8,7 @@
 
 #include "base/timer.h"
 #include "cpu/bounce_rays.h"
+#include "cpu/cut_outs.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/textures.h"
 #include "formulas/camera.h"
@@ -71,6 +72,10 @@ class TileTracer {
     bool is_pinhole() const { return camera_.aperture_radius == 0; }
     void start_paths();
     void trace_paths();
+    float draw_cut_out(uint32_t path, bool is_shadow, uint32_t round) const {
+        return scalar::draw_cut_out(seeds_[path], sample_index_, uint32_t(depth_), is_shadow ? 1 : 0, round);
+    }
+    void pass_shadow_rays();
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
     void add_backgrounds();
@@ -97,6 +102,7 @@ class TileTracer {
     Film& film_;
     TileCounters& counters_;
     PictureFootprints* footprints_;
+    bool has_cut_outs_;
     scalar::CameraFrame camera_;
     scalar::BounceLod bounce_lod_;
     uint32_t sample_index_ = 0;
@@ -127,6 +133,10 @@ class TileTracer {
     std::vector<uint8_t> occluded_;
     PointScratch scratch_;
     BounceScratch bounce_scratch_;
+    CutOutScratch cut_out_scratch_;
+    std::vector<uint32_t> stopped_; ///< shadow rays that meet something
+    std::vector<TraceRay> stopped_rays_;
+    std::vector<TraceHit> stoppers_;
 };
 
 TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report)
@@ -136,6 +146,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       film_(film),
       counters_(report.counters),
       footprints_(report.footprints),
+      has_cut_outs_(std::ranges::any_of(scene.tracer.scene().materials, is_cut_out)),
       camera_(make_camera_frame(scene.tracer.scene())),
       bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
@@ -191,6 +202,11 @@ void TileTracer::trace_paths() {
         tracer_.closest_hits(rays_, hits_);
     else
         closest_bounce_hits(tracer_, rays_, coarse_from_, hits_, depth_, bounce_scratch_, scratch_);
+    if (has_cut_outs_)
+        pass_cut_outs(
+            tracer_, rays_, depth_ > 0 ? std::span<const float>(coarse_from_) : std::span<const float>(),
+            hits_, depth_, [&](uint32_t k, uint32_t round) { return draw_cut_out(active_[k], false, round); },
+            cut_out_scratch_);
     if (!footprints_) return;
     for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
 }
@@ -426,9 +442,24 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     return true;
 }
 
+/// Of rays that met something, some meet cut-outs alone that let them through.
+void TileTracer::pass_shadow_rays() {
+    stopped_.clear(), stopped_rays_.clear();
+    for (uint32_t k = 0; k < shadow_rays_.size(); ++k)
+        if (occluded_[k]) stopped_.push_back(k), stopped_rays_.push_back(shadow_rays_[k]);
+    stoppers_.resize(stopped_.size());
+    tracer_.continued_hits(stopped_rays_, stoppers_, depth_);
+    pass_cut_outs(
+        tracer_, stopped_rays_, {}, stoppers_, depth_,
+        [&](uint32_t n, uint32_t round) { return draw_cut_out(shadows_[stopped_[n]].path, true, round); },
+        cut_out_scratch_);
+    for (size_t n = 0; n < stopped_.size(); ++n) occluded_[stopped_[n]] = stoppers_[n].is_hit() ? 1 : 0;
+}
+
 void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
     tracer_.any_hits(shadow_rays_, occluded_, depth_);
+    if (has_cut_outs_) pass_shadow_rays();
     if (footprints_)
         for (size_t k = 0; k < shadows_.size(); ++k)
             note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);

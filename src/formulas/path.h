@@ -25,6 +25,13 @@ FN Vec2 draw_bounce_pair(uint pixel_seed, uint sample_index, uint depth, uint ki
     return sobol_pair(pixel_seed, sample_index, find_bounce_pair(depth, kind));
 }
 
+/// In [0, 1): decides whether a ray passes the cut-out that it meets after `round` others. `is_shadow`: the
+/// shadow ray of the vertex after `depth` bounces, else the ray that comes there.
+FN float draw_cut_out(uint pixel_seed, uint sample_index, uint depth, uint is_shadow, uint round) {
+    const uint first_pair = 65536u; // behind those of all bounces
+    return sobol_pair(pixel_seed, sample_index, first_pair + (2u * depth + is_shadow) * 256u + round).x;
+}
+
 /// Ray through a point of the picture, in pixels.
 FN CameraRay aim_camera_ray(CameraFrame camera, Vec2 position, uint pixel_seed, uint sample_index) {
     if (camera.aperture_radius > 0.0f)

@@ -180,6 +180,10 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "metallic", material.metallic, 0, 1);
     check_range(where, "ior", material.ior, 1, kHuge);
     check_range(where, "emission", material.emission, 0, kHuge);
+    check_range(where, "opacity", material.opacity, 0, 1);
+    if (is_cut_out(material) && !(material.emission == Vec3f{}))
+        fail(where,
+             "a surface that emits light cannot be a cut-out: opacity and emission exclude each other");
     for (const auto& [what, value] : {std::pair("base_weight", material.base_weight),
                                       std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
                                       std::pair("specular_weight", material.specular_weight),

@@ -42,6 +42,8 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           find_index(material.base_color_texture, material.base_color_filter),
                           find_index(material.roughness_texture, material.roughness_filter),
                           find_index(material.metallic_texture, material.metallic_filter),
+                          find_index(material.opacity_texture, material.opacity_filter),
+                          material.opacity,
                           0,
                           {}});
     if (scene.layers.empty()) return result;

@@ -89,6 +89,10 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
+    if (std::ranges::any_of(tracer.scene().materials, is_cut_out)) {
+        cut_outs_.emplace(make_reading_kernel(tracer, "cut_outs"));
+        saved_list_ = make_buffer<uint32_t>(device, "saved_list", capacity_);
+    }
     make_buffers();
     if (settings.experiment.method == RenderMethod::hybrid)
         rasteriser_ =
@@ -213,6 +217,7 @@ void PathTracer::trace_sample(uint32_t sample_index, int place) {
         CastStatistics cast = push.depth > 0 ? trace_bounces(push)
                               : rasteriser_  ? rasteriser_->first_hits(camera)
                                              : tracer_.closest_hits(path_list_, push.count);
+        if (cut_outs_) pass_cut_outs(push, false, cast);
         cast.depth = int(push.depth);
         add_cast(batch_casts_, cast);
         const NextRays next = shade_depth(push);
@@ -239,6 +244,29 @@ CastStatistics PathTracer::trace_bounces(scalar::PathPush push) {
     push.count = list_rays(inner_hits_, push).path_count;
     if (push.count > 0) trace_further(next_path_list_, push.count);
     return cast;
+}
+
+/// Rays go on until they meet what they do not pass. Only the list that they come from is kept.
+void PathTracer::pass_cut_outs(scalar::PathPush push, bool is_shadow, CastStatistics& cast) {
+    Commands& commands = tracer_.commands();
+    const Buffer& list = is_shadow ? shadow_list_ : path_list_;
+    const Buffer& passed = is_shadow ? path_list_ : next_path_list_;
+    const uint64_t bytes = uint64_t(push.count) * sizeof(uint32_t);
+    scalar::CutOutPush cut_out{push.count, capacity_, push.depth, is_shadow ? 1u : 0u, push.sample_index, 0};
+    commands.begin_stage(Stage::shade);
+    commands.copy(list, 0, saved_list_, 0, bytes);
+    for (;; ++cut_out.round) {
+        commands.begin_stage(Stage::shade);
+        clear_lists();
+        commands.dispatch(*cut_outs_, cut_out.count, cut_out);
+        push.count = cut_out.count = read_lists().path_count;
+        if (push.count == 0) break;
+        commands.copy(passed, 0, list, 0, uint64_t(push.count) * sizeof(uint32_t));
+        const bool is_bounce = !is_shadow && push.depth > 0;
+        add_cast_work(cast, is_bounce ? trace_bounces(push) : tracer_.closest_hits(list, push.count));
+    }
+    commands.begin_stage(Stage::shade);
+    commands.copy(saved_list_, 0, list, 0, bytes);
 }
 
 /// Runs a kernel that appends rays to lists.
@@ -275,7 +303,15 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
 
 void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
     if (shadow_count == 0) return;
-    CastStatistics cast = tracer_.any_hits(shadow_list_, shadow_count);
+    CastStatistics cast;
+    if (cut_outs_) {
+        cast = tracer_.closest_hits(shadow_list_, shadow_count);
+        push.count = shadow_count;
+        pass_cut_outs(push, true, cast);
+        cast.is_shadow = true;
+    } else {
+        cast = tracer_.any_hits(shadow_list_, shadow_count);
+    }
     cast.depth = int(push.depth);
     add_cast(batch_casts_, cast);
     Commands& commands = tracer_.commands();

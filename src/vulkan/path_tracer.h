@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,7 @@ class PathTracer {
     void trace_sample(uint32_t sample_index, int place);
     uint64_t find_first_hits(int place) const;
     CastStatistics trace_bounces(scalar::PathPush push);
+    void pass_cut_outs(scalar::PathPush push, bool is_shadow, CastStatistics& cast);
     NextRays shade_depth(const scalar::PathPush& push);
     NextRays list_rays(const Kernel& kernel, const scalar::PathPush& push);
     void clear_lists();
@@ -79,6 +81,8 @@ class PathTracer {
     DeviceLights lights_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;
+    std::optional<Kernel> cut_outs_; ///< where the scene has some
+    Buffer saved_list_;              ///< where rays come from that pass them
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_, pixel_list_;
     Buffer whole_sums_;                               ///< CPU devices only: the film sums of whole samples
     std::vector<uint32_t> pixels_;                    ///< of the current batch, pack_pixel()

@@ -207,10 +207,12 @@ TEST_F(SceneFiles, a_material_says_each_number_under_one_name) {
     EXPECT_HAS(of_material(R"("emission": [1, 1, 1], "emission_color": [1, 1, 1])"), "emission_color: means");
     EXPECT_HAS(of_material(R"("emission_color": [1, 1, 1])"), "emission_luminance, which is not there");
     EXPECT_HAS(of_material(R"("coat_weight": 1.5)"), "materials.m.coat_weight: must be in [0, 1], not 1.5");
+    EXPECT_HAS(of_material(R"("opacity": 1, "geometry_opacity": 1)"), "geometry_opacity: means the same");
+    EXPECT_HAS(of_material(R"("opacity": -1)"), "materials.m.opacity: must be in [0, 1]");
     EXPECT_HAS(of_material(R"("coat_ior": 0.5)"), "materials.m.coat_ior: must be at least 1");
     EXPECT_HAS(of_material(R"("fuzz_color": [0, 0, 2])"), "materials.m.fuzz_color[2]");
-    for (const char* later : {"transmission_weight", "subsurface_weight", "specular_roughness_anisotropy",
-                              "thin_film_weight", "geometry_opacity"})
+    for (const char* later :
+         {"transmission_weight", "subsurface_weight", "specular_roughness_anisotropy", "thin_film_weight"})
         EXPECT_HAS(of_material(std::string("\"") + later + R"(": 0.5)"), "unknown key");
 }
 

@@ -65,7 +65,8 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
                 scene_keys::kColourTexture);
     for (const char* texture :
          {"/properties/materials/additionalProperties/properties/roughness_texture/oneOf/1",
-          "/properties/materials/additionalProperties/properties/metallic_texture/oneOf/1"})
+          "/properties/materials/additionalProperties/properties/metallic_texture/oneOf/1",
+          "/properties/materials/additionalProperties/properties/opacity_texture/oneOf/1"})
         expect_keys(texture, scene_keys::kDataTexture);
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
     expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
@@ -78,7 +79,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 17u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 18u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

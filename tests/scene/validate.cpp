@@ -152,6 +152,11 @@ TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_weight = 2; }), "fuzz_weight");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_color.x = 2; }), "fuzz_color");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_roughness = 2; }), "fuzz_roughness");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].opacity = 2; }), "opacity");
+    EXPECT_HAS(complaint([](Scene& s) {
+                   s.materials[0].opacity = 0.5f, s.materials[0].emission = {1, 0, 0};
+               }),
+               "opacity and emission exclude each other");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].direction = {}; }), "light 0: direction");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].strength = -1; }), "light 0: strength");
     EXPECT_HAS(complaint([](Scene& s) { s.environment->strength = kNan; }), "environment");

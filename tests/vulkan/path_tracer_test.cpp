@@ -56,6 +56,14 @@ void use_long_paths(Scene& scene, RenderSettings& settings) {
     for (Material& material : scene.materials) material.roughness = 0.1f, material.metallic = 1;
 }
 
+void use_cut_outs(Scene& scene, RenderSettings&) {
+    float opacity = 0.3f;
+    for (Material& material : scene.materials)
+        if (material.emission == Vec3f{}) material.opacity = opacity, opacity = 1.2f - opacity;
+    scene.materials.front().opacity_texture = make_half_greys(8, 5);
+    scene.materials.front().opacity_filter = MapFilter::cubic;
+}
+
 class PathTracerTest : public GpuTest {
   protected:
     explicit PathTracerTest(const Variant& variant = {"", [](Scene&, RenderSettings&) {}}) {
@@ -126,6 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
                                          Variant{"in_the_dark", use_nothing_to_draw},
                                          Variant{"with_direct_light_alone", use_direct_light_alone},
                                          Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
+                                         Variant{"with_cut_outs", use_cut_outs},
                                          Variant{"with_long_paths", use_long_paths}),
                          [](const auto& info) { return info.param.name; });
 

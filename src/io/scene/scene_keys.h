@@ -16,12 +16,12 @@ inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", 
 inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance");
 inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees");
-inline constexpr auto kMaterial =
-    make_keys("base_color", "base_color_texture", "roughness", "roughness_texture", "metallic",
-              "metallic_texture", "ior", "emission", "base_weight", "base_diffuse_roughness",
-              "base_metalness", "specular_weight", "specular_color", "specular_roughness", "specular_ior",
-              "coat_weight", "coat_color", "coat_roughness", "coat_ior", "coat_darkening", "fuzz_weight",
-              "fuzz_color", "fuzz_roughness", "emission_luminance", "emission_color");
+inline constexpr auto kMaterial = make_keys(
+    "base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "metallic_texture",
+    "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
+    "specular_color", "specular_roughness", "specular_ior", "coat_weight", "coat_color", "coat_roughness",
+    "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_color", "fuzz_roughness", "emission_luminance",
+    "emission_color", "opacity", "geometry_opacity", "opacity_texture");
 inline constexpr auto kColourTexture = make_keys("file", "filter");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
 inline constexpr auto kDisplacement =

@@ -231,14 +231,14 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
     read_float(node, choose_key(node, "roughness", "specular_roughness"), material.roughness, 0, 1);
     read_float(node, choose_key(node, "metallic", "base_metalness"), material.metallic, 0, 1);
     read_float(node, choose_key(node, "ior", "specular_ior"), material.ior, 1);
+    read_float(node, choose_key(node, "opacity", "geometry_opacity"), material.opacity, 0, 1);
     read_emission(node, material.emission);
     read_layers(node, material);
-    read_filtered_texture(node, "base_color_texture", TextureUse::colour, assets)
-        .move_to(material.base_color_texture, material.base_color_filter);
-    read_filtered_texture(node, "roughness_texture", TextureUse::data, assets)
-        .move_to(material.roughness_texture, material.roughness_filter);
-    read_filtered_texture(node, "metallic_texture", TextureUse::data, assets)
-        .move_to(material.metallic_texture, material.metallic_filter);
+    visit_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
+        const bool is_colour = &texture == &material.base_color_texture;
+        read_filtered_texture(node, key, is_colour ? TextureUse::colour : TextureUse::data, assets)
+            .move_to(texture, filter);
+    });
     return material;
 }
 

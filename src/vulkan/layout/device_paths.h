@@ -65,6 +65,16 @@ struct CameraPush {
     uint sample_index, seed;
 };
 
+/// Push constants of the kernel that lists the rays which pass cut-outs.
+struct CutOutPush {
+    uint count;    ///< of the path list; of shadow rays
+    uint capacity; ///< of paths
+    uint depth;
+    uint is_shadow; ///< rays of the shadow list; what passes comes into the path list
+    uint sample_index;
+    uint round; ///< cut-outs that all of them have passed
+};
+
 /// Push constants of the other kernels of a depth.
 struct PathPush {
     uint count; ///< of the path list, shadow rays or pixels

@@ -70,7 +70,8 @@ struct MaterialData {
     Vec3 emission;
     float metallic;
     float ior;
-    uint color_texture, roughness_texture, metallic_texture;
+    uint color_texture, roughness_texture, metallic_texture, opacity_texture;
+    float opacity;
     uint has_layers;
     LayerParameters layers;
 };

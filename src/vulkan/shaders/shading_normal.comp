@@ -2,6 +2,7 @@
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/textures.glsl"
+#include "vulkan/shaders/texture_place.glsl"
 #include "vulkan/shaders/shading_normal.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
@@ -12,13 +13,6 @@ struct Appearance {
     vec3 base_color;
     float roughness, metallic;
 };
-
-vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
-    if (s.first_uv == kNone) return vec2(0.0);
-    bool is_bilinear = s.map != kNone || s.has_bilinear_uvs != 0u;
-    return is_bilinear ? blend_patch_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at)
-                       : blend_polygon_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at);
-}
 
 void apply_material(MaterialData material, inout Appearance appearance) {
     uint indices[3] = {material.color_texture, material.roughness_texture, material.metallic_texture};

@@ -67,7 +67,7 @@ struct AllStructs {
     FIELD(s.row_scale) FIELD(s.first_entry)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
-    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
+    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
