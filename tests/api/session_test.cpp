@@ -63,28 +63,43 @@ size_t count_differing(const Image& a, const Image& b) {
     return count;
 }
 
+/// Each edit of a session shows what a render of the scene with the edited map shows, and something new.
+/// Returns the last picture; the edits are in `fresh`.
+Image follow_edits(Scene& fresh, const RenderSettings& settings, std::initializer_list<MapEdit> edits) {
+    Session session(fresh, settings);
+    Image before = session.render().image;
+    expect_same(before, render(fresh, settings).image);
+    for (const MapEdit& edit : edits) {
+        EXPECT_GT(session.edit(edit).patches, 0u);
+        bake(fresh, edit);
+        Image after = session.render().image;
+        expect_same(after, render(fresh, settings).image);
+        EXPECT_GT(count_differing(before, after), 100u);
+        before = after;
+    }
+    return before;
+}
+
 } // namespace
 
 TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
-    const MapEdit edits[] = {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f),
-                             make_edit(0, 63, 40, 1, 0.2f), make_edit(30, 20, 20, 12, 0.0f)};
     for (const DisplacementSpace space : {DisplacementSpace::tangent, DisplacementSpace::object})
         for (const int level : {4, kAutoLevel}) {
             RenderSettings settings = make_settings();
             settings.surface.level = level;
             Scene fresh = make_torus_scene(space);
-            Session session(fresh, settings);
-            Image before = session.render().image;
-            expect_same(before, render(fresh, settings).image);
-            for (const MapEdit& edit : edits) {
-                EXPECT_GT(session.edit(edit).patches, 0u);
-                bake(fresh, edit);
-                Image after = session.render().image;
-                expect_same(after, render(fresh, settings).image);
-                EXPECT_GT(count_differing(before, after), 100u);
-                before = after;
-            }
+            follow_edits(fresh, settings,
+                         {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f),
+                          make_edit(0, 63, 40, 1, 0.2f), make_edit(30, 20, 20, 12, 0.0f)});
         }
+}
+
+TEST(Session, follows_edits_of_what_lies_far_from_the_origin) {
+    const Vec3f place{3e5f, -2e5f, 1e5f};
+    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    fresh.objects[0].world_from_object.translation = place;
+    fresh.camera.from = fresh.camera.from + place, fresh.camera.to = fresh.camera.to + place;
+    follow_edits(fresh, make_settings(), {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f)});
 }
 
 TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
@@ -93,16 +108,8 @@ TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
         fresh.displacements[0].filter = MapFilter::mip, fresh.displacements[0].autobump = has_autobump;
         RenderSettings settings = make_settings();
         settings.surface.pixel_error = 4;
-        Session session(fresh, settings);
-        Image before = session.render().image;
-        for (const MapEdit& edit : {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.3f)}) {
-            session.edit(edit);
-            bake(fresh, edit);
-            Image after = session.render().image;
-            expect_same(after, render(fresh, settings).image);
-            EXPECT_GT(count_differing(before, after), 100u);
-            before = after;
-        }
+        const Image before =
+            follow_edits(fresh, settings, {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.3f)});
         fresh.displacements[0].filter = MapFilter::none, fresh.displacements[0].autobump = false;
         EXPECT_GT(count_differing(before, render(fresh, settings).image), 100u) << "nothing was filtered";
     }
@@ -121,17 +128,10 @@ TEST(Session, edits_reach_the_coefficients_of_a_smooth_map) {
                 fresh.displacements[0].dequantize = true;
             }
             const RenderSettings settings = make_settings();
-            Session session(fresh, settings);
-            Image before = session.render().image;
-            expect_same(before, render(fresh, settings).image);
-            for (const MapEdit& edit : {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f)}) {
-                EXPECT_GT(session.edit(edit).patches, 0u);
-                bake(fresh, edit);
-                Image after = session.render().image;
-                expect_same(after, render(fresh, settings).image);
-                EXPECT_GT(count_differing(before, after), 100u);
-                before = after;
-            }
+            // The last one has the spline go far beyond its texels.
+            const Image before = follow_edits(fresh, settings,
+                                              {make_edit(30, 20, 20, 12, 0.12f),
+                                               make_edit(90, 0, 6, 64, -0.07f), make_edit(50, 30, 3, 3, 20)});
             fresh.displacements[0].filter = MapFilter::none, fresh.displacements[0].dequantize = false;
             EXPECT_GT(count_differing(before, render(fresh, settings).image), 100u) << "nothing was smooth";
         }
