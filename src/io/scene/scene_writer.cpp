@@ -162,7 +162,8 @@ class SceneWriter {
             if (material.opacity != 1) node["opacity"] = material.opacity;
             write_layers(material, node);
             visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
-                const std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
+                std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
+                if (input == "base_color") input = "color"; // files have had this name from the first
                 if (texture)
                     node[name] =
                         add_texture(texture, filter, fmt::format("{}_{}", material_names_.back(), input));
