@@ -104,7 +104,7 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
             scene.strength = float(parse_number("--env-strength", text, 0, 1e9));
         });
     add(verb, "--light", "sun:AZ,EL",
-        "a sun in place of the scene's: azimuth from +z to +x, elevation, degrees",
+        "a sun in place of the scene's; the environment stays. Azimuth from +z to +x, elevation, degrees",
         [&scene](const std::string& text) { scene.suns.push_back(parse_sun(text)); });
     verb.add_flag("--ground", scene.has_ground, "a plane under the lowest point")->group(kGroup);
 }

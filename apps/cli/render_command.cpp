@@ -142,6 +142,21 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     return exit_code != kExitDone ? exit_code : denoised;
 }
 
+/// What a resumed picture has of its own, beyond what this render was asked for.
+void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& image) {
+    if (result.statistics.camera_rays == 0)
+        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
+                   result.whole_samples, image.spp);
+    const std::string& range = result.image.metadata.at("relief:samples"); // "A:B"
+    const int most = std::stoi(range.substr(range.find(':') + 1)) - image.first_sample;
+    const bool is_uneven = image.noise == 0 && image.time_limit_s == 0 && most > result.whole_samples;
+    if (is_uneven)
+        fmt::print(stderr,
+                   "relief: pixels of the unfinished pass keep the {} samples that they had: --spp {} brings "
+                   "all others there\n",
+                   most, most);
+}
+
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
                    const std::filesystem::path& output, const PendingTimes& waiting) {
     catch_interrupts();
@@ -153,9 +168,8 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
         result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
-    if (!options.checkpoint.resumed.empty() && result.is_complete && result.statistics.camera_rays == 0)
-        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
-                   result.whole_samples, settings.image.spp);
+    if (!options.checkpoint.resumed.empty() && result.is_complete)
+        tell_of_earlier_samples(result, settings.image);
     const int exit_code = finish_picture(options, settings, output, waiting, result, printed_warnings);
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }

@@ -1,5 +1,6 @@
 // Pictures after edits of a map: those of a fresh scene with the edited map, bit for bit.
 #include <atomic>
+#include <initializer_list>
 
 #include <gtest/gtest.h>
 
