@@ -114,7 +114,7 @@ void add_display_options(CLI::App& verb, AimArguments& a) {
         [&a](const std::string& text) { a.background = parse_background(text); });
     add(verb, "--exposure", "EV", "of PNG: stops brighter, or auto", [&a](const std::string& text) {
         if (text != "auto") parse_number("--exposure", text, -32, 32);
-        a.exposure = text;
+        a.exposure = text.substr(text[0] == '+' ? 1 : 0);
     });
     add(verb, "--tonemap", "NAME", "of PNG: agx (default), aces, filmic, standard (clipped), raw (linear)",
         [&a](const std::string& text) {
@@ -150,6 +150,8 @@ void apply_background(const AimArguments& arguments, const std::filesystem::path
         throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
                                        "--exposure, --tonemap and --png-bits go with .png and .exr"});
     if (!arguments.tone_map.empty()) check_tone_map(arguments.tone_map);
+    if (arguments.background == "transparent" && get_lower_extension(output) == ".hdr")
+        throw Error(ErrorKind::usage, {"this format has no alpha", output.string(), "-o FILE.exr or .png"});
     if (arguments.background.empty()) return;
     // A PNG is laid over its colour after the tone curve, so that the colour is the one that was named.
     const bool is_over = arguments.background == "transparent" || is_png(output);

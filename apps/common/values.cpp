@@ -12,10 +12,19 @@ void refuse_value(const std::string& option, const std::string& text, const std:
     throw Error(ErrorKind::usage, {fmt::format("'{}' is not {}", text, expected), option, ""});
 }
 
+namespace {
+
+/// Where the digits begin: from_chars takes no plus sign.
+const char* skip_plus(const std::string& text) {
+    return text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+}
+
+} // namespace
+
 int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high) {
     int64_t value = 0;
     const char* end = text.data() + text.size();
-    const std::from_chars_result result = std::from_chars(text.data(), end, value);
+    const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
     if (result.ec != std::errc() || result.ptr != end || value < low || value > high)
         refuse_value(option, text, fmt::format("an integer from {} to {}", low, high));
     return value;
@@ -24,7 +33,7 @@ int64_t parse_integer(const std::string& option, const std::string& text, int64_
 double parse_number(const std::string& option, const std::string& text, double low, double high) {
     double value = 0;
     const char* end = text.data() + text.size();
-    const std::from_chars_result result = std::from_chars(text.data(), end, value);
+    const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
     if (result.ec != std::errc() || result.ptr != end || !(value >= low && value <= high))
         refuse_value(option, text, fmt::format("a number from {:g} to {:g}", low, high));
     return value;

@@ -78,7 +78,7 @@ TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
     EXPECT_EQ(film.at(0, 0, *film.find_channel("R")), 0);
     ASSERT_EQ(run({"merge", "film.exr", "-o", "film.png"}).exit_code, 0);
     EXPECT_EQ(read_texture(folder_ / "film.png").channel_count, 4u);
-    const Image plain = render("plain.png", {}), bright = render("bright.png", {"--exposure", "3"});
+    const Image plain = render("plain.png", {}), bright = render("bright.png", {"--exposure", "+3"});
     EXPECT_GT(bright.at(12, 8, 0), plain.at(12, 8, 0));
     for (const char* name : {"aces", "filmic", "standard", "raw"}) {
         render(std::string(name) + ".png", {"--tonemap", name});
@@ -96,6 +96,8 @@ TEST_F(AimOptionsTest, what_cannot_be_is_refused_before_the_render) {
     EXPECT_NE(refuse({"--background", "blue"}).find("#rrggbb"), std::string::npos);
     EXPECT_NE(refuse({"--save-scene", "copy.txt"}).find(".json"), std::string::npos);
     EXPECT_NE(refuse({"--turntable", "2", "--stats", "s.json"}).find("several pictures"), std::string::npos);
+    EXPECT_NE(render_bump("a.hdr", {"--background", "transparent"}).errors.find("has no alpha"),
+              std::string::npos);
     EXPECT_NE(render_bump("a.hdr", {"--exposure", "1"}).errors.find("radiance is written as it is"),
               std::string::npos);
 }
