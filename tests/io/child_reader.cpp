@@ -1,4 +1,5 @@
 // Readers of third-party libraries in a child process: the same mesh, and an Error whatever happens to it.
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -149,6 +150,11 @@ TEST_F(ChildReader, a_block_holds_all_arrays) {
     ASSERT_EQ(read.content, BlockContent::mesh);
     expect_equal(read.mesh, make_full_mesh());
     EXPECT_EQ(read_mesh_block(block.descriptor(), 100).content, BlockContent::nothing) << "too large";
+    Mesh without_uvs = make_full_mesh();
+    std::ranges::fill(without_uvs.uv_indices, kNoIndex);
+    const Block other;
+    write_mesh_block(other.descriptor(), without_uvs);
+    expect_equal(read_mesh_block(other.descriptor(), 1 << 20).mesh, without_uvs);
 }
 
 TEST_F(ChildReader, damaged_blocks_count_as_nothing) {

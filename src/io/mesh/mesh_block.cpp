@@ -86,6 +86,13 @@ bool has_good_indices(const std::vector<uint32_t>& indices, uint64_t corners, si
            std::all_of(indices.begin(), indices.end(), [&](uint32_t index) { return index < count; });
 }
 
+/// As has_good_indices, with kNoIndex for corners of faces without uvs.
+bool has_good_uv_indices(const Mesh& mesh, uint64_t corners) {
+    return mesh.uv_indices.size() == corners && std::ranges::all_of(mesh.uv_indices, [&](uint32_t index) {
+               return index == kNoIndex || index < mesh.uvs.size();
+           });
+}
+
 /// Whether all of the mesh can be walked by its indices; whether its values make sense is asked later.
 bool is_consistent(const Mesh& mesh) {
     uint64_t corners = 0;
@@ -94,8 +101,7 @@ bool is_consistent(const Mesh& mesh) {
         corners += size;
     }
     if (!has_good_indices(mesh.position_indices, corners, mesh.positions.size())) return false;
-    if (!mesh.uv_indices.empty() && !has_good_indices(mesh.uv_indices, corners, mesh.uvs.size()))
-        return false;
+    if (!mesh.uv_indices.empty() && !has_good_uv_indices(mesh, corners)) return false;
     if (!mesh.normal_indices.empty() && !has_good_indices(mesh.normal_indices, corners, mesh.normals.size()))
         return false;
     if (!mesh.tangents.empty() && mesh.tangents.size() != corners) return false;
