@@ -22,8 +22,8 @@ struct SunDirection {
 
 /// What is to be changed of a scene; all empty: nothing.
 struct AimOptions {
-    std::optional<Vec3f> from,
-        to; ///< of the camera; without `to` the camera looks at the middle of the scene
+    std::optional<Vec3f> from, ///< not with view or frame_all
+        to;                    ///< of the camera; without `to` the camera looks at the middle of the scene
     std::optional<float> fov_degrees;    ///< vertical, in (0, 180)
     std::optional<View> view;            ///< also frames all objects
     bool is_turntable = false;           ///< framed objects stay in the picture through a whole turn_camera

@@ -255,4 +255,22 @@ TEST_F(Aim, a_copy_of_a_scene_file_keeps_its_keys_and_moves_its_paths) {
     EXPECT_NE(content.find("[0.0, 0.0, 9.0]"), std::string::npos) << content;
 }
 
+TEST_F(Aim, a_copy_keeps_names_that_look_like_vectors) {
+    const std::string name = R"(a [1 2,3] "b" [4, 5].obj)";
+    const std::filesystem::path input = write(name, kPlane);
+    const std::filesystem::path file = folder_ / "copy.json";
+    save_scene_copy(load_mesh_scene(input, {}), input, {}, file);
+    EXPECT_EQ(load_scene(file).meshes.size(), 1u);
+}
+
+TEST_F(Aim, a_camera_is_placed_or_framed) {
+    const std::filesystem::path input = write("plane.obj", kPlane);
+    AimOptions aim;
+    aim.from = Vec3f{0, 0, 100}, aim.frame_all = true;
+    Scene scene = load_mesh_scene(input, {});
+    EXPECT_THROW(aim_scene(scene, aim, 1), Error);
+    aim.frame_all = false, aim.view = View::back;
+    EXPECT_THROW(aim_scene(scene, aim, 1), Error);
+}
+
 } // namespace relief

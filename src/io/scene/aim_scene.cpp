@@ -24,6 +24,9 @@ void require_objects(const Scene& scene) {
 }
 
 void aim_camera(Scene& scene, const AimOptions& options, float aspect) {
+    if (options.from && (options.view || options.frame_all))
+        throw Error(ErrorKind::usage, {"the camera has one place: from, or one that frames all objects",
+                                       scene.source, "leave out from, or view and frame-all"});
     Camera camera = scene.camera;
     if (options.fov_degrees) camera.fov_degrees = *options.fov_degrees;
     if (options.view || options.frame_all) {

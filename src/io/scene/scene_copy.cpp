@@ -123,8 +123,11 @@ void update_values(const Scene& scene, Json& root) {
 /// Vectors on one line.
 std::string join_numbers(const std::string& text) {
     std::string result;
+    bool is_string = false;
     for (size_t k = 0; k < text.size(); ++k) {
-        const size_t end = text[k] == '[' ? text.find(']', k) : std::string::npos;
+        if (text[k] == '"') is_string = !is_string;
+        if (is_string && text[k] == '\\') result += text[k++];
+        const size_t end = !is_string && text[k] == '[' ? text.find(']', k) : std::string::npos;
         if (end == std::string::npos || text.find_first_of("{[\"", k + 1) < end) {
             result += text[k];
             continue;
