@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -19,7 +21,7 @@ namespace relief {
 namespace {
 
 constexpr uint64_t kMostTexels = uint64_t(1) << 18; ///< 512 x 512: a few hundredths of a second
-constexpr size_t kMostFaces = 50000;                ///< of a mesh on which a map is tried
+constexpr size_t kMostFaces = 50000; ///< of a mesh on which a map is tried; else the map alone is looked at
 constexpr size_t kMostOverlapFaces = size_t(1) << 20;
 
 uint64_t count_texels(const Displacement& map) {
@@ -161,9 +163,9 @@ std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
     const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));
     if (assumed.midlevel) add_mistakes(thin, statistics, findings);
     const bool is_vector = map.type == DisplacementType::vector;
-    if (is_vector && (assumed.space || assumed.axes) && mesh.face_sizes.size() <= kMostFaces &&
-        find_mesh_faults(mesh).is_sound())
-        add_convention(map, guess_convention(thin, statistics, &mesh), findings);
+    if (!is_vector || (!assumed.space && !assumed.axes)) return findings;
+    const bool has_few = mesh.face_sizes.size() <= kMostFaces && find_mesh_faults(mesh).is_sound();
+    add_convention(map, guess_convention(thin, statistics, has_few ? &mesh : nullptr), findings);
     return findings;
 }
 
@@ -174,13 +176,16 @@ std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
     for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
         const Displacement& map = scene.displacements[index];
         if (map.assumed == AssumedConvention{}) continue;
-        const auto object = std::ranges::find_if(
-            scene.objects, [index](const Object& candidate) { return candidate.displacement == index; });
-        if (object == scene.objects.end()) continue;
-        for (Finding& finding : check_map(map, scene.meshes.at(object->mesh))) {
-            finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
-            findings.push_back(std::move(finding));
-        }
+        std::set<uint32_t> meshes;
+        for (const Object& object : scene.objects)
+            if (object.displacement == index) meshes.insert(object.mesh);
+        std::set<std::string> told; // what is not of one of the meshes
+        for (const uint32_t mesh : meshes)
+            for (Finding& finding : check_map(map, scene.meshes.at(mesh))) {
+                if (!told.insert(finding.text).second) continue;
+                finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
+                findings.push_back(std::move(finding));
+            }
     }
     return findings;
 }

@@ -84,6 +84,43 @@ TEST_F(Warnings, gaps_and_wrong_tiles_are_told) {
     expect_silence({"--vdm", "bump.exr", "--wrap", "repeat"});
 }
 
+std::string make_grid(int n) {
+    std::string text;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const double x = double(i) / n, y = double(j) / n;
+            text += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\nvt " + std::to_string(x) + " " +
+                    std::to_string(y) + "\n";
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            text += "f";
+            for (const int corner :
+                 {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i})
+                text += " " + std::to_string(corner + 1) + "/" + std::to_string(corner + 1);
+            text += "\n";
+        }
+    return text;
+}
+
+TEST_F(Warnings, of_axes_come_for_meshes_of_many_faces) {
+    write("plane.obj", make_grid(230));
+    expect_warning({"--vdm", "swapped.exr"}, "write --axes t,n,b, as presets mudbox");
+}
+
+TEST_F(Warnings, tell_of_each_mesh_that_uses_a_map) {
+    write("good.obj", read("plane.obj"));
+    write("wide.obj",
+          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 3 0\nvt 3 3\nvt 0 3\nf 1/1 2/2 3/3 4/4\n");
+    write("scene.json", R"({"environment": {}, "displacements": {"m": {"file": "bump.exr"}},
+        "meshes": {"good": {"file": "good.obj"}, "wide": {"file": "wide.obj"}},
+        "objects": [{"mesh": "good", "displacement": "m"}, {"mesh": "wide", "displacement": "m"}]})");
+    const CommandResult result =
+        run({"render", "scene.json", "--size", "8x8", "--spp", "1", "--strict", "-o", "b.exr"});
+    EXPECT_EQ(result.exit_code, 6);
+    EXPECT_TRUE(contains(result.errors, "the uvs of mesh 'wide' leave the unit square")) << result.errors;
+}
+
 TEST_F(Warnings, of_a_scene_file_name_its_keys) {
     const auto render_scene = [&](const std::string& said) {
         write("scene.json", R"({"camera": {"from": [0, 0, 5], "to": [0, 0, 0]}, "environment": {},
