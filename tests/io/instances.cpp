@@ -63,8 +63,15 @@ TEST_F(Instances, wrong_points_are_named) {
                        R"(, "materials": ["red", "blue"])")
                   .find("there are 2"),
               std::string::npos);
-    EXPECT_NE(complain(header + "property float qx\nend_header\n0 0 0 1\n0 0 0 0\n").find("no length"),
+    const std::string four =
+        "property float qw\nproperty float qx\nproperty float qy\nproperty float qz\nend_header\n";
+    EXPECT_NE(complain(header + four + "0 0 0 1 0 0 0\n0 0 0 0 0 0 0\n").find("no length"),
               std::string::npos);
+    for (const char* part : {"qw", "qx", "qz"})
+        EXPECT_NE(complain(header + "property float " + part + "\nend_header\n0 0 0 1\n0 0 0 1\n")
+                      .find("part of a rotation"),
+                  std::string::npos)
+            << part;
     EXPECT_NE(complain(header + "end_header\n0 0 0\n").find("ends early"), std::string::npos);
     EXPECT_NE(complain("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n")
                   .find("no x, y and z"),

@@ -49,13 +49,16 @@ void read_points(const PlyElement& element, const std::string& name, size_t mate
     const auto has = [&](size_t value) { return std::ranges::find(places, value) != places.end(); };
     if (!has(x) || !has(y) || !has(z))
         throw Error(ErrorKind::bad_input, {"the points have no x, y and z", name, kDamagedPlyHint});
+    const int parts = has(qw) + has(qx) + has(qy) + has(qz);
+    if (parts != 0 && parts != 4)
+        throw Error(ErrorKind::bad_input, {"the points have a part of a rotation only", name,
+                                           "a quaternion has qw, qx, qy and qz"});
     if (has(material) && material_count == 0)
         throw Error(ErrorKind::bad_input,
                     {"the points have material numbers, but no list of materials is given", name,
                      "\"instances\": { \"file\": ..., \"materials\": [\"first\", \"second\"] }"});
     std::array<double, kValues> values{};
     values[qw] = values[scale] = values[scale_x] = values[scale_y] = values[scale_z] = 1;
-    if (has(qx)) values[qw] = 0;
     for (uint64_t point = 0; point < element.count; ++point) {
         cursor.enter(element.name, point);
         for (size_t p = 0; p < places.size(); ++p) {
