@@ -301,6 +301,11 @@ void complete_render_options(RenderOptions& o) {
     if (!o.statistics_file.empty() && find_place(o.output) == find_place(o.statistics_file))
         throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
                                        o.statistics_file.string(), "name another one for --stats"});
+    for (const std::filesystem::path& other : {o.output, o.statistics_file})
+        if (!o.aim.saved_scene.empty() && !other.empty() &&
+            find_place(o.aim.saved_scene) == find_place(other))
+            throw Error(ErrorKind::usage, {"the scene would be written over by another output",
+                                           o.aim.saved_scene, "name another one for --save-scene"});
     const std::vector<std::string> films = list_films(o.checkpoint, o.output);
     keep_files(films, o.output), keep_files(films, o.statistics_file), keep_files(films, o.aim.saved_scene);
     check_writable(o.output);

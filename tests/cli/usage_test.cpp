@@ -50,6 +50,12 @@ TEST_F(Usage, the_picture_and_its_statistics_are_two_files) {
                    "./a.exr: the picture and its statistics cannot be one file");
 }
 
+TEST_F(Usage, a_saved_scene_is_a_file_of_its_own) {
+    expect_refused({"render", "plane.obj", "--save-scene", "s.json", "--stats", "s.json"}, "another output");
+    expect_refused({"render", "plane.obj", "--save-scene", "./s.json", "--stats", "s.json"},
+                   "another output");
+}
+
 TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
     expect_refused({"render", "plane.obj", "--size", "0x0"}, "from 1 to 65536");
     expect_refused({"render", "plane.obj", "--size", "1000000x4"}, "from 1 to 65536");

@@ -263,6 +263,28 @@ TEST_F(Aim, a_copy_keeps_names_that_look_like_vectors) {
     EXPECT_EQ(load_scene(file).meshes.size(), 1u);
 }
 
+TEST_F(Aim, a_ground_takes_no_name_and_no_file_of_others) {
+    write("plane.obj", kPlane);
+    const std::filesystem::path input =
+        write("s.json", R"({"materials": {"ground": {"base_color": [1, 0, 0]}},
+        "meshes": {"ground": {"file": "plane.obj"}},
+        "objects": [{"name": "ground", "mesh": "ground", "material": "ground"}]})");
+    AimOptions aim;
+    aim.has_ground = true;
+    Scene scene = load_scene(input);
+    aim_scene(scene, aim, 1);
+    const std::filesystem::path file = folder_ / "copy.json";
+    save_scene_copy(scene, input, {}, file);
+    save_scene_copy(scene, input, {}, file); // over its own files
+    const Scene read = load_scene(file);
+    ASSERT_EQ(read.objects.size(), 2u);
+    EXPECT_EQ(read.materials[read.objects[0].material].base_color, (Vec3f{1, 0, 0}));
+    EXPECT_EQ(read.materials[read.objects[1].material].base_color, (Vec3f{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(read.meshes[read.objects[0].mesh].positions, scene.meshes[0].positions);
+    write("copy_ground-2.obj", "mine");
+    EXPECT_THROW(save_scene_copy(scene, input, {}, file), Error);
+}
+
 TEST_F(Aim, a_camera_is_placed_or_framed) {
     const std::filesystem::path input = write("plane.obj", kPlane);
     AimOptions aim;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -88,6 +90,16 @@ void replace_suns(Scene& scene, const std::vector<SunDirection>& suns) {
 }
 
 /// A quad under the lowest point, so wide that its rim is far away.
+/// "ground", or with a number where something is called so.
+template <class Named> std::string name_ground(const std::vector<Named>& others) {
+    const auto is_taken = [&](const std::string& name) {
+        return std::ranges::any_of(others, [&](const Named& other) { return other.name == name; });
+    };
+    std::string name = "ground";
+    for (int k = 2; is_taken(name); ++k) name = fmt::format("ground-{}", k);
+    return name;
+}
+
 void add_ground(Scene& scene) {
     require_objects(scene);
     const Box box = measure_scene(scene);
@@ -95,7 +107,7 @@ void add_ground(Scene& scene) {
     const float radius = 20 * std::max({size.x, size.y, size.z});
     const float below = 1e-4f * std::max({size.x, size.y, size.z}); // samples may miss the lowest point
     Mesh plane;
-    plane.name = "ground";
+    plane.name = name_ground(scene.meshes);
     for (const auto& [x, z] : {std::pair{-1, 1}, {1, 1}, {1, -1}, {-1, -1}})
         plane.positions.push_back(
             {middle.x + float(x) * radius, box.lower.y - below, middle.z + float(z) * radius});
@@ -103,10 +115,10 @@ void add_ground(Scene& scene) {
     plane.face_sizes = {4};
     plane.position_indices = plane.uv_indices = {0, 1, 2, 3};
     Material material;
-    material.name = "ground";
+    material.name = name_ground(scene.materials);
     material.base_color = {0.5f, 0.5f, 0.5f}, material.roughness = 0.8f;
     Object object;
-    object.name = "ground";
+    object.name = name_ground(scene.objects);
     object.mesh = uint32_t(scene.meshes.size()), object.material = uint32_t(scene.materials.size());
     scene.meshes.push_back(std::move(plane));
     scene.materials.push_back(std::move(material));

@@ -1,5 +1,7 @@
 // save_scene_copy: the scene that is rendered as a scene file that names the files it was read from.
 #include <array>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -104,7 +106,13 @@ void add_ground(const Scene& scene, const fs::path& file, Json& root) {
             throw Error(ErrorKind::usage,
                         {"a file that is read would be written over",
                          (file.parent_path() / mesh_file).string(), "give the scene another name"});
-    write_text_file(file.parent_path() / mesh_file, format_obj(mesh));
+    const std::string text = format_obj(mesh);
+    if (std::ifstream there(file.parent_path() / mesh_file, std::ios::binary); there)
+        if (std::string(std::istreambuf_iterator<char>(there), {}) != text)
+            throw Error(ErrorKind::usage,
+                        {"another file would be written over", (file.parent_path() / mesh_file).string(),
+                         "move it away, or give the scene another name"});
+    write_text_file(file.parent_path() / mesh_file, text);
     root["materials"][material.name] = {{"base_color", to_json(material.base_color)},
                                         {"roughness", to_json(material.roughness)}};
     root["meshes"][mesh.name]["file"] = mesh_file.string();
