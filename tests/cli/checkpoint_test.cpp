@@ -3,7 +3,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <string>
 #include <thread>
+
+#include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "relief/io.h"
@@ -37,6 +40,32 @@ TEST_F(Checkpoint, a_killed_render_goes_on_to_the_same_bits) {
     EXPECT_GE(samples, 1024);
     EXPECT_EQ(render({"--spp", std::to_string(samples), "-o", "b.exr"}).exit_code, 0);
     EXPECT_EQ(run({"compare", "a.exr", "b.exr"}).exit_code, 0);
+}
+
+/// Time ends where it does: what this asks for is a pass that is not done, with two samples more at some
+/// pixels.
+TEST_F(Checkpoint, tells_which_samples_of_an_unfinished_pass_stay) {
+    const auto render_large = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "plane.obj", "--size", "640x480", "--bounces", "1", "-q"});
+        return run(more);
+    };
+    int whole = 0, most = 0;
+    for (int k = 1; k <= 20 && (whole == 0 || most < whole + 2); ++k) {
+        const CommandResult part =
+            render_large({"--spp", "4096", "--threads", "1", "--time-limit", std::to_string(0.1 * k),
+                          "--checkpoint", "5", "-o", "a.exr", "--stats", "s.json"});
+        ASSERT_EQ(part.exit_code, 0) << part.errors;
+        whole = nlohmann::json::parse(read("s.json"))["image"]["whole_samples"];
+        most = std::stoi(read_image(folder_ / "a.exr").metadata.at("relief:samples").substr(2));
+    }
+    ASSERT_GE(most, whole + 2);
+    const CommandResult less = render_large({"--spp", std::to_string(whole + 1), "--resume", "a.exr"});
+    EXPECT_EQ(less.exit_code, 0);
+    EXPECT_NE(less.errors.find("keep the " + std::to_string(most) + " samples"), std::string::npos)
+        << less.errors;
+    const CommandResult all = render_large({"--spp", std::to_string(most), "--resume", "a.exr"});
+    EXPECT_EQ(all.exit_code, 0);
+    EXPECT_EQ(all.errors.find("unfinished pass"), std::string::npos) << all.errors;
 }
 
 TEST_F(Checkpoint, tells_what_cannot_be_gone_on_with) {
