@@ -54,8 +54,11 @@ FileKind get_kind(const std::string& file) {
     throw Error(ErrorKind::usage, {message, where, hint});
 }
 
-void print_warnings(const ConvertOptions& options, const std::vector<std::string>& warnings) {
-    if (options.progress.is_quiet) return;
+/// `progress`: what may have a bar on the line, or null.
+void print_warnings(const ConvertOptions& options, const std::vector<std::string>& warnings,
+                    WorkProgress* progress = nullptr) {
+    if (options.progress.is_quiet || warnings.empty()) return;
+    if (progress) progress->end_line();
     for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
 }
 
@@ -138,10 +141,8 @@ int convert_map_file(const ConvertOptions& options) {
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement converted = convert_map(from, make_target(options, from, mesh_or_null, samples),
                                                mesh_or_null, &warnings, progress.part(kRead, kConverted));
-    if (!warnings.empty()) progress.end_line();
-    print_warnings(options, warnings);
+    print_warnings(options, warnings, &progress);
     write_map(converted, options.output, samples, progress.part(kConverted, 1));
-    progress.end_line();
     fmt::print("wrote {}: {}\n", options.output, describe(converted));
     return kExitDone;
 }
@@ -172,7 +173,6 @@ int convert_surface(const ConvertOptions& options) {
         const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()});
         progress.tell(kRead);
         write_mesh(mesh, options.output, progress.part(kRead, 1));
-        progress.end_line();
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }
@@ -182,12 +182,10 @@ int convert_surface(const ConvertOptions& options) {
     const Scene scene = load_surface(options);
     progress.tell(kRead);
     keep_files(list_files(scene), options.output);
-    if (!scene.warnings.empty()) progress.end_line();
-    print_warnings(options, scene.warnings);
+    print_warnings(options, scene.warnings, &progress);
     const Mesh mesh =
         make_displaced_mesh(scene, options.level.value_or(kUsualLevel), progress.part(kRead, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));
-    progress.end_line();
     fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
                mesh.face_sizes.size());
     return kExitDone;

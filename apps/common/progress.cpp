@@ -144,6 +144,7 @@ void WorkProgress::print(double fraction, const std::string& step) {
     progress.fraction = fraction;
     progress.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     printer_.print(progress, step);
+    if (fraction >= 1) printer_.end_line(); // what is said of the result comes below
 }
 
 } // namespace relief::cli
