@@ -3,7 +3,8 @@
 #include <cmath>
 #include <memory>
 #include <set>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ namespace {
 constexpr uint64_t kMostTexels = uint64_t(1) << 18; ///< 512 x 512: a few hundredths of a second
 constexpr size_t kMostFaces = 50000; ///< of a mesh on which a map is tried; else the map alone is looked at
 constexpr size_t kMostOverlapFaces = size_t(1) << 20;
+constexpr size_t kMostOverlapMeshes = 16; ///< of one map: each takes some hundredths of a second
 
 uint64_t count_texels(const Displacement& map) {
     uint64_t count = 0;
@@ -151,41 +153,53 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
                     mirrored, mesh.face_sizes.size(), mesh.name);
 }
 
-std::vector<Finding> check_map(const Displacement& map, const Mesh& mesh) {
-    std::vector<Finding> findings;
+/// What the values of the map say; the convention is tried on one of its meshes.
+void check_values(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
     const AssumedConvention& assumed = map.assumed;
-    if (!has_all_textures(map)) return findings;
-    add_range(map, mesh, findings);
-    add_mesh_doubts(map, mesh, findings);
-    add_overlap(map, mesh, findings);
-    if (!assumed.space && !assumed.axes && !assumed.midlevel) return findings;
+    if (!assumed.space && !assumed.axes && !assumed.midlevel) return;
     const Displacement thin = thin_out(map);
     const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));
     if (assumed.midlevel) add_mistakes(thin, statistics, findings);
-    const bool is_vector = map.type == DisplacementType::vector;
-    if (!is_vector || (!assumed.space && !assumed.axes)) return findings;
+    if (map.type != DisplacementType::vector || (!assumed.space && !assumed.axes)) return;
     const bool has_few = mesh.face_sizes.size() <= kMostFaces && find_mesh_faults(mesh).is_sound();
     add_convention(map, guess_convention(thin, statistics, has_few ? &mesh : nullptr), findings);
+}
+
+std::vector<Finding> check_map(const Displacement& map, const Scene& scene,
+                               const std::set<uint32_t>& meshes) {
+    std::vector<Finding> findings;
+    if (!has_all_textures(map)) return findings;
+    size_t count = 0;
+    for (const uint32_t index : meshes) {
+        const Mesh& mesh = scene.meshes.at(index);
+        add_range(map, mesh, findings);
+        add_mesh_doubts(map, mesh, findings);
+        if (++count <= kMostOverlapMeshes) add_overlap(map, mesh, findings);
+    }
+    check_values(map, scene.meshes.at(*meshes.begin()), findings);
     return findings;
+}
+
+/// Of each displacement.
+std::vector<std::set<uint32_t>> list_meshes(const Scene& scene) {
+    std::vector<std::set<uint32_t>> meshes(scene.displacements.size());
+    for (const Object& object : scene.objects)
+        if (object.displacement != kNoIndex) meshes.at(object.displacement).insert(object.mesh);
+    return meshes;
 }
 
 } // namespace
 
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
     std::vector<Finding> findings;
-    for (uint32_t index = 0; index < scene.displacements.size(); ++index) {
+    const std::vector<std::set<uint32_t>> meshes = list_meshes(scene);
+    for (size_t index = 0; index < meshes.size(); ++index) {
         const Displacement& map = scene.displacements[index];
-        if (map.assumed == AssumedConvention{}) continue;
-        std::set<uint32_t> meshes;
-        for (const Object& object : scene.objects)
-            if (object.displacement == index) meshes.insert(object.mesh);
-        std::set<std::string> told; // what is not of one of the meshes
-        for (const uint32_t mesh : meshes)
-            for (Finding& finding : check_map(map, scene.meshes.at(mesh))) {
-                if (!told.insert(finding.text).second) continue;
-                finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
-                findings.push_back(std::move(finding));
-            }
+        if (map.assumed == AssumedConvention{} || meshes[index].empty()) continue;
+        for (Finding& finding : check_map(map, scene, meshes[index])) {
+            finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
+            findings.push_back(std::move(finding));
+        }
     }
     return findings;
 }
