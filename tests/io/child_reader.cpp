@@ -52,6 +52,10 @@ TEST_F(ChildReader, reads_what_this_process_would_read) {
     EXPECT_EQ(mesh.face_sizes, std::vector<uint32_t>(25, 4));
     EXPECT_EQ(mesh.uv_indices.size(), 100u);
     expect_equal(load_mesh(file, in_child()), mesh);
+    const auto parts = write("parts.fbx", make_grid_fbx(2, true));
+    const Mesh mixed = load_mesh(parts);
+    EXPECT_EQ(std::ranges::count(mixed.uv_indices, kNoIndex), 16);
+    expect_equal(load_mesh(parts, in_child()), mixed);
     const auto scene =
         write("scene.json", R"({"meshes": {"g": {"file": "grid.fbx"}}, "objects": [{"mesh": "g"}]})");
     EXPECT_EQ(load_scene(scene, in_child().reader).hash, load_scene(scene).hash);

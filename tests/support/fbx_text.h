@@ -22,7 +22,8 @@ inline std::string make_document(const std::string& objects, const std::string& 
 } // namespace fbx_detail
 
 /// `side` x `side` quads of the unit square, their points on z = x y, with uvs.
-inline std::string make_grid_fbx(int side) {
+/// `has_bare_part`: a second mesh, without uvs, beside it.
+inline std::string make_grid_fbx(int side, bool has_bare_part = false) {
     std::string points, uvs, corners, uv_corners;
     const auto add = [](std::string& list, const std::string& value) {
         if (!list.empty()) list += ',';
@@ -47,8 +48,16 @@ inline std::string make_grid_fbx(int side) {
     using fbx_detail::make_array;
     const size_t point_count = size_t(side + 1) * size_t(side + 1),
                  corner_count = 4 * size_t(side) * size_t(side);
+    const std::string bare = has_bare_part
+                                 ? "\tGeometry: 11, \"Geometry::bare\", \"Mesh\" {\n" +
+                                       make_array("Vertices", points, 3 * point_count) +
+                                       make_array("PolygonVertexIndex", corners, corner_count) +
+                                       "\t\tGeometryVersion: 124\n\t}\n"
+                                       "\tModel: 21, \"Model::bare\", \"Mesh\" {\n\t\tVersion: 232\n\t}\n"
+                                 : std::string();
     return fbx_detail::make_document(
-        "\tGeometry: 10, \"Geometry::grid\", \"Mesh\" {\n" + make_array("Vertices", points, 3 * point_count) +
+        bare + "\tGeometry: 10, \"Geometry::grid\", \"Mesh\" {\n" +
+            make_array("Vertices", points, 3 * point_count) +
             make_array("PolygonVertexIndex", corners, corner_count) +
             "\t\tGeometryVersion: 124\n\t\tLayerElementUV: 0 {\n\t\tVersion: 101\n\t\tName: \"map1\"\n"
             "\t\tMappingInformationType: \"ByPolygonVertex\"\n"
@@ -57,7 +66,8 @@ inline std::string make_grid_fbx(int side) {
             "\t\t}\n\t\tLayer: 0 {\n\t\tVersion: 100\n\t\tLayerElement:  {\n\t\tType: \"LayerElementUV\"\n"
             "\t\tTypedIndex: 0\n\t\t}\n\t\t}\n\t}\n"
             "\tModel: 20, \"Model::grid\", \"Mesh\" {\n\t\tVersion: 232\n\t}\n",
-        "\tC: \"OO\",20,0\n\tC: \"OO\",10,20\n");
+        std::string("\tC: \"OO\",20,0\n\tC: \"OO\",10,20\n") +
+            (has_bare_part ? "\tC: \"OO\",21,0\n\tC: \"OO\",11,21\n" : ""));
 }
 
 /// A node that is connected to itself. Who follows children by recursion runs out of stack.
