@@ -315,7 +315,9 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         write_pixels<uint16_t>(name, 1, 1, 3, OIIO::TypeDesc::HALF, {0x3c01, 1, 0x8000});
     Scene scene = parse(R"({"render": {"seed": 3}, "environment": {"file": "env.exr", "strength": 0.1},
         "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3,
-            "base_color_texture": {"file": "env.exr", "filter": "bspline"}}},
+            "base_color_texture": {"file": "env.exr", "filter": "bspline"}, "opacity": 0.1,
+            "metallic_texture": {"file": "env.exr", "channel": "g"},
+            "opacity_texture": {"file": "env.exr", "channel": "b", "filter": "cubic"}}},
         "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file",
                                 "filter": "mip", "autobump": true, "dilate": false},
                           "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black", "frame": "dpdu",
@@ -355,7 +357,13 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         EXPECT_EQ(read.objects.at(i).world_from_object, scene.objects[i].world_from_object);
         EXPECT_EQ(read.objects[i].material, scene.objects[i].material);
     }
-    EXPECT_EQ(read.materials.at(0).base_color_filter, MapFilter::bspline);
+    const Material &material = read.materials.at(0), &given = scene.materials[0];
+    EXPECT_EQ(material.base_color_filter, MapFilter::bspline);
+    EXPECT_EQ(material.opacity, 0.1f);
+    EXPECT_EQ(material.metallic_texture->floats, given.metallic_texture->floats);
+    EXPECT_EQ(material.metallic_texture->floats.at(0), 2);
+    EXPECT_EQ(material.opacity_texture->floats, given.opacity_texture->floats);
+    EXPECT_EQ(material.opacity_filter, MapFilter::cubic);
     EXPECT_EQ(read.camera.from, scene.camera.from);
     EXPECT_EQ(read.environment->strength, 0.1f);
     EXPECT_EQ(read.environment->texture->floats, scene.environment->texture->floats);

@@ -159,7 +159,7 @@ class SceneWriter {
             node["metallic"] = to_json(material.metallic);
             node["ior"] = to_json(material.ior);
             node["emission"] = to_json(material.emission);
-            if (material.opacity != 1) node["opacity"] = material.opacity;
+            if (material.opacity != 1) node["opacity"] = to_json(material.opacity);
             write_layers(material, node);
             visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
                 std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
