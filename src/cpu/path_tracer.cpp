@@ -102,7 +102,6 @@ class TileTracer {
     Film& film_;
     TileCounters& counters_;
     PictureFootprints* footprints_;
-    bool has_cut_outs_;
     scalar::CameraFrame camera_;
     scalar::BounceLod bounce_lod_;
     uint32_t sample_index_ = 0;
@@ -146,7 +145,6 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       film_(film),
       counters_(report.counters),
       footprints_(report.footprints),
-      has_cut_outs_(std::ranges::any_of(scene.tracer.scene().materials, is_cut_out)),
       camera_(make_camera_frame(scene.tracer.scene())),
       bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
@@ -202,7 +200,7 @@ void TileTracer::trace_paths() {
         tracer_.closest_hits(rays_, hits_);
     else
         closest_bounce_hits(tracer_, rays_, coarse_from_, hits_, depth_, bounce_scratch_, scratch_);
-    if (has_cut_outs_)
+    if (tracer_.scene().has_cut_outs)
         pass_cut_outs(
             tracer_, rays_, depth_ > 0 ? std::span<const float>(coarse_from_) : std::span<const float>(),
             hits_, depth_, [&](uint32_t k, uint32_t round) { return draw_cut_out(active_[k], false, round); },
@@ -459,7 +457,7 @@ void TileTracer::pass_shadow_rays() {
 void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
     tracer_.any_hits(shadow_rays_, occluded_, depth_);
-    if (has_cut_outs_) pass_shadow_rays();
+    if (tracer_.scene().has_cut_outs) pass_shadow_rays();
     if (footprints_)
         for (size_t k = 0; k < shadows_.size(); ++k)
             note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);

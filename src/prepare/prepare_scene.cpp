@@ -210,6 +210,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->materials.emplace_back();
     for (Material& material : prepared->materials)
         material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
+    prepared->has_cut_outs = std::ranges::any_of(prepared->materials, is_cut_out);
     prepared->layers = make_material_layers(prepared->materials);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);

@@ -89,7 +89,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
     shadow_light_ = make_kernel(device, "shadow_light");
     film_ = make_kernel(device, "film");
-    if (std::ranges::any_of(tracer.scene().materials, is_cut_out)) {
+    if (tracer.scene().has_cut_outs) {
         cut_outs_.emplace(make_reading_kernel(tracer, "cut_outs"));
         saved_list_ = make_buffer<uint32_t>(device, "saved_list", capacity_);
     }
