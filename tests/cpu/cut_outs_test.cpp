@@ -1,5 +1,4 @@
 // Surfaces of partial opacity: what passes them, on the way from the camera, to lights and between bounces.
-#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,13 +8,6 @@
 
 namespace relief {
 namespace {
-
-std::shared_ptr<const Texture> make_constant(float value) {
-    auto texture = std::make_shared<Texture>();
-    texture->width = texture->height = 1, texture->channel_count = 1;
-    texture->floats = {value, 0, 0, 1};
-    return texture;
-}
 
 /// A displaced body with automatic levels on a floor, lit from all sides and by a sun.
 Scene make_body(const Material& material) {
@@ -39,7 +31,7 @@ std::vector<float> render_pixels(Scene scene, int bounces) {
 TEST(CutOuts, that_stop_nothing_are_not_there_and_those_that_stop_all_are_opaque) {
     Material opaque = make_matte(0.8f), absent = opaque, whole = opaque;
     absent.opacity = 0;
-    whole.opacity_texture = make_constant(1);
+    whole.opacity_texture = make_number_texture(1);
     Scene bare = make_body(opaque);
     bare.objects.erase(bare.objects.begin());
     EXPECT_EQ(render_pixels(make_body(absent), 3), render_pixels(bare, 3));
@@ -49,7 +41,7 @@ TEST(CutOuts, that_stop_nothing_are_not_there_and_those_that_stop_all_are_opaque
 TEST(CutOuts, by_texture_are_as_by_number) {
     Material number = make_matte(0.8f), texture = number;
     number.opacity = 0.25f;
-    texture.opacity = 0.5f, texture.opacity_texture = make_constant(0.5f);
+    texture.opacity = 0.5f, texture.opacity_texture = make_number_texture(0.5f);
     EXPECT_EQ(render_pixels(make_body(texture), 2), render_pixels(make_body(number), 2));
     EXPECT_NE(render_pixels(make_body(number), 2), render_pixels(make_body(make_matte(0.8f)), 2));
 }

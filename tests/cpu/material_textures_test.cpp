@@ -1,5 +1,4 @@
 // Textures of materials multiply their numbers.
-#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,14 +7,6 @@
 
 namespace relief {
 namespace {
-
-/// One texel whose first channel is `value`; the others must not matter.
-std::shared_ptr<const Texture> make_number(float value) {
-    auto texture = std::make_shared<Texture>();
-    texture->width = texture->height = 1, texture->channel_count = 3;
-    texture->floats = {value, 0.9f, 0.1f, 1};
-    return texture;
-}
 
 std::vector<float> render_pixels(const Material& material) {
     Scene scene;
@@ -29,13 +20,14 @@ std::vector<float> render_pixels(const Material& material) {
 void expect_factors(const Material& plain) {
     Material by_number = plain, by_texture = plain, unchanged = plain;
     by_number.metallic = 0.25f * plain.metallic, by_number.roughness = 0.5f * plain.roughness;
-    by_texture.metallic_texture = make_number(0.25f), by_texture.roughness_texture = make_number(0.5f);
+    by_texture.metallic_texture = make_number_texture(0.25f),
+    by_texture.roughness_texture = make_number_texture(0.5f);
     EXPECT_EQ(render_pixels(by_texture), render_pixels(by_number));
-    unchanged.metallic_texture = make_number(1);
+    unchanged.metallic_texture = make_number_texture(1);
     EXPECT_EQ(render_pixels(unchanged), render_pixels(plain));
     EXPECT_NE(render_pixels(by_number), render_pixels(plain));
     Material beyond = plain;
-    beyond.metallic = 1, beyond.metallic_texture = make_number(7);
+    beyond.metallic = 1, beyond.metallic_texture = make_number_texture(7);
     Material whole = plain;
     whole.metallic = 1;
     EXPECT_EQ(render_pixels(beyond), render_pixels(whole)) << "limited to [0, 1]";
@@ -52,7 +44,7 @@ TEST(MaterialTextures, multiply_the_metallic_of_a_base_under_layers) {
     Material coated;
     coated.base_color = {0.9f, 0.6f, 0.3f}, coated.metallic = 1, coated.coat_weight = 0.5f;
     Material by_number = coated, by_texture = coated;
-    by_number.metallic = 0.25f, by_texture.metallic_texture = make_number(0.25f);
+    by_number.metallic = 0.25f, by_texture.metallic_texture = make_number_texture(0.25f);
     EXPECT_EQ(render_pixels(by_texture), render_pixels(by_number));
     EXPECT_NE(render_pixels(by_number), render_pixels(coated));
 }

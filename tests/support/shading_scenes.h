@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "math/vec.h"
@@ -69,6 +70,14 @@ inline void add_object(Scene& scene, Mesh mesh, const Material& material) {
     scene.meshes.push_back(std::move(mesh));
     scene.materials.push_back(material);
     scene.objects.push_back(object);
+}
+
+/// One texel whose first channel is a number; the others must not matter.
+inline std::shared_ptr<const Texture> make_number_texture(float value) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = texture->height = 1, texture->channel_count = 3;
+    texture->floats = {value, 0.9f, 0.1f, 1};
+    return texture;
 }
 
 /// A Lambertian surface: no coat.

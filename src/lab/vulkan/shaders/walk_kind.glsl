@@ -1,6 +1,6 @@
-// Includes the walk of lab/walks/traverse_*.h that the macro WALK_... selects, under common names: start_walk(root), walk_on(), and its
-// state in walk_state. The hooks of formulas/tree.h come before, and enter_root_cell() of kd-trees; Key is defined where
-// the walk has one, kIsPushDown and kIsBacktrack where it is of kd-trees. A trail starts at a key.
+// Includes the walk of lab/walks/traverse_*.h that the macro WALK_... selects, under common names: start_walk(root),
+// walk_on(), and its state in walk_state. The hooks of formulas/tree.h come before, and enter_root_cell() of kd-trees; Key
+// is defined where the walk has one, kIsPushDown and kIsBacktrack where it is of kd-trees. A trail starts at a key.
 #ifndef RELIEF_WALK_KIND_GLSL
 #define RELIEF_WALK_KIND_GLSL
 
