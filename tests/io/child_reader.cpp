@@ -158,7 +158,9 @@ TEST_F(ChildReader, a_block_holds_all_arrays) {
     std::ranges::fill(without_uvs.uv_indices, kNoIndex);
     const Block other;
     write_mesh_block(other.descriptor(), without_uvs);
-    expect_equal(read_mesh_block(other.descriptor(), 1 << 20).mesh, without_uvs);
+    const MeshBlock read_again = read_mesh_block(other.descriptor(), 1 << 20);
+    EXPECT_EQ(read_again.content, BlockContent::mesh);
+    expect_equal(read_again.mesh, without_uvs);
 }
 
 TEST_F(ChildReader, damaged_blocks_count_as_nothing) {
