@@ -99,7 +99,8 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
         [&scene](const std::string& text) {
             scene.rotate_degrees = float(parse_number("--env-rotate", text, -360, 360));
         });
-    add(verb, "--env-strength", "F", "factor on the environment's radiance",
+    add(verb, "--env-strength", "F",
+        "factor on the environment's radiance, in place of that of the scene or the automatic one",
         [&scene](const std::string& text) {
             scene.strength = float(parse_number("--env-strength", text, 0, 1e9));
         });
@@ -109,9 +110,16 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
     verb.add_flag("--ground", scene.has_ground, "a plane under the lowest point")->group(kGroup);
 }
 
-void add_display_options(CLI::App& verb, AimArguments& a) {
+void add_output_options(CLI::App& verb, AimArguments& a) {
     add(verb, "--background", "COLOR", "behind the objects: '#rrggbb', black, white, gray, transparent",
         [&a](const std::string& text) { a.background = parse_background(text); });
+    add(verb, "--save-scene", "FILE", "write the scene as it is rendered, to go on editing: FILE.json",
+        [&a](const std::string& text) { a.saved_scene = text; });
+}
+
+} // namespace
+
+void add_display_options(CLI::App& verb, DisplayArguments& a) {
     add(verb, "--exposure", "EV", "of PNG: stops brighter, or auto", [&a](const std::string& text) {
         if (text != "auto") parse_number("--exposure", text, -32, 32);
         a.exposure = text.substr(text[0] == '+' ? 1 : 0);
@@ -131,25 +139,25 @@ void add_display_options(CLI::App& verb, AimArguments& a) {
             {{"8", "8"}, {"16", "16"}}};
         a.png_bits = parse_word("--png-bits", text, kNames);
     });
-    add(verb, "--save-scene", "FILE", "write the scene as it is rendered, to go on editing: FILE.json",
-        [&a](const std::string& text) { a.saved_scene = text; });
 }
-
-} // namespace
 
 void add_aim_options(CLI::App& verb, AimArguments& arguments) {
     add_camera_options(verb, arguments);
     add_light_options(verb, arguments);
-    add_display_options(verb, arguments);
+    add_display_options(verb, arguments.display);
+    add_output_options(verb, arguments);
+}
+
+void check_display(const DisplayArguments& display, const std::filesystem::path& output) {
+    if (get_lower_extension(output) == ".hdr" &&
+        !(display.exposure.empty() && display.tone_map.empty() && display.png_bits.empty()))
+        throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
+                                       "--exposure, --tonemap and --png-bits go with .png and .exr"});
+    if (!display.tone_map.empty()) check_tone_map(display.tone_map);
 }
 
 void apply_background(const AimArguments& arguments, const std::filesystem::path& output,
                       ImageSettings& image) {
-    if (get_lower_extension(output) == ".hdr" &&
-        !(arguments.exposure.empty() && arguments.tone_map.empty() && arguments.png_bits.empty()))
-        throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
-                                       "--exposure, --tonemap and --png-bits go with .png and .exr"});
-    if (!arguments.tone_map.empty()) check_tone_map(arguments.tone_map);
     if (arguments.background == "transparent" && get_lower_extension(output) == ".hdr")
         throw Error(ErrorKind::usage, {"this format has no alpha", output.string(), "-o FILE.exr or .png"});
     if (arguments.background.empty()) return;
@@ -158,10 +166,26 @@ void apply_background(const AimArguments& arguments, const std::filesystem::path
     image.background = is_over ? Vec3f{} : decode_colour(arguments.background);
 }
 
-void add_display_entries(const AimArguments& arguments, const std::filesystem::path& output, Image& image) {
-    if (!arguments.exposure.empty()) image.metadata["relief:exposure"] = arguments.exposure;
-    if (!arguments.tone_map.empty()) image.metadata["relief:display"] = arguments.tone_map;
-    if (!arguments.png_bits.empty()) image.metadata["relief:png_bits"] = arguments.png_bits;
+void add_display_entries(const DisplayArguments& display, Image& image) {
+    if (!display.exposure.empty()) image.metadata["relief:exposure"] = display.exposure;
+    if (!display.tone_map.empty()) image.metadata["relief:display"] = display.tone_map;
+    if (!display.png_bits.empty()) image.metadata["relief:png_bits"] = display.png_bits;
+}
+
+std::vector<std::string> list_picture_options(const AimArguments& arguments) {
+    std::vector<std::string> words;
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) words.push_back(fmt::format("{} {}", option, value));
+    };
+    add("--background", arguments.background);
+    add("--exposure", arguments.display.exposure);
+    add("--tonemap", arguments.display.tone_map);
+    add("--png-bits", arguments.display.png_bits);
+    return words;
+}
+
+void add_picture_entries(const AimArguments& arguments, const std::filesystem::path& output, Image& image) {
+    add_display_entries(arguments.display, image);
     if (arguments.background.empty()) return;
     const bool is_over = arguments.background == "transparent" || is_png(output);
     image.metadata["relief:background"] = is_over ? arguments.background : "linear " + arguments.background;

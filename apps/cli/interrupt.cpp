@@ -18,7 +18,7 @@ namespace {
 std::atomic<int> caught_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch lock-free atomics only");
 
-std::atomic<bool> is_polled{false}, is_heard{false}, has_picture{false};
+std::atomic<bool> is_polled{false}, is_heard{false}, has_picture{false}, is_waiting{false};
 
 std::atomic<int64_t> caught_at{0}; ///< steady clock, milliseconds; 0: no signal yet
 static_assert(std::atomic<int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
@@ -49,6 +49,7 @@ void start_patience() {
 /// A quick double stroke counts as one: the picture is written.
 extern "C" void note_signal(int signal) {
     constexpr int64_t kTogether = 500;
+    if (is_waiting) leave(signal, "\nrelief: interrupted while it waited for edits\n");
     if (!is_polled) leave(signal, "\nrelief: interrupted before the first ray; no picture was written\n");
     const int64_t now = get_milliseconds();
     int64_t first = 0;
@@ -63,14 +64,19 @@ extern "C" void note_signal(int signal) {
 } // namespace
 
 void catch_interrupts() {
-    is_polled = has_picture = false;
+    is_polled = has_picture = is_waiting = false;
     std::signal(SIGALRM, leave_unless_heard);
     // Signals ignored by the parent, as for background jobs, stay ignored.
     for (const int signal : {SIGINT, SIGTERM})
         if (std::signal(signal, note_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-void poll_interrupts() { is_polled = true; }
+void poll_interrupts() {
+    is_polled = true;
+    is_waiting = false;
+}
+
+void await_input() { is_waiting = true; }
 
 void keep_picture() { has_picture = true; }
 

@@ -16,6 +16,10 @@ void poll_interrupts();
 /// 0.15 s ends the command. Thread safe.
 void keep_picture();
 
+/// Until the next poll_interrupts a signal ends the command at once: it waits for input and has nothing to
+/// write.
+void await_input();
+
 /// The caught signal, 0 for none. Thread safe.
 int get_interrupt();
 

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "aim_options.h"
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/report.h"
@@ -34,6 +35,7 @@ struct MergeOptions {
     std::vector<std::string> parts;
     std::string output;
     bool allows_gaps = false, is_denoised = false;
+    DisplayArguments display;
 };
 
 int run_compare(const CompareOptions& options) {
@@ -54,9 +56,12 @@ int run_compare(const CompareOptions& options) {
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
 
-int get_sample_count(const Image& picture) {
+/// Of the whole picture: to the last that a part has or that is missing.
+int get_sample_count(const std::vector<PictureGap>& gaps, const Image& picture) {
     const std::string& samples = picture.metadata.at("relief:samples"); // "A:B"
-    return std::atoi(samples.c_str() + samples.find(':') + 1);
+    int count = std::atoi(samples.c_str() + samples.find(':') + 1);
+    for (const PictureGap& gap : gaps) count = std::max(count, gap.last_sample);
+    return count;
 }
 
 /// "samples 4:8 of rows 0 to 99", as --samples and --crop take them.
@@ -75,7 +80,7 @@ std::string describe_gap(const PictureGap& gap, const Image& picture, int sample
 /// What is missing, for people; a few of many.
 std::string describe_gaps(const std::vector<PictureGap>& gaps, const Image& picture) {
     constexpr size_t kMost = 6;
-    const int sample_count = get_sample_count(picture);
+    const int sample_count = get_sample_count(gaps, picture);
     std::string text;
     for (size_t k = 0; k < std::min(gaps.size(), kMost); ++k)
         text += (k > 0 ? "; " : "") + describe_gap(gaps[k], picture, sample_count);
@@ -85,7 +90,7 @@ std::string describe_gaps(const std::vector<PictureGap>& gaps, const Image& pict
 /// Only .exr says, by alpha and layer "samples", that a black pixel has no sample.
 void refuse_black_pixels(const std::vector<PictureGap>& gaps, const Image& picture,
                          const std::string& output) {
-    const int sample_count = get_sample_count(picture);
+    const int sample_count = get_sample_count(gaps, picture);
     const bool has_empty = std::any_of(gaps.begin(), gaps.end(), [&](const PictureGap& gap) {
         return gap.first_sample == 0 && gap.last_sample == sample_count;
     });
@@ -99,6 +104,7 @@ int run_merge(const MergeOptions& options) {
         throw Error(ErrorKind::usage,
                     {"parts and an output file are needed", "", "relief merge A.exr B.exr -o OUT.exr"});
     keep_files(options.parts, options.output);
+    check_display(options.display, options.output);
     check_writable(options.output);
     std::optional<Denoiser> denoiser;
     if (options.is_denoised) denoiser = load_denoiser(0);
@@ -115,6 +121,7 @@ int run_merge(const MergeOptions& options) {
         fmt::print(stderr, "relief: warning: {}\n", message);
     }
     if (denoiser) denoiser->denoise(merged);
+    add_display_entries(options.display, merged);
     write_image(merged, options.output);
     fmt::print("wrote {}\n", options.output);
     return kExitDone;
@@ -147,6 +154,7 @@ Command add_merge(CLI::App& verb) {
                   "join parts of a picture that lack pixels or samples of it, otherwise refused");
     verb.add_flag("--denoise", options->is_denoised,
                   "denoise the joined picture, by Open Image Denoise 2: parts need the layers albedo and N");
+    add_display_options(verb, options->display);
     return [options] { return run_merge(*options); };
 }
 

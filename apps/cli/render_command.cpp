@@ -123,7 +123,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     }
     const int denoised = options.is_denoised ? denoise_picture(options, result) : kExitDone;
     const double write_start = get_seconds();
-    add_display_entries(options.aim, output, result.image);
+    add_picture_entries(options.aim, output, result.image);
     const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
     statistics.load_s = waiting.load_s;
     statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
@@ -194,7 +194,8 @@ int render_turns(const RenderOptions& options, const RenderSettings& settings, c
 void save_aimed_scene(const RenderOptions& options, const RenderSettings& settings, Scene scene) {
     const ImageSettings& image = settings.image;
     scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
-    save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene);
+    save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene,
+                    list_picture_options(options.aim));
     fmt::print("wrote {}\n", options.aim.saved_scene.string());
 }
 
@@ -249,7 +250,13 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet
     while (exit_code == kExitDone) {
+        await_input();
+        if (get_interrupt() != 0) { // it came with the last picture
+            fmt::print(stderr, "relief: interrupted while it waited for edits\n");
+            return kExitSignalBase + get_interrupt();
+        }
         const std::optional<EditLine> line = edits.next();
+        poll_interrupts();
         if (!line) break;
         if (!is_pending) waiting.start = get_seconds() - line->read_s, waiting.load_s = 0;
         edits.with_place([&] {
@@ -264,6 +271,14 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     return exit_code;
 }
 
+/// The camera of a mesh alone is made for landscape pictures and its own angle: others frame it anew.
+AimOptions choose_aim(const RenderOptions& options, const ImageSettings& image) {
+    AimOptions aim = options.aim.scene;
+    const bool fits_already = image.width >= image.height && !aim.fov_degrees;
+    if (is_mesh_file(options.input) && !aim.from && !aim.view && !fits_already) aim.frame_all = true;
+    return aim;
+}
+
 int render_input(const RenderOptions& options, double start) {
     catch_interrupts();
     Scene scene = load_input(options);
@@ -276,8 +291,10 @@ int render_input(const RenderOptions& options, double start) {
     keep_files(files, options.aim.saved_scene);
     for (const std::string& film : list_films(options.checkpoint, options.output)) keep_files(files, film);
     RenderSettings settings = make_settings(options, scene.picture);
+    check_display(options.aim.display, options.output);
     apply_background(options.aim, options.output, settings.image);
-    aim_scene(scene, options.aim.scene, float(settings.image.width) / float(settings.image.height));
+    aim_scene(scene, choose_aim(options, settings.image),
+              float(settings.image.width) / float(settings.image.height));
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);

@@ -266,7 +266,7 @@ void complete_render_options(RenderOptions& o) {
     AimOptions& aim = o.aim.scene;
     if (o.aim.turntable > 0 && is_mesh_file(o.input) && !aim.view && !aim.from) aim.frame_all = true;
     check_mesh_options(o.mesh);
-    check_map_options(o.mesh);
+    check_map_options(o.mesh), check_map_words(o.mesh.map);
     if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
                     o.settings.image.crop != Window{} || !o.settings.image.layers.empty() ||
                     !o.edits.empty() || o.is_denoised || o.checkpoint.is_on()))
@@ -337,6 +337,7 @@ RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& pict
                         {fmt::format("'{}:{}' is not inside the {} samples of --spp", o.samples->first,
                                      o.samples->second, *o.given.spp),
                          "--samples", "leave out --spp: --samples alone says which samples to take"});
+        s.image.whole_samples = o.given.spp.value_or(0);
         s.image.first_sample = o.samples->first;
         s.image.spp = o.samples->second - o.samples->first;
     }
@@ -345,9 +346,11 @@ RenderSettings make_settings(const RenderOptions& o, const PictureDefaults& pict
             "--crop",
             fmt::format("{},{},{},{}", s.image.crop.x0, s.image.crop.y0, s.image.crop.x1, s.image.crop.y1),
             fmt::format("inside the picture of {}x{} pixels", s.image.width, s.image.height));
-    if (o.tile)
-        s.image.crop = make_tile_window(
-            s.image.crop == Window{} ? Window{0, 0, s.image.width, s.image.height} : s.image.crop, *o.tile);
+    if (o.tile) {
+        s.image.whole_window =
+            s.image.crop == Window{} ? Window{0, 0, s.image.width, s.image.height} : s.image.crop;
+        s.image.crop = make_tile_window(s.image.whole_window, *o.tile);
+    }
     if (o.pixel && (o.pixel->first >= s.image.width || o.pixel->second >= s.image.height))
         refuse_value("--pixel", fmt::format("{},{}", o.pixel->first, o.pixel->second),
                      fmt::format("inside the picture of {}x{} pixels", s.image.width, s.image.height));

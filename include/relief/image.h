@@ -74,8 +74,8 @@ ImageDifference compare_images(const Image& a, const Image& b, const std::string
 /// vectors, so their renormalised mean weighted by hits differs from that of all samples where the normals
 /// within a pixel vary. Pixels that no part covers are 0, their depth infinity. Parts carry "relief:samples"
 /// = "A:B" and, unless one sample range covers each whole part, the layer "samples". Throws Error{bad_input}
-/// for parts of different pictures (scene hash, seed, size, channels) or overlapping sample ranges of a
-/// pixel.
+/// for parts of different pictures (scene hash, seed, size, channels, "relief:settings") or overlapping
+/// sample ranges of a pixel.
 Image merge_images(std::span<const Image> parts);
 
 /// Samples [first_sample, last_sample) that pixels [x0, x1) x [y0, y1) of the display window lack.
@@ -85,8 +85,9 @@ struct PictureGap {
     friend bool operator==(const PictureGap&, const PictureGap&) = default;
 };
 
-/// What `parts`, as merge_images takes them, leave out of a whole picture: of the display window, or of their
-/// data window where all have the same one, and of the samples from 0 to the last that any part has. A part
+/// What `parts`, as merge_images takes them, leave out of a whole picture: of the window that
+/// "relief:whole_window" names, else of their data window where all have the same one, else of the display
+/// window; and of the samples from 0 to "relief:whole_samples", or to the last that any part has. A part
 /// with "samples.Y" counts by its least pixel, within each window that no edge of another part crosses. By
 /// rows. Throws Error{bad_input} for a part without "relief:samples".
 std::vector<PictureGap> find_gaps(std::span<const Image> parts);

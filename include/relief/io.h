@@ -124,10 +124,11 @@ void save_scene(const Scene& scene, const std::filesystem::path& folder,
 
 /// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by
 /// aim_scene, as a scene file that names the files of `input`; load_scene restores the same scene. Comments
-/// say what each section means. A mesh of the scene that came from no file is written beside it. Throws as
+/// say what each section means, and `picture_options`: what its picture had beside. A mesh of the scene that
+/// came from no file is written beside it; what `file` held before is kept as FILE.bak. Throws as
 /// write_text_file.
 void save_scene_copy(const Scene& scene, const std::filesystem::path& input, const MeshSceneOptions& options,
-                     const std::filesystem::path& file);
+                     const std::filesystem::path& file, const std::vector<std::string>& picture_options = {});
 
 /// Reads all channels of the first part as floats, with data window and metadata. Throws Error{bad_input} for
 /// a file that is missing, damaged, too large or of an unknown format, Error{failed} where the module

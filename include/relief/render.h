@@ -83,6 +83,10 @@ struct ImageSettings {
     std::optional<Vec3f> background;
     Window crop;          ///< part of the picture to render
     int first_sample = 0; ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]
+    /// Of a render that is a part of a picture: its window, and its samples a pixel. Kept in the header, so
+    /// that find_gaps knows what is missing; empty and 0: not known.
+    Window whole_window;
+    int whole_samples = 0;
     /// Any of depth N Ng P albedo uv id samples variance cost CryptoObject CryptoMaterial. The last two are
     /// of Cryptomatte 1.2: six ranks of id and coverage a pixel, their names in the picture's metadata.
     std::vector<std::string> layers;

@@ -61,6 +61,24 @@ void add_cache_warning(Statistics& statistics) {
         100 * lost / stages, statistics.bottom_rebuilt, statistics.bottom_cache_bytes >> 20));
 }
 
+/// What the mean of a pixel depends on beside the scene, alike on all engines and structures.
+std::string describe_light_and_surface(const RenderSettings& settings) {
+    const ImageSettings& image = settings.image;
+    const SurfaceSettings& surface = settings.surface;
+    const std::string background = image.background ? fmt::format("{} {} {}", image.background->x,
+                                                                  image.background->y, image.background->z)
+                                                    : "environment";
+    return fmt::format("bounces {}, clamp {}, background {}, surface {}, level {}, pixel error {}, lod {}, "
+                       "bounce levels {}, "
+                       "leaf {}",
+                       image.bounces, image.clamp_indirect, background,
+                       surface.mode == SurfaceMode::direct ? "direct" : "tessellated",
+                       surface.level == kAutoLevel ? "auto" : std::to_string(surface.level),
+                       surface.pixel_error, surface.lod == LodRule::field ? "field" : "ray",
+                       surface.bounce_levels == BounceLevels::automatic ? "auto" : "camera",
+                       surface.leaf == LeafKind::exact ? "exact" : "box");
+}
+
 } // namespace
 
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
@@ -83,20 +101,17 @@ Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes>
 
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {
     const ImageSettings& image = settings.image;
-    const SurfaceSettings& surface = settings.surface;
-    const Vec3f background = image.background.value_or(Vec3f{-1, -1, -1});
     // Layers of which no sums are kept, and their order, do not matter.
     std::vector<std::string> layers = image.layers;
     std::erase(layers, "samples");
     std::ranges::sort(layers);
-    return fmt::format(
-        "Relief {}, scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, bounces {}, clamp {}, "
-        "background {},{},{}, layers {}, noise {}, surface {} {} {} {} {} {}, engine {}",
-        RELIEF_VERSION_STRING, scene_hash, image.width, image.height, image.crop.x0, image.crop.y0,
-        image.crop.x1, image.crop.y1, image.seed, image.first_sample, image.bounces, image.clamp_indirect,
-        background.x, background.y, background.z, fmt::join(layers, ","), image.noise, int(surface.mode),
-        surface.level, surface.pixel_error, int(surface.lod), int(surface.bounce_levels), int(surface.leaf),
-        settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
+    return fmt::format("Relief {}, scene {:016x}, {}x{}, crop {},{},{},{}, seed {}, first sample {}, {}, "
+                       "layers {}, noise {}, "
+                       "engine {}",
+                       RELIEF_VERSION_STRING, scene_hash, image.width, image.height, image.crop.x0,
+                       image.crop.y0, image.crop.x1, image.crop.y1, image.seed, image.first_sample,
+                       describe_light_and_surface(settings), fmt::join(layers, ","), image.noise,
+                       settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
@@ -110,6 +125,12 @@ void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_c
     image.metadata["relief:samples"] =
         fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + samples);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
+    image.metadata["relief:settings"] = describe_light_and_surface(settings);
+    if (const Window& whole = settings.image.whole_window; whole != Window{})
+        image.metadata["relief:whole_window"] =
+            fmt::format("{},{},{},{}", whole.x0, whole.y0, whole.x1, whole.y1);
+    if (settings.image.whole_samples > 0)
+        image.metadata["relief:whole_samples"] = std::to_string(settings.image.whole_samples);
     if (settings.image.noise > 0) image.metadata["relief:noise"] = fmt::format("{}", settings.image.noise);
     if (settings.image.time_limit_s > 0)
         image.metadata["relief:time_limit"] = fmt::format("{} s", settings.image.time_limit_s);

@@ -1,5 +1,6 @@
 // What the parts of a picture leave out of it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -106,21 +107,30 @@ void add_band(std::vector<Cell> band, std::vector<Cell>& cells) {
     }
 }
 
+/// The window that all parts say they are of, or that all have; else the display window.
+Rectangle find_whole_window(std::span<const Image> images) {
+    const auto get_whole = [](const Image& image) {
+        const std::optional<std::array<int, 4>> named = read_whole_window(image);
+        return named ? Rectangle{(*named)[0], (*named)[1], (*named)[2], (*named)[3]} : get_window(image);
+    };
+    const Rectangle whole = get_whole(images[0]);
+    for (const Image& image : images)
+        if (get_whole(image) != whole) return {0, 0, image.full_width, image.full_height};
+    return whole;
+}
+
 } // namespace
 
 std::vector<PictureGap> find_gaps(std::span<const Image> images) {
     if (images.empty()) return {};
     std::vector<Part> parts;
-    Rectangle whole = get_window(images[0]);
     int end = 0;
-    bool is_one_window = true;
     for (size_t k = 0; k < images.size(); ++k) {
         parts.push_back({&images[k], get_window(images[k]), read_sample_range(images[k], k),
                          images[k].find_channel("samples.Y")});
-        is_one_window &= parts.back().window == whole;
-        end = std::max(end, parts.back().samples.second);
+        end = std::max({end, parts.back().samples.second, read_whole_samples(images[k])});
     }
-    if (!is_one_window) whole = {0, 0, images[0].full_width, images[0].full_height};
+    const Rectangle whole = find_whole_window(images);
     std::set<int> columns{whole.x0, whole.x1}, rows{whole.y0, whole.y1};
     for (const Part& part : parts) {
         for (const int x : {part.window.x0, part.window.x1})

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text_difference.h"
 #include "image/cryptomatte.h"
 #include "image/sample_range.h"
 #include "relief/error.h"
@@ -16,6 +17,7 @@ namespace relief {
 
 namespace {
 
+const char* const kSettingsKey = "relief:settings";       ///< bounces, levels and the like
 const char* const kInterruptedKey = "relief:interrupted"; ///< pixels lack some of these samples
 
 /// One part with its sample range and the channel of its sample counts.
@@ -74,6 +76,10 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
                       fmt::format("its {} is {}, that of part 1 {}", key, metadata_or_empty(image, key),
                                   metadata_or_empty(first, key)),
                       "parts must come from one scene, one seed and one background");
+    const std::string settings = metadata_or_empty(image, kSettingsKey);
+    if (const std::string expected = metadata_or_empty(first, kSettingsKey); settings != expected)
+        throw_bad(index, "it was rendered otherwise than part 1: " + describe_difference(settings, expected),
+                  "render all parts with the same settings");
 }
 
 /// As Film::resolve makes the layers; a layer that is not named is a mean over all samples.
@@ -280,6 +286,10 @@ Image merge_images(std::span<const Image> images) {
     result.metadata[kRenderedTag] = fmt::format("{}:{}", first, last);
     for (const Image& image : images)
         if (image.metadata.contains(kInterruptedKey)) result.metadata[kInterruptedKey] = "yes";
+    for (const char* key : {"relief:whole_window", "relief:whole_samples"})
+        for (const Image& image : images)
+            if (metadata_or_empty(image, key) != metadata_or_empty(images[0], key))
+                result.metadata.erase(key);
     const ChannelRules rules(result);
     std::vector<PartPixel> pixels;
     float* target = result.pixels.data();

@@ -93,10 +93,13 @@ std::string read_file_bytes(const fs::path& file) {
 }
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
-    temporary_ = target_;
-    temporary_ += fmt::format(".{}.tmp", ::getpid());
     std::error_code code;
-    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    place_ = target_;
+    if (fs::is_symlink(target_, code)) // the link stays
+        if (fs::path end = fs::weakly_canonical(target_, code); !code) place_ = std::move(end);
+    temporary_ = place_;
+    temporary_ += fmt::format(".{}.tmp", ::getpid());
+    const fs::path folder = place_.has_parent_path() ? place_.parent_path() : fs::path(".");
     [[maybe_unused]] const fs::file_status status = fs::status(target_, code);
     if (is_loop(code)) throw Error(ErrorKind::failed, {kLoop, target_.string(), kLoopHint});
     if (!target_.has_filename() || fs::is_directory(target_, code))
@@ -123,7 +126,7 @@ void AtomicFile::commit() {
     std::error_code code;
     const auto size = fs::file_size(temporary_, code);
     if (code || size == 0) fail("cannot be written: nothing reached the disk");
-    fs::rename(temporary_, target_, code);
+    fs::rename(temporary_, place_, code);
     if (code) fail("cannot be put in place: " + code.message());
     is_committed_ = true;
 }

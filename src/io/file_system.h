@@ -30,7 +30,7 @@ class AtomicFile {
     [[noreturn]] void fail(const std::string& message) const;
 
   private:
-    std::filesystem::path target_, temporary_;
+    std::filesystem::path target_, place_, temporary_; ///< `place_`: where a link ends
     bool is_committed_ = false;
 };
 

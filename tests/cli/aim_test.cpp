@@ -48,6 +48,25 @@ TEST_F(AimOptionsTest, a_saved_scene_renders_the_same_picture) {
     EXPECT_EQ(run({"compare", "a.exr", "b.exr"}).exit_code, 0);
 }
 
+/// Coverage of the outermost pixels, and of all.
+TEST_F(AimOptionsTest, pictures_of_any_shape_and_angle_show_all_of_a_mesh) {
+    const auto expect_framed = [&](const std::vector<std::string>& more) {
+        const Image image = render("framed.exr", more);
+        const size_t alpha = *image.find_channel("A");
+        float rim = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                if (x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height)
+                    rim += image.at(x, y, alpha);
+        EXPECT_EQ(rim, 0) << more[1];
+        EXPECT_GT(count_covered(image), 0.1f * float(image.width * image.height)) << more[1];
+    };
+    expect_framed({"--size", "16x48"});
+    expect_framed({"--size", "48x16"});
+    expect_framed({"--size", "32x32", "--fov", "10"});
+    expect_framed({"--size", "32x32", "--fov", "100"});
+}
+
 TEST_F(AimOptionsTest, a_turntable_writes_numbered_pictures_that_differ) {
     const CommandResult result = render_bump("turn.exr", {"--turntable", "3"});
     ASSERT_EQ(result.exit_code, 0) << result.errors;
@@ -76,7 +95,15 @@ TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
     EXPECT_EQ(colour.at(0, 0, 1), 0);
     const Image film = render("film.exr", {"--background", "transparent"});
     EXPECT_EQ(film.at(0, 0, *film.find_channel("R")), 0);
+    ASSERT_EQ(run({"merge", "film.exr", "-o", "brighter.png", "--exposure", "3"}).exit_code, 0);
+    EXPECT_EQ(run({"merge", "film.exr", "-o", "film.hdr", "--exposure", "3"}).exit_code, 2);
     ASSERT_EQ(run({"merge", "film.exr", "-o", "film.png"}).exit_code, 0);
+    const auto sum = [&](const char* name) {
+        float total = 0;
+        for (const float value : read_image(folder_ / name).pixels) total += value;
+        return total;
+    };
+    EXPECT_GT(sum("brighter.png"), 1.2f * sum("film.png"));
     EXPECT_EQ(read_texture(folder_ / "film.png").channel_count, 4u);
     const Image plain = render("plain.png", {}), bright = render("bright.png", {"--exposure", "+3"});
     EXPECT_GT(bright.at(12, 8, 0), plain.at(12, 8, 0));

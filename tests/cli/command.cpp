@@ -86,8 +86,8 @@ CommandResult CommandTest::finish(pid_t process) {
 }
 
 CommandResult CommandTest::render_bump(const std::string& output, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"render",        "plane.obj", "--vdm", "bump.exr",  "--preset",
-                                          "blender-brush", "-o",        output,  "--bounces", "1"};
+    std::vector<std::string> arguments = {"render",   "plane.obj",     "--vdm", "bump.exr",
+                                          "--preset", "blender-brush", "-o",    output};
     const auto add_default = [&](const char* name, const char* value) {
         for (const std::string& word : more) {
             if (word == name) return;
@@ -95,7 +95,7 @@ CommandResult CommandTest::render_bump(const std::string& output, const std::vec
         arguments.insert(arguments.end(), {name, value});
     };
     add_default("--size", "24x16");
-    add_default("--spp", "4");
+    add_default("--spp", "4"), add_default("--bounces", "1");
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
 }

@@ -1,6 +1,9 @@
 // render --edits: pictures that follow a map while it changes.
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -108,6 +111,23 @@ TEST_F(Edits, mistakes_on_standard_input_keep_what_was_done) {
     EXPECT_EQ(result.exit_code, 3) << result.errors;
     EXPECT_NE(result.errors.find("standard input, line 2"), std::string::npos) << result.errors;
     EXPECT_EQ(result.output, "wrote a.exr\nwrote b.exr\n");
+}
+
+TEST_F(Edits, an_interrupt_ends_the_wait_for_the_next_one) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t process = start({"render", "scene.json", "-o", "a.exr", "--edits", "-"}, [&ends] {
+        dup2(ends[0], STDIN_FILENO);
+        close(ends[1]);
+    });
+    for (int k = 0; k < 2000 && read("stdout.txt").find("wrote a.exr") == std::string::npos; ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    kill(process, SIGTERM);
+    const CommandResult result = finish(process); // would wait for the pipe to be closed
+    EXPECT_EQ(result.exit_code, 143) << result.errors;
+    EXPECT_NE(result.errors.find("interrupted while it waited for edits"), std::string::npos)
+        << result.errors;
+    close(ends[0]), close(ends[1]);
 }
 
 TEST_F(Edits, paths_start_from_the_current_folder) {

@@ -255,6 +255,37 @@ TEST_F(Aim, a_copy_of_a_scene_file_keeps_its_keys_and_moves_its_paths) {
     EXPECT_NE(content.find("[0.0, 0.0, 9.0]"), std::string::npos) << content;
 }
 
+TEST_F(Aim, a_copy_keeps_what_its_file_held_and_says_what_it_cannot_hold) {
+    write("plane.obj", kPlane);
+    const std::filesystem::path file = write("copy.json", "mine"), input = folder_ / "plane.obj";
+    const auto read = [](const std::filesystem::path& name) {
+        std::ifstream stream(name);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    const std::filesystem::path backup = folder_ / "copy.json.bak";
+    const Scene scene = load_mesh_scene(input, {});
+    save_scene_copy(scene, input, {}, file, {"--background white", "--exposure 1"});
+    EXPECT_EQ(read(backup), "mine");
+    EXPECT_NE(read(file).find("// Its picture was rendered with --background white --exposure 1,"),
+              std::string::npos)
+        << read(file);
+    save_scene_copy(scene, input, {}, file, {"--background white", "--exposure 1"});
+    EXPECT_EQ(read(backup), "mine") << "the same text again replaces nothing";
+    save_scene_copy(scene, input, {}, file);
+    EXPECT_NE(read(backup), "mine");
+    EXPECT_EQ(load_scene(file).meshes.size(), 1u);
+}
+
+TEST_F(Aim, files_are_written_where_links_lead) {
+    std::filesystem::create_directories(folder_ / "there");
+    write("there/a.txt", "old");
+    std::filesystem::create_symlink(folder_ / "there" / "a.txt", folder_ / "link.txt");
+    write_text_file(folder_ / "link.txt", "new");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.txt"));
+    std::ifstream stream(folder_ / "there" / "a.txt");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "new");
+}
+
 TEST_F(Aim, a_copy_keeps_names_that_look_like_vectors) {
     const std::string name = R"(a [1 2,3] "b" [4, 5].obj)";
     const std::filesystem::path input = write(name, kPlane);

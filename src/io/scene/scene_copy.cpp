@@ -159,8 +159,12 @@ std::string indent(const std::string& text) {
     return result;
 }
 
-std::string format_commented(const Json& root) {
-    std::string text = "// A scene of Relief: docs/formats.md says what each key means.\n{\n  \"version\": 1";
+std::string format_commented(const Json& root, const std::vector<std::string>& picture_options) {
+    std::string text = "// A scene of Relief: docs/formats.md says what each key means.\n";
+    if (!picture_options.empty())
+        text += fmt::format("// Its picture was rendered with {}, which are no part of a scene.\n",
+                            fmt::join(picture_options, " "));
+    text += "{\n  \"version\": 1";
     for (const auto& [key, comment] : kComments)
         if (root.contains(key) && !root[std::string(key)].empty())
             text += fmt::format(",\n\n  // {}\n  \"{}\": {}", comment, key,
@@ -168,10 +172,22 @@ std::string format_commented(const Json& root) {
     return text + "\n}\n";
 }
 
+/// A file with other text stays beside the new one: somebody may have gone on with it.
+void keep_backup(const fs::path& file, const std::string& text) {
+    std::error_code code;
+    if (!fs::is_regular_file(file, code) || read_file_bytes(file) == text) return;
+    fs::path backup = file;
+    backup += ".bak";
+    fs::copy_file(file, backup, fs::copy_options::overwrite_existing, code);
+    if (code)
+        throw Error(ErrorKind::failed, {"what the file holds cannot be kept: " + code.message(),
+                                        backup.string(), "check free space and rights"});
+}
+
 } // namespace
 
 void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneOptions& options,
-                     const fs::path& file) {
+                     const fs::path& file, const std::vector<std::string>& picture_options) {
     validate_scene(scene);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     Json root;
@@ -185,7 +201,9 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
     }
     update_values(scene, root);
     if (!scene.objects.empty()) add_ground(scene, file, root);
-    write_text_file(file, format_commented(root));
+    const std::string text = format_commented(root, picture_options);
+    keep_backup(file, text);
+    write_text_file(file, text);
 }
 
 } // namespace relief
