@@ -191,6 +191,8 @@ Inspection inspect_or_report(const InspectOptions& options) {
         if (!options.is_json || error.kind() != ErrorKind::bad_input) throw;
         Inspection inspection;
         inspection.findings.push_back({Severity::error, "E-READ", error.what()});
+        for (const Error::Parts& other : error.further())
+            inspection.findings.push_back({Severity::error, "E-READ", Error::describe(other)});
         return inspection;
     }
 }
@@ -246,6 +248,7 @@ void check_options(const InspectOptions& options) {
                     {fmt::format("{} goes with a map", options.map_only.front()), options.file,
                      "relief inspect MAP, or MESH --vdm MAP, or a scene file that says it all"});
     check_mesh_options(options.scene);
+    check_map_words(options.scene.map);
     keep_files({options.file, options.mesh, options.scene.displacement_map.string()}, options.picture);
     if (!options.picture.empty()) check_writable(options.picture);
 }

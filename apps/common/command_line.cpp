@@ -55,6 +55,8 @@ int run_guarded(const std::function<int()>& body) {
         return body();
     } catch (const Error& error) {
         report(error.where(), error.message(), name_options(error.hint()));
+        for (const Error::Parts& other : error.further())
+            report(other.where, other.message, name_options(other.hint));
         return int(error.kind());
     } catch (const std::bad_alloc&) {
         report("", "out of memory",

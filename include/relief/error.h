@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace relief {
 
@@ -21,22 +22,29 @@ class Error : public std::runtime_error {
         std::string hint;    ///< what the user can do; may be empty
     };
 
-    Error(ErrorKind kind, Parts parts)
-        : std::runtime_error(join(parts)), kind_(kind), parts_(std::move(parts)) {}
+    /// `further`: mistakes that were found together with the first, of independent places.
+    Error(ErrorKind kind, Parts parts, std::vector<Parts> further = {})
+        : std::runtime_error(describe(parts)),
+          kind_(kind),
+          parts_(std::move(parts)),
+          further_(std::move(further)) {}
 
     ErrorKind kind() const { return kind_; }
     const std::string& message() const { return parts_.message; }
     const std::string& where() const { return parts_.where; }
     const std::string& hint() const { return parts_.hint; }
+    const std::vector<Parts>& further() const { return further_; }
 
-  private:
-    static std::string join(const Parts& parts) {
+    /// "WHERE: MESSAGE (HINT)"
+    static std::string describe(const Parts& parts) {
         std::string text = parts.where.empty() ? parts.message : parts.where + ": " + parts.message;
         return parts.hint.empty() ? text : text + " (" + parts.hint + ")";
     }
 
+  private:
     ErrorKind kind_;
     Parts parts_;
+    std::vector<Parts> further_;
 };
 
 } // namespace relief

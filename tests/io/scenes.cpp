@@ -146,6 +146,32 @@ TEST_F(SceneFiles, unknown_keys_get_a_suggestion) {
     EXPECT_HAS(error_of(R"({"objects": [{"mesh": "plane"}]})"), "objects[0].mesh: there is no mesh 'plane'");
 }
 
+TEST_F(SceneFiles, mistakes_of_independent_parts_are_told_together) {
+    const auto find = [&](const std::string& text) -> std::vector<Error::Parts> {
+        try {
+            parse(text);
+        } catch (const Error& error) {
+            std::vector<Error::Parts> all = {{error.message(), error.where(), error.hint()}};
+            all.insert(all.end(), error.further().begin(), error.further().end());
+            return all;
+        }
+        return {};
+    };
+    const std::vector<Error::Parts> all = find(R"({"camera": {"fov_degrees": 200}, "materials":
+        {"a": {"rougness": 1}, "b": {"roughness": 2}}, "meshes": {"gone": {"file": "gone.obj"}},
+        "objects": [{"mesh": "gone"}, {"mesh": "there", "material": "a"}], "lights": {}})");
+    ASSERT_EQ(all.size(), 6u) << "and none of the object whose mesh cannot be read";
+    EXPECT_HAS(all[0].where, "camera.fov_degrees");
+    EXPECT_HAS(all[1].message, "rougness");
+    EXPECT_HAS(all[2].where, "materials.b.roughness");
+    EXPECT_HAS(all[3].message, "file not found");
+    EXPECT_HAS(all[4].message, "there is no mesh 'there'");
+    EXPECT_HAS(all[5].where, "lights");
+    std::string many = R"({"objects": [)";
+    for (int k = 0; k < 1000; ++k) many += R"({"mash": "a"},)";
+    EXPECT_EQ(find(many + R"({"mesh": "a"}]})").size(), 10u) << "the rest is not read";
+}
+
 TEST_F(SceneFiles, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": "big"})")), "objects[0].transform.scale");
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": [1, 0, 1]})")), "singular");

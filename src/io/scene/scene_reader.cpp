@@ -9,6 +9,7 @@
 #include "base/suggest.h"
 #include "io/file_system.h"
 #include "io/mesh/point_ply.h"
+#include "io/scene/error_list.h"
 #include "io/scene/json_node.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
@@ -37,13 +38,14 @@ uint32_t find_named(const JsonNode& node, const NameIndex& index, const char* wh
 /// Reads the members of a section of names into a list and remembers where each went.
 template <class Item, class Read>
 NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<Item>& items,
-                       const Read& read) {
+                       ErrorList& errors, const Read& read) {
     NameIndex index;
     const auto section = root.find(key);
     if (!section) return index;
     for (const auto& [name, node] : section->members()) {
         index[name] = uint32_t(items.size());
-        items.push_back(read(name, node));
+        items.emplace_back(); // has its place, for objects that name it, though it may not be readable
+        errors.attempt([&, &name = name, &node = node] { items.back() = read(name, node); });
     }
     return index;
 }
@@ -103,15 +105,23 @@ void add_instances(const JsonNode& node, const Object& object, const NameIndex& 
     }
 }
 
-void read_objects(const JsonNode& section, const ObjectNames& names, const AssetCache& assets, Scene& scene,
+void read_objects(const JsonNode& node, const ObjectNames& names, const AssetCache& assets, Scene& scene,
                   ContentHash& hash) {
-    for (const JsonNode& node : section.elements()) {
-        Object object = read_object(node, names);
-        if (const auto instances = node.find("instances"))
-            add_instances(*instances, object, names.materials, assets, scene.objects, hash);
-        else
-            scene.objects.push_back(std::move(object));
-    }
+    Object object = read_object(node, names);
+    if (const auto instances = node.find("instances"))
+        add_instances(*instances, object, names.materials, assets, scene.objects, hash);
+    else
+        scene.objects.push_back(std::move(object));
+}
+
+/// Calls `read` for each element of a section, if it is there.
+template <class Read>
+void read_list(const JsonNode& root, std::string_view key, ErrorList& errors, const Read& read) {
+    std::vector<JsonNode> nodes;
+    errors.attempt([&] {
+        if (const auto section = root.find(key)) nodes = section->elements();
+    });
+    for (const JsonNode& node : nodes) errors.attempt([&] { read(node); });
 }
 
 /// Content of files that the scene does not hold goes into `hash`.
@@ -120,22 +130,29 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     root.check_keys(scene_keys::kRoot);
     if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
         version->fail("only version 1 is known", "use a newer version of the program");
-    if (const auto node = root.find("render")) scene.picture = read_picture(*node);
-    if (const auto node = root.find("camera")) scene.camera = read_camera(*node);
-    if (const auto node = root.find("environment")) scene.environment = read_environment(*node, assets);
+    ErrorList errors;
+    const auto read_node = [&](const char* key, const auto& read) {
+        if (const auto node = root.find(key)) errors.attempt([&] { read(*node); });
+    };
+    read_node("render", [&](const JsonNode& node) { scene.picture = read_picture(node); });
+    read_node("camera", [&](const JsonNode& node) { scene.camera = read_camera(node); });
+    read_node("environment",
+              [&](const JsonNode& node) { scene.environment = read_environment(node, assets); });
     ObjectNames names;
-    names.materials = read_section(root, "materials", scene.materials, [&](const auto& name, const auto& n) {
-        return read_material(n, name, assets);
-    });
+    names.materials =
+        read_section(root, "materials", scene.materials, errors,
+                     [&](const auto& name, const auto& n) { return read_material(n, name, assets); });
     names.displacements =
-        read_section(root, "displacements", scene.displacements,
+        read_section(root, "displacements", scene.displacements, errors,
                      [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
-    names.meshes = read_section(root, "meshes", scene.meshes, [&](const auto& name, const auto& n) {
+    names.meshes = read_section(root, "meshes", scene.meshes, errors, [&](const auto& name, const auto& n) {
         return read_mesh(n, name, assets, reader);
     });
-    if (const auto node = root.find("objects")) read_objects(*node, names, assets, scene, hash);
-    if (const auto node = root.find("lights"))
-        for (const JsonNode& element : node->elements()) scene.lights.push_back(read_light(element));
+    read_list(root, "objects", errors,
+              [&](const JsonNode& node) { read_objects(node, names, assets, scene, hash); });
+    read_list(root, "lights", errors,
+              [&](const JsonNode& node) { scene.lights.push_back(read_light(node)); });
+    errors.throw_if_any();
 }
 
 /// Size and samples of the picture may change without its being another picture.
