@@ -92,4 +92,12 @@ void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& 
     adder.add_flag(start + "flip-v", "row 0 of the map is v = 0", options.flip_v);
 }
 
+void check_map_words(const MapOptions& options) {
+    try {
+        make_map_meaning(options);
+    } catch (const Error& error) {
+        throw Error(ErrorKind::usage, {error.message(), error.where(), error.hint()});
+    }
+}
+
 } // namespace relief::cli

@@ -22,6 +22,9 @@ struct MapOptionPlace {
 /// parsing.
 void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& place);
 
+/// Throws Error{usage} for words and axes that mean nothing.
+void check_map_words(const MapOptions& options);
+
 /// "F" or "F,F,F". Throws Error{usage}.
 Vec3f parse_factors(const std::string& option, const std::string& text);
 

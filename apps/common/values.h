@@ -50,9 +50,10 @@ T parse_word(const std::string& option, const std::string& text,
         if (words[i].first == text) return words[i].second;
         known[i] = words[i].first;
     }
-    const std::string expected = fmt::format("{}", fmt::join(known, ", "));
+    std::string hint = suggest_word(text, known);
+    if (!hint.starts_with("did")) hint.clear(); // a list, which the message has already
     throw Error(ErrorKind::usage,
-                {fmt::format("'{}' is not one of: {}", text, expected), option, suggest_word(text, known)});
+                {fmt::format("'{}' is not one of: {}", text, fmt::join(known, ", ")), option, hint});
 }
 
 } // namespace relief::cli

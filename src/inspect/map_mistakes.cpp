@@ -236,13 +236,14 @@ void note_convention(const Displacement& map, MapMeaning meaning, const MapConve
     const bool is_other_space = convention.space.is_clear && convention.space.value != map.space &&
                                 map.space != DisplacementSpace::world;
     if (is_other_space)
-        add_note(findings, "I-SPACE", "declared as {} space, but looks like {} space: {}",
+        add_note(findings, "I-SPACE", "{} as {} space, but looks like {} space: {}",
+                 map.assumed.space ? "assumed" : "declared",
                  map.space == DisplacementSpace::tangent ? "tangent" : "object",
                  map.space == DisplacementSpace::tangent ? "object" : "tangent", convention.space.reason);
     if (is_other_space || !convention.axes.is_clear || map.space == DisplacementSpace::world) return;
     if (!agrees_on_axes(convention, map))
-        add_note(findings, "I-AXES", "the declared axes are not what the values look like: {}",
-                 convention.axes.reason);
+        add_note(findings, "I-AXES", "the {} axes are not what the values look like: {}",
+                 map.assumed.axes ? "assumed" : "declared", convention.axes.reason);
 }
 
 } // namespace relief

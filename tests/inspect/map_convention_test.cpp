@@ -61,7 +61,9 @@ TEST(MapConvention, rows_the_other_way_up_turn_no_sign) {
 
 TEST(MapConvention, declared_axes_that_the_values_contradict_are_noted) {
     Displacement map = make_map(make_sculpt_texture(kSize, {{0, 2, 1}, {1, 1, 1}}));
-    EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "I-AXES"));
+    EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::declared), "I-AXES"), "the declared axes");
+    map.assumed.axes = true;
+    EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::declared), "I-AXES"), "the assumed axes");
     map.axes = {{0, 2, 1}, {1, 1, 1}};
     EXPECT_FALSE(has_code(inspect_map(map, MapMeaning::declared), "I-AXES"));
 }
