@@ -192,7 +192,19 @@ size_t Film::pixel_index(int x, int y) const {
     return size_t(y - window_.y0) * size_t(window_.x1 - window_.x0) + size_t(x - window_.x0);
 }
 
+/// Without further layers a sample is five additions.
+void Film::add_colour(int x, int y, const FilmSample& sample) {
+    const size_t index = pixel_index(x, y);
+    double* sums = sums_.data() + index * stride_;
+    add_to(sums, sample.radiance);
+    sums[3] += sample.alpha;
+    ++counts_[index];
+}
+
 void Film::add_sample(int x, int y, const FilmSample& sample) {
+    const bool has_colour_alone =
+        stride_ == kRadianceSums && hit_counts_.empty() && depths_.empty() && !needs_hit_ids();
+    if (has_colour_alone) return add_colour(x, y, sample);
     FilmSums sums;
     const auto square = [](float v) { return double(v) * v; };
     const bool is_hit = sample.id != 0;
