@@ -204,16 +204,27 @@ struct Environment {
     float rotate_degrees = 0;
 };
 
-enum class LightType { sun, point };
+enum class LightType { sun, point, rectangle, disk, spot };
 
 struct Light {
     LightType type = LightType::sun;
-    Vec3f direction{0, -1, 0};   ///< sun: direction of travel of the light
+    /// Sun: direction of travel of the light. Rectangle and disk: where the face looks that shines; the other
+    /// is dark. Spot: its axis.
+    Vec3f direction{0, -1, 0};
     float angle_degrees = 0.53f; ///< sun: diameter of the disc, [0, 90]; 0 is a delta light
-    Vec3f position{0, 0, 0};     ///< point
-    float radius = 0;            ///< point: radius of its sphere; 0 is a delta light
+    Vec3f position{0, 0, 0};     ///< centre, of all but suns
+    float radius = 0;            ///< of the disk, > 0; of the sphere of a point or spot: 0 is a delta light
     Vec3f color{1, 1, 1};
-    float strength = 1; ///< sun: irradiance at normal incidence; point: radiant intensity
+    /// Sun: irradiance at normal incidence. Others: radiant intensity, of rectangles, disks and spots along
+    /// `direction`; that of the former is their radiance times their area, whatever their size.
+    float strength = 1;
+    Vec3f up{0, 1, 0};           ///< rectangle: along its height; where parallel to `direction`, -z
+    float width = 1, height = 1; ///< rectangle: > 0
+    float cone_degrees = 45;     ///< spot: whole angle of its cone, (0, 180]
+    float blend = 0; ///< spot: part of the angle from the edge inwards over which it fades, [0, 1]
+    /// Whether camera rays see the light itself; only of one with extent. It never hides what is behind it,
+    /// and stays out of the alpha channel.
+    bool is_visible_to_camera = false;
 };
 
 /// Image settings stored in a scene file; the command line overrides them.

@@ -238,6 +238,10 @@ void TileTracer::add_backgrounds() {
         count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
+    if (depth_ == 0 && lights_.has_visible_lights())
+        for (size_t k = 0; k < active_.size(); ++k)
+            paths_[active_[k]].result.radiance +=
+                lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
     if (depth_ == 0 && settings_.image.background) {
         for (size_t n = 0; n < count; ++n)
             paths_[active_[missed_[n]]].result.radiance += *settings_.image.background;

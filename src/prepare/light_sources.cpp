@@ -26,21 +26,68 @@ scalar::LightSourceData make_source(uint32_t kind, float power) {
     return source;
 }
 
+uint32_t find_kind(LightType type) {
+    switch (type) {
+    case LightType::sun:
+        return scalar::kSourceSun;
+    case LightType::point:
+        return scalar::kSourcePoint;
+    case LightType::rectangle:
+        return scalar::kSourceRectangle;
+    case LightType::disk:
+        return scalar::kSourceDisk;
+    case LightType::spot:
+        return scalar::kSourceSpot;
+    }
+    return scalar::kSourcePoint;
+}
+
+/// 1 - cos of half of an angle.
+float make_cone_height(double angle_degrees) {
+    const double half_angle = angle_degrees * std::numbers::pi / 360;
+    const double half_sine = std::sin(half_angle / 2);
+    return float(2 * half_sine * half_sine);
+}
+
+/// Width, height and the way that the light faces. Where `up` says nothing, as +y of a light that looks
+/// straight down, -z is up.
+scalar::Basis make_face(const Light& light) {
+    const Vec3f facing = normalize(light.direction);
+    if (light.type != LightType::rectangle) return scalar::make_basis(facing);
+    Vec3f width = cross(normalize(light.up), facing);
+    if (length(width) < 1e-4f) width = cross({0, 0, -1}, facing);
+    if (length(width) < 1e-4f) return scalar::make_basis(facing);
+    width = normalize(width);
+    return {width, cross(facing, width), facing};
+}
+
+void place_light(const Light& light, scalar::LightSourceData& source) {
+    source.center = light.position;
+    source.radius = light.type == LightType::rectangle ? 0 : light.radius;
+    source.radius2 = source.radius * source.radius;
+    if (light.type == LightType::point) return;
+    source.basis = make_face(light);
+    if (light.type == LightType::spot) {
+        source.cone = make_cone_height(light.cone_degrees);
+        source.edge = make_cone_height(double(light.cone_degrees) * (1 - double(light.blend)));
+        return;
+    }
+    if (light.type == LightType::rectangle)
+        source.half_width = light.width / 2, source.half_height = light.height / 2;
+    source.radius2 = scalar::shape_area(source) / (2 * std::numbers::pi_v<float>);
+}
+
 scalar::LightSourceData make_light_source(const Light& light, float power) {
-    const bool is_sun = light.type == LightType::sun;
-    scalar::LightSourceData source = make_source(is_sun ? scalar::kSourceSun : scalar::kSourcePoint, power);
+    scalar::LightSourceData source = make_source(find_kind(light.type), power);
     source.color = light.color;
     source.strength = light.strength;
-    if (is_sun) {
-        const double half_angle = light.angle_degrees * std::numbers::pi / 360;
-        const double half_sine = std::sin(half_angle / 2);
-        source.basis = scalar::make_basis(normalize(-light.direction));
-        source.cone = float(2 * half_sine * half_sine);
-    } else {
-        source.center = light.position;
-        source.radius = light.radius;
-        source.radius2 = light.radius * light.radius;
+    source.is_visible = light.is_visible_to_camera ? 1 : 0;
+    if (light.type != LightType::sun) {
+        place_light(light, source);
+        return source;
     }
+    source.basis = scalar::make_basis(normalize(-light.direction));
+    source.cone = make_cone_height(light.angle_degrees);
     return source;
 }
 

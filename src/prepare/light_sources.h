@@ -30,8 +30,8 @@ struct EmitterTable {
 
 EmitterTable make_emitter_table(const PreparedScene& scene);
 
-/// What may be drawn, in this order: the environment of the given mean luminance, suns and point lights, the
-/// emissive surfaces as one. Lights without power are left out.
+/// What may be drawn, in this order: the environment of the given mean luminance, the scene's list of lights,
+/// the emissive surfaces as one. Lights without power are left out.
 std::vector<scalar::LightSourceData>
 make_light_sources(const PreparedScene& scene, float environment_luminance, const EmitterTable& emitters);
 

@@ -256,18 +256,55 @@ void check_camera(const Camera& camera) {
         fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
 }
 
+/// Squares of lengths from here to kFarthest are floats without loss.
+constexpr float kSmallestFace = 1e-18f;
+
+void check_face(const std::string& where, const char* what, float value) {
+    if (!(value >= kSmallestFace && value <= kFarthest))
+        fail(where, fmt::format("{} is {}, not in [{}, {}]", what, value, kSmallestFace, kFarthest),
+             fmt::format("a light of this type needs a {} above 0", what));
+}
+
+void check_placed_light(const std::string& where, const Light& light) {
+    check_range(where, "position", light.position, -kHuge, kHuge);
+    if (light.type == LightType::disk)
+        check_face(where, "radius", light.radius);
+    else if (light.type != LightType::rectangle)
+        check_range(where, "radius", light.radius, 0, kHuge);
+    if (light.type == LightType::rectangle) {
+        if (!is_finite(light.up) || length(normalize(light.up)) == 0)
+            fail(where, "up has no length or is not finite");
+        check_face(where, "width", light.width);
+        check_face(where, "height", light.height);
+    }
+    if (light.type == LightType::spot) {
+        if (!(light.cone_degrees > 0 && light.cone_degrees <= 180))
+            fail(where, fmt::format("the angle of its cone is {}, not in (0, 180]", light.cone_degrees));
+        check_range(where, "blend", light.blend, 0, 1);
+    }
+}
+
+bool has_extent(const Light& light) {
+    if (light.type == LightType::sun) return light.angle_degrees > 0;
+    return light.type == LightType::rectangle || light.radius > 0;
+}
+
 void check_light(const Light& light, size_t index) {
     const std::string where = fmt::format("light {}", index);
+    if (light.type < LightType::sun || light.type > LightType::spot)
+        fail(where, fmt::format("type {} is none of LightType", int(light.type)));
     check_range(where, "color", light.color, 0, kHuge);
     check_range(where, "strength", light.strength, 0, kHuge);
-    if (light.type == LightType::sun) {
-        if (!is_finite(light.direction) || length(normalize(light.direction)) == 0)
-            fail(where, "direction has no length or is not finite");
+    if (light.type != LightType::point &&
+        (!is_finite(light.direction) || length(normalize(light.direction)) == 0))
+        fail(where, "direction has no length or is not finite");
+    if (light.type == LightType::sun)
         check_range(where, "angle_degrees", light.angle_degrees, 0, 90);
-    } else {
-        check_range(where, "position", light.position, -kHuge, kHuge);
-        check_range(where, "radius", light.radius, 0, kHuge);
-    }
+    else
+        check_placed_light(where, light);
+    if (light.is_visible_to_camera && !has_extent(light))
+        fail(where, "visible_to_camera is true, but a light without extent cannot be seen",
+             light.type == LightType::sun ? "give it angle_degrees above 0" : "give it a radius");
 }
 
 void check_picture(const PictureDefaults& picture) {

@@ -4,6 +4,7 @@
 
 #include "formulas/environment.h"
 #include "formulas/light.h"
+#include "formulas/light_source.h"
 #include "formulas/shading_normal.h"
 #include "formulas/warp.h"
 #include "statistics.h"
@@ -47,6 +48,103 @@ TEST(SphereLight, is_hit_by_every_direction_of_its_cone_and_no_other) {
     EXPECT_FLOAT_EQ(scalar::sphere_distance({0, 0, 1}, 2, {0, 0, 1}), 3);
     EXPECT_EQ(scalar::sphere_cone_height(2, 1), 2);
     EXPECT_NEAR(scalar::sphere_cone_height(1, 1e6f), 5e-13, 1e-15);
+}
+
+scalar::LightSourceData make_flat(uint32_t kind) {
+    scalar::LightSourceData source{};
+    source.kind = kind;
+    source.power = source.strength = 2;
+    source.color = {1, 1, 1};
+    source.center = {0.3f, -0.2f, 1.2f};
+    source.basis = scalar::make_basis(normalize(Vec3f{0.2f, 0.3f, -1}));
+    source.radius = 0.8f, source.half_width = 0.9f, source.half_height = 0.4f;
+    source.radius2 = scalar::shape_area(source) / (2 * std::numbers::pi_v<float>);
+    return source;
+}
+
+TEST(FlatLight, has_a_density_whose_integral_is_one) {
+    for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk}) {
+        const scalar::LightSourceData source = make_flat(kind);
+        const auto density = [&](const Vec3f& d) {
+            return scalar::meet_light(source, {}, d, scalar::make_infinity()).pdf;
+        };
+        EXPECT_NEAR(integrate_hemisphere(density, 1500, 1500), 1, 2e-3) << kind;
+    }
+}
+
+TEST(FlatLight, is_drawn_with_the_density_that_it_is_met_with) {
+    Random random(3);
+    for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk}) {
+        const scalar::LightSourceData source = make_flat(kind);
+        int missed = 0;
+        Vec3f sum{};
+        for (int k = 0; k < 20000; ++k) {
+            const scalar::LightDraw drawn = scalar::draw_listed_light(source, {}, random.next_pair());
+            ASSERT_NEAR(length(drawn.direction), 1, 1e-5);
+            const scalar::LightSeen seen =
+                scalar::meet_light(source, {}, drawn.direction, drawn.distance * 1.001f);
+            missed += seen.pdf == 0; // by rounding, at the rim
+            if (seen.pdf == 0) continue;
+            ASSERT_NEAR(seen.pdf, drawn.pdf, 1e-4f * drawn.pdf);
+            ASSERT_NEAR(seen.radiance.x, drawn.weight.x * drawn.pdf, 1e-4f * seen.radiance.x);
+            EXPECT_EQ(scalar::meet_light(source, {}, drawn.direction, drawn.distance * 0.99f).pdf, 0);
+            sum += drawn.direction * drawn.distance;
+        }
+        EXPECT_LT(missed, 5);
+        EXPECT_LT(length(sum * (1 / 20000.0f) - source.center), 0.02f) << "all over the light";
+    }
+}
+
+TEST(FlatLight, shines_to_one_side) {
+    for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk}) {
+        scalar::LightSourceData source = make_flat(kind);
+        EXPECT_GT(scalar::estimate_irradiance(source, {}), 0);
+        source.basis.n = -source.basis.n;
+        EXPECT_EQ(scalar::draw_listed_light(source, {}, {0.4f, 0.6f}).pdf, 0);
+        EXPECT_EQ(scalar::meet_light(source, {}, normalize(source.center), scalar::make_infinity()).pdf, 0);
+        EXPECT_EQ(scalar::estimate_irradiance(source, {}), 0);
+    }
+}
+
+TEST(FlatLight, is_estimated_by_about_its_solid_angle) {
+    Random random(4);
+    for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk}) {
+        const scalar::LightSourceData source = make_flat(kind);
+        for (int k = 0; k < 300; ++k) {
+            const Vec3f away{4 * random.next() - 2, 4 * random.next() - 2, 0.02f + 2 * random.next()};
+            const Vec3f at = source.center + scalar::from_local(source.basis, away);
+            double light = 0;
+            for (int n = 0; n < 4000; ++n) {
+                const scalar::LightDraw drawn = scalar::draw_listed_light(source, at, random.next_pair());
+                light += drawn.weight.x / 4000;
+            }
+            const float estimate = scalar::estimate_irradiance(source, at);
+            ASSERT_GT(estimate, 0.4 * light) << away.x << ' ' << away.y << ' ' << away.z;
+            // Far too little would be noise, too much costs samples only.
+            ASSERT_LT(estimate, 10 * light) << away.x << ' ' << away.y << ' ' << away.z;
+        }
+    }
+}
+
+TEST(SpotLight, is_estimated_as_dark_only_where_it_is) {
+    Random random(5);
+    scalar::LightSourceData source = make_flat(scalar::kSourceSpot);
+    source.cone = 0.2f, source.edge = 0.05f, source.radius = 0.5f, source.radius2 = 0.25f;
+    int dark = 0;
+    for (int k = 0; k < 20000; ++k) {
+        const Vec3f at = source.center + scalar::square_to_sphere(random.next_pair()) * (3 * random.next());
+        const scalar::LightDraw drawn = scalar::draw_listed_light(source, at, random.next_pair());
+        const float estimate = scalar::estimate_irradiance(source, at);
+        dark += estimate == 0;
+        if (drawn.weight.x > 1e-5f) ASSERT_GT(estimate, 0) << k;
+    }
+    EXPECT_GT(dark, 10000);
+    source.radius = source.radius2 = 0;
+    for (int k = 0; k < 2000; ++k) {
+        const Vec3f at = source.center + scalar::square_to_sphere(random.next_pair());
+        const scalar::LightDraw drawn = scalar::draw_listed_light(source, at, random.next_pair());
+        ASSERT_NEAR(drawn.weight.x, scalar::estimate_irradiance(source, at), 1e-4f);
+    }
 }
 
 TEST(BendNormal, keeps_the_mirror_image_above_the_surface) {

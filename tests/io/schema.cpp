@@ -74,12 +74,15 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/objects/items/properties/instances", scene_keys::kInstances);
     expect_keys("/properties/lights/items/oneOf/0", scene_keys::kSun);
     expect_keys("/properties/lights/items/oneOf/1", scene_keys::kPoint);
+    expect_keys("/properties/lights/items/oneOf/2", scene_keys::kRectangle);
+    expect_keys("/properties/lights/items/oneOf/3", scene_keys::kDisk);
+    expect_keys("/properties/lights/items/oneOf/4", scene_keys::kSpot);
     // A transform is either parts or a matrix.
     Names transform;
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 18u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 21u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

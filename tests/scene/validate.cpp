@@ -169,4 +169,38 @@ TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_EQ(complaint([](Scene& s) { s.picture.bounces = 1000; }), "accepted");
 }
 
+/// The message for one light.
+std::string complain_of(const Light& light) {
+    return complaint([&](Scene& scene) { scene.lights = {light}; });
+}
+
+TEST(ValidateScene, lights_need_the_extent_that_their_type_has) {
+    using enum LightType;
+    for (LightType type : {sun, point, rectangle, spot}) EXPECT_EQ(complain_of({.type = type}), "accepted");
+    EXPECT_HAS(complain_of({.type = disk}), "light 0: radius is 0");
+    EXPECT_HAS(complain_of({.type = disk}), "needs a radius above 0");
+    EXPECT_EQ(complain_of({.type = disk, .radius = 0.1f}), "accepted");
+    EXPECT_HAS(complain_of({.type = rectangle, .width = 0}), "light 0: width is 0");
+    EXPECT_HAS(complain_of({.type = rectangle, .height = -1}), "light 0: height is -1");
+    EXPECT_HAS(complain_of({.type = rectangle, .up = {}}), "light 0: up has no length");
+    EXPECT_HAS(complain_of({.type = rectangle, .direction = {}}), "light 0: direction has no length");
+    EXPECT_HAS(complain_of({.type = spot, .direction = {kNan, 0, 0}}), "light 0: direction");
+    EXPECT_HAS(complain_of({.type = spot, .cone_degrees = 0}), "angle of its cone is 0, not in (0, 180]");
+    EXPECT_HAS(complain_of({.type = spot, .cone_degrees = 181}), "angle of its cone is 181");
+    EXPECT_HAS(complain_of({.type = spot, .blend = 1.5f}), "light 0: blend is 1.5");
+    EXPECT_HAS(complain_of({.type = spot, .radius = -1}), "light 0: radius is -1");
+    EXPECT_HAS(complain_of({.type = LightType(9)}), "type 9 is none of LightType");
+}
+
+TEST(ValidateScene, cameras_see_only_lights_with_extent) {
+    using enum LightType;
+    EXPECT_HAS(complain_of({.type = point, .is_visible_to_camera = true}), "(give it a radius)");
+    EXPECT_HAS(complain_of({.type = spot, .is_visible_to_camera = true}), "without extent cannot be seen");
+    EXPECT_HAS(complain_of({.angle_degrees = 0, .is_visible_to_camera = true}),
+               "(give it angle_degrees above");
+    EXPECT_EQ(complain_of({.is_visible_to_camera = true}), "accepted");
+    for (LightType type : {point, rectangle, disk, spot})
+        EXPECT_EQ(complain_of({.type = type, .radius = 1, .is_visible_to_camera = true}), "accepted");
+}
+
 } // namespace relief

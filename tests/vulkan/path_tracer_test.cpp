@@ -56,6 +56,22 @@ void use_long_paths(Scene& scene, RenderSettings& settings) {
     for (Material& material : scene.materials) material.roughness = 0.1f, material.metallic = 1;
 }
 
+/// A spot, a disk and a rectangle, before the camera too.
+void use_shaped_lights(Scene& scene, RenderSettings& settings) {
+    use_emitters_alone(scene, settings);
+    Light rectangle, disk, spot;
+    rectangle.type = LightType::rectangle, rectangle.position = {-2, 1.5f, 2.5f};
+    rectangle.direction = {0.5f, -0.6f, 0.5f}, rectangle.width = 1.5f, rectangle.strength = 20;
+    disk.type = LightType::disk, disk.position = {2, 3, 1}, disk.direction = {-1, -2, 1};
+    disk.radius = 0.7f, disk.strength = 25;
+    spot.type = LightType::spot, spot.position = {0, 2.5f, 4}, spot.direction = {0.1f, -1, -0.9f};
+    spot.cone_degrees = 70, spot.blend = 0.6f, spot.radius = 0.3f, spot.strength = 40;
+    scene.lights = {rectangle, disk, spot};
+    for (Light& light : scene.lights) light.is_visible_to_camera = true;
+    spot.radius = 0, spot.position = {-3, 2, 2}, spot.direction = {1, -0.8f, -0.5f}, spot.strength = 15;
+    scene.lights.push_back(spot);
+}
+
 void use_cut_outs(Scene& scene, RenderSettings&) {
     float opacity = 0.3f;
     for (Material& material : scene.materials)
@@ -132,6 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
                                          Variant{"in_a_constant_environment", use_constant_environment},
                                          Variant{"with_emitters_alone", use_emitters_alone},
                                          Variant{"in_the_dark", use_nothing_to_draw},
+                                         Variant{"with_shaped_lights", use_shaped_lights},
                                          Variant{"with_direct_light_alone", use_direct_light_alone},
                                          Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
                                          Variant{"with_cut_outs", use_cut_outs},

@@ -29,10 +29,12 @@ void LightSet::find_sources() {
     emitters_ = make_emitter_table(tracer_.scene());
     sources_ =
         make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
-    has_analytic_lights_ =
-        std::any_of(sources_.begin(), sources_.end(), [](const scalar::LightSourceData& source) {
-            return source.kind == scalar::kSourcePoint && source.radius > 0;
-        });
+    has_analytic_lights_ = std::ranges::any_of(sources_, [](const scalar::LightSourceData& source) {
+        const bool is_sphere = source.kind == scalar::kSourcePoint || source.kind == scalar::kSourceSpot;
+        return scalar::is_flat(source) || (is_sphere && source.radius > 0);
+    });
+    has_visible_lights_ = std::ranges::any_of(
+        sources_, [](const scalar::LightSourceData& source) { return source.is_visible != 0; });
 }
 
 float LightSet::total_irradiance(const Vec3f& position) const {
@@ -56,13 +58,11 @@ LightSet::Pick LightSet::pick_source(const Vec3f& position, float u_light) const
 /// Not from the environment.
 void LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
                          LightSample& drawn) const {
-    if (pick.source->kind == scalar::kSourceSun)
-        static_cast<scalar::LightDraw&>(drawn) = scalar::draw_sun(*pick.source, random.u);
-    else if (pick.source->kind == scalar::kSourcePoint)
-        static_cast<scalar::LightDraw&>(drawn) =
-            scalar::draw_point_light(*pick.source, at.position, random.u);
-    else
+    if (pick.source->kind == scalar::kSourceEmitters)
         draw_emitter(at, random.u_emitter, random.u, drawn);
+    else
+        static_cast<scalar::LightDraw&>(drawn) =
+            scalar::draw_listed_light(*pick.source, at.position, random.u);
     drawn.pdf *= pick.probability;
     drawn.weight *= 1 / pick.probability;
 }
@@ -174,6 +174,13 @@ Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behi
         const float share = total > 0 ? scalar::estimate_irradiance(source, ray.origin) / total : 0.0f;
         sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
     }
+    return sum;
+}
+
+Vec3f LightSet::see(const Vec3f& origin, const Vec3f& direction, float distance) const {
+    Vec3f sum{};
+    for (const scalar::LightSourceData& source : sources_)
+        if (source.is_visible != 0) sum += scalar::see_light(source, origin, direction, distance);
     return sum;
 }
 

@@ -21,7 +21,8 @@ struct LightSample : scalar::LightDraw {
     std::optional<SurfacePoint> emitter;
 };
 
-/// Suns and point lights are seen by bounce rays but not by camera rays, and they block nothing.
+/// Lights of the scene's list are seen by bounce rays, by camera rays only where they are to be, and they
+/// block nothing.
 class LightSet {
   public:
     /// The tracer must outlive the set.
@@ -65,9 +66,14 @@ class LightSet {
         float distance; ///< infinity: out of the scene
         float bsdf_pdf; ///< the ray's own density
     };
-    /// Light of the environment, suns and point lights that a bounce ray meets, weighted against the density
-    /// of drawing it. `behind`: the environment along the ray, where the distance is infinite.
+    /// Light of the environment and of the scene's lights that a bounce ray meets, weighted against the
+    /// density of drawing it. `behind`: the environment along the ray, where the distance is infinite.
     Vec3f evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const;
+
+    /// False: see() is zero for all rays.
+    bool has_visible_lights() const { return has_visible_lights_; }
+    /// The lights themselves that a camera ray meets within `distance`.
+    Vec3f see(const Vec3f& origin, const Vec3f& direction, float distance) const;
 
     /// Density with which draw() from `origin` would have found a point of an emissive surface.
     float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
@@ -94,7 +100,7 @@ class LightSet {
     std::optional<EnvironmentLight> environment_;
     EmitterTable emitters_;
     std::vector<scalar::LightSourceData> sources_;
-    bool has_analytic_lights_ = false;
+    bool has_analytic_lights_ = false, has_visible_lights_ = false;
 };
 
 } // namespace relief::cpu

@@ -147,26 +147,84 @@ Affine read_transform(const JsonNode& node) {
     return transform;
 }
 
+namespace {
+
+void read_direction(const JsonNode& node, const char* key, Vec3f& direction) {
+    read_vec3(node, key, direction);
+    if (length(direction) == 0) node.fail(fmt::format("the {} has no length", key));
+}
+
+void read_sun(const JsonNode& node, Light& light) {
+    node.check_keys(scene_keys::kSun);
+    read_direction(node, "direction", light.direction);
+    read_float(node, "angle_degrees", light.angle_degrees, 0, 90);
+}
+
+void read_point(const JsonNode& node, Light& light) {
+    node.check_keys(scene_keys::kPoint);
+    read_vec3(node, "position", light.position);
+    read_float(node, "radius", light.radius, 0);
+}
+
+/// Of rectangles and disks.
+constexpr double kSmallestFace = 1e-18, kLargestFace = 1e18;
+
+void read_rectangle(const JsonNode& node, Light& light) {
+    node.check_keys(scene_keys::kRectangle);
+    read_vec3(node, "position", light.position);
+    read_direction(node, "direction", light.direction);
+    read_direction(node, "up", light.up);
+    read_float(node, "width", light.width, kSmallestFace, kLargestFace);
+    read_float(node, "height", light.height, kSmallestFace, kLargestFace);
+}
+
+void read_disk(const JsonNode& node, Light& light) {
+    node.check_keys(scene_keys::kDisk);
+    read_vec3(node, "position", light.position);
+    read_direction(node, "direction", light.direction);
+    light.radius = 0.5f;
+    read_float(node, "radius", light.radius, kSmallestFace, kLargestFace);
+}
+
+void read_spot(const JsonNode& node, Light& light) {
+    node.check_keys(scene_keys::kSpot);
+    read_vec3(node, "position", light.position);
+    read_direction(node, "direction", light.direction);
+    read_float(node, "angle_degrees", light.cone_degrees, 0.001, 180);
+    read_float(node, "blend", light.blend, 0, 1);
+    read_float(node, "radius", light.radius, 0);
+}
+
+struct LightReader {
+    std::string_view name;
+    LightType type;
+    void (*read)(const JsonNode& node, Light& light);
+};
+
+constexpr LightReader kLightReaders[] = {{"sun", LightType::sun, read_sun},
+                                         {"point", LightType::point, read_point},
+                                         {"rectangle", LightType::rectangle, read_rectangle},
+                                         {"disk", LightType::disk, read_disk},
+                                         {"spot", LightType::spot, read_spot}};
+
+} // namespace
+
 Light read_light(const JsonNode& node) {
     Light light;
     const JsonNode type = node.get("type");
     const std::string name = type.as_string();
-    if (name == "sun") {
-        node.check_keys(scene_keys::kSun);
-        read_vec3(node, "direction", light.direction);
-        read_float(node, "angle_degrees", light.angle_degrees, 0, 90);
-        if (length(light.direction) == 0) node.fail("the direction has no length");
-    } else if (name == "point") {
-        light.type = LightType::point;
-        node.check_keys(scene_keys::kPoint);
-        read_vec3(node, "position", light.position);
-        read_float(node, "radius", light.radius, 0);
-    } else {
-        constexpr std::string_view kNames[] = {"sun", "point"};
-        type.fail(fmt::format("unknown light '{}'", name), suggest_word(name, kNames));
+    const auto* found = std::ranges::find(kLightReaders, name, &LightReader::name);
+    if (found == std::end(kLightReaders)) {
+        std::vector<std::string_view> names;
+        for (const LightReader& reader : kLightReaders) names.push_back(reader.name);
+        type.fail(fmt::format("unknown light '{}'", name), suggest_word(name, names));
     }
+    light.type = found->type;
+    found->read(node, light);
     read_vec3(node, "color", light.color, 0);
     read_float(node, "strength", light.strength, 0);
+    read_optional(node, "visible_to_camera", light.is_visible_to_camera,
+                  [](const JsonNode& n) { return n.as_bool(); });
     return light;
 }
 

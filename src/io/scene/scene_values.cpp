@@ -58,10 +58,23 @@ Json write_light(const Light& light) {
                 {"direction", to_json(light.direction)},
                 {"angle_degrees", to_json(light.angle_degrees)}};
     } else {
-        node = {{"type", "point"}, {"position", to_json(light.position)}, {"radius", to_json(light.radius)}};
+        constexpr const char* kNames[] = {"sun", "point", "rectangle", "disk", "spot"};
+        node = {{"type", kNames[size_t(light.type)]}, {"position", to_json(light.position)}};
+        if (light.type != LightType::point) node["direction"] = to_json(light.direction);
+        if (light.type != LightType::rectangle) node["radius"] = to_json(light.radius);
+    }
+    if (light.type == LightType::rectangle) {
+        node["up"] = to_json(light.up);
+        node["width"] = to_json(light.width);
+        node["height"] = to_json(light.height);
+    }
+    if (light.type == LightType::spot) {
+        node["angle_degrees"] = to_json(light.cone_degrees);
+        node["blend"] = to_json(light.blend);
     }
     node["color"] = to_json(light.color);
     node["strength"] = to_json(light.strength);
+    if (light.is_visible_to_camera) node["visible_to_camera"] = true;
     return node;
 }
 

@@ -1,4 +1,4 @@
-// Emission of the environment, suns and point lights hit by camera and bounce rays.
+// Emission of the environment and of the scene's lights hit by camera and bounce rays.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"
@@ -24,18 +24,29 @@ vec3 gather_light(PathData path, vec3 direction, float distance) {
     return sum;
 }
 
+/// The lights that a camera ray is to see.
+vec3 see_lights(RayData ray, float distance) {
+    vec3 sum = vec3(0.0);
+    for (uint k = 0u; k < push.source_count; ++k)
+        if (sources[k].is_visible != 0u) sum += see_light(sources[k], ray.origin, ray.direction, distance);
+    return sum;
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= push.count) return;
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
     vec3 direction = rays[path_index].direction;
+    float distance = is_hit(hit) ? hit.t : make_infinity();
     if (push.depth > 0u) {
         PathData path = paths[path_index];
-        float distance = is_hit(hit) ? hit.t : make_infinity();
         vec3 light = path.throughput * gather_light(path, direction, distance);
         paths[path_index].radiance = path.radiance + clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
-    } else if (!is_hit(hit)) {
+        return;
+    }
+    paths[path_index].radiance += see_lights(rays[path_index], distance);
+    if (!is_hit(hit)) {
         if (push.has_background != 0u)
             paths[path_index].radiance += push.background;
         else if (push.has_environment != 0u)

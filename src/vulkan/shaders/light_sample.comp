@@ -43,8 +43,7 @@ DrawnLight draw_from_emitters(vec3 position, uint lod_bias, float u_emitter, vec
 DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint lod_bias, float u_emitter, vec2 u) {
     if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, u);
     if (source.kind == kSourceEmitters) return draw_from_emitters(at.position, lod_bias, u_emitter, u);
-    DrawnLight result = {draw_sun(source, u), false, vec3(0.0)};
-    if (source.kind == kSourcePoint) result.light = draw_point_light(source, at.position, u);
+    DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0)};
     return result;
 }
 

@@ -112,7 +112,8 @@ struct AllStructs {
     FIELD(s.end) FIELD(s.probability)
 #define FIELDS_LIGHT(s) \
     FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
-    FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone)
+    FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone) \
+    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible)
 #define FIELDS_CAMERA_PUSH(s) \
     FIELD3(s.camera.origin) FIELD3(s.camera.right) FIELD3(s.camera.up) FIELD3(s.camera.forward) \
     FIELD3(s.camera.corner) FIELD3(s.camera.step_x) FIELD3(s.camera.step_y) \

@@ -60,9 +60,10 @@ struct ToneResults {
 };
 
 struct SourceResults {
-    LightDraw sun, point_light, emitter;
-    float irradiance;
-    LightSeen seen;
+    LightDraw sun, point_light, emitter, rectangle, disk, spot;
+    float irradiance, flat_irradiance, spot_irradiance;
+    LightSeen seen, rectangle_seen, disk_seen, spot_seen;
+    Vec3 visible;
     Vec3 into, out_of;
     float density, position;
 };
@@ -251,6 +252,19 @@ FN LightSourceData make_test_source(FormulaInput from, uint kind) {
     source.radius2 = source.radius * source.radius;
     source.basis = make_basis(square_to_sphere(make_pair(from.u[6], from.u[7])));
     source.cone = 0.01f + 0.1f * from.u[8];
+    source.edge = 0.0f;
+    source.half_width = 0.5f + from.u[1];
+    source.half_height = 0.5f + from.u[2];
+    source.is_visible = from.b & 1u;
+    return source;
+}
+
+/// A light that faces about towards `position`.
+FN LightSourceData make_facing_source(FormulaInput from, uint kind, Vec3 position) {
+    LightSourceData source = make_test_source(from, kind);
+    Vec3 aside = make_triple(from.u[3] - 0.5f, from.u[4] - 0.5f, from.u[5] - 0.5f);
+    source.basis = make_basis(normalize(position - source.center + aside));
+    source.cone = 0.5f + 0.5f * from.u[8];
     return source;
 }
 
@@ -269,6 +283,19 @@ FN SourceResults run_source(FormulaInput from) {
     LightSourceData emitters = make_test_source(from, kSourceEmitters);
     r.irradiance = estimate_irradiance(point_light, position) + estimate_irradiance(emitters, position);
     r.seen = meet_light(point_light, position, normalize(point_light.center - position), 100.0f);
+    LightSourceData rectangle = make_facing_source(from, kSourceRectangle, position);
+    LightSourceData disk = make_facing_source(from, kSourceDisk, position);
+    LightSourceData spot = make_facing_source(from, kSourceSpot, position);
+    r.rectangle = draw_listed_light(rectangle, position, u);
+    r.disk = draw_listed_light(disk, position, u);
+    r.spot = draw_listed_light(spot, position, u);
+    r.flat_irradiance = estimate_irradiance(rectangle, position) + estimate_irradiance(disk, position);
+    r.spot_irradiance = estimate_irradiance(spot, position);
+    Vec3 towards = normalize(rectangle.center - position);
+    r.rectangle_seen = meet_light(rectangle, position, towards, 100.0f);
+    r.disk_seen = meet_light(disk, position, towards, 100.0f);
+    r.spot_seen = meet_light(spot, position, towards, 100.0f);
+    r.visible = see_light(spot, position, towards, 100.0f);
     r.into = turn_into_environment(e, to);
     r.out_of = turn_out_of_environment(e, to);
     r.density = environment_cell_density(e, from.u[5], normalize(to));

@@ -1,0 +1,189 @@
+// Rectangles, disks and spots against closed forms, and which lights cameras see.
+#include <gtest/gtest.h>
+
+#include "support/shading_scenes.h"
+
+namespace relief {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kAlbedo = 0.6f;
+
+/// A grey floor, seen so narrowly from above that every pixel shows the origin.
+Scene make_floor_scene() {
+    Scene scene;
+    add_object(scene, make_floor(10), make_matte(kAlbedo));
+    scene.camera.from = {0.5f, 3, 4};
+    scene.camera.to = {0, 0, 0};
+    scene.camera.fov_degrees = 0.1f;
+    return scene;
+}
+
+void expect_irradiance(Scene scene, double irradiance, int spp, int bounces = 1) {
+    const RenderResult result = render(std::move(scene), make_small_settings(8, spp, bounces));
+    const Mean mean = compute_covered_mean(result.image);
+    const double expected = kAlbedo / kPi * irradiance;
+    EXPECT_EQ(mean.pixels, 64u);
+    EXPECT_NEAR(mean.value, expected, 2e-3 * expected + 4 * mean.standard_error);
+    EXPECT_LT(mean.standard_error, 0.02 * expected + 1e-6);
+}
+
+Light make_sun(const Vec3f& direction, float angle_degrees) {
+    Light light;
+    light.direction = direction;
+    light.angle_degrees = angle_degrees;
+    light.strength = 3;
+    return light;
+}
+
+Light make_point(const Vec3f& position, float radius) {
+    Light light;
+    light.type = LightType::point;
+    light.position = position;
+    light.radius = radius;
+    light.strength = 5;
+    return light;
+}
+
+/// Form factor from a point to a parallel rectangle a x b at distance 1 with a corner right above it (Howell,
+/// A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
+double corner_form_factor(double a, double b) {
+    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPi);
+}
+
+Light make_shaped(LightType type, const Vec3f& position, const Vec3f& direction) {
+    Light light;
+    light.type = type;
+    light.position = position;
+    light.direction = direction;
+    light.strength = 5;
+    return light;
+}
+
+TEST(ShapedLights, rectangle_has_its_form_factor_and_none_behind) {
+    for (float half : {0.2f, 1.0f, 3.0f})
+        for (int bounces : {0, 1}) {
+            Scene scene = make_floor_scene();
+            Light light = make_shaped(LightType::rectangle, {half, 1, 0}, {0, -2, 0});
+            light.width = 2 * half, light.height = 4 * half; // its width lies along x, as -z is up
+            scene.lights = {light};
+            const double radiance = 5.0 / (8 * half * half);
+            expect_irradiance(scene, radiance * kPi * 2 * corner_form_factor(2 * half, 2 * half), 1024,
+                              bounces);
+            scene.lights[0].direction = {0, 1, 0};
+            expect_irradiance(scene, 0, 8, bounces);
+        }
+}
+
+TEST(ShapedLights, disk_has_its_form_factor_and_none_behind) {
+    for (float radius : {0.2f, 1.0f, 3.0f})
+        for (int bounces : {0, 1}) {
+            Scene scene = make_floor_scene();
+            scene.lights = {make_shaped(LightType::disk, {0, 1, 0}, {0, -1, 0})};
+            scene.lights[0].radius = radius;
+            expect_irradiance(scene, 5 / (1.0 + radius * radius), 512, bounces);
+            scene.lights[0].direction = {0, 1, 0};
+            expect_irradiance(scene, 0, 8, bounces);
+        }
+}
+
+TEST(ShapedLights, flat_lights_far_away_equal_a_point_light_times_the_cosine) {
+    for (LightType type : {LightType::rectangle, LightType::disk}) {
+        Scene scene = make_floor_scene();
+        Light light = make_shaped(type, {30, 30, 0}, {0, -1, 0});
+        light.radius = 0.1f, light.width = 0.3f, light.height = 0.2f;
+        scene.lights = {light};
+        expect_irradiance(std::move(scene), 5 / 1800.0 / 2, 32);
+    }
+}
+
+TEST(ShapedLights, spot_shines_in_its_cone_alone) {
+    for (float radius : {0.0f, 0.3f}) {
+        const auto expect = [&](double tilt_degrees, float blend, double part) {
+            Scene scene = make_floor_scene();
+            const double tilt = tilt_degrees * kPi / 180;
+            scene.lights = {
+                make_shaped(LightType::spot, {0, 2, 0}, {float(std::sin(tilt)), -float(std::cos(tilt)), 0})};
+            scene.lights[0].cone_degrees = 60, scene.lights[0].blend = blend, scene.lights[0].radius = radius;
+            expect_irradiance(std::move(scene), part * 5 / 4, radius > 0 ? 512 : 16);
+        };
+        const double seen = radius > 0 ? std::asin(radius / 2) * 180 / kPi : 0; // half angle of its sphere
+        expect(0, 0, 1);
+        expect(29 - seen, 0, 1);
+        expect(31 + seen, 0, 0);
+        expect(31 + seen, 1, 0);
+        if (radius > 0) continue;
+        // A smooth step between the cosines of 30 and 15 degrees.
+        const auto height = [](double degrees) { return 1 - std::cos(degrees * kPi / 180); };
+        const double x = (height(30) - height(24)) / (height(30) - height(15));
+        expect(24, 0.5f, x * x * (3 - 2 * x));
+        expect(14, 0.5f, 1);
+    }
+}
+
+/// Light of the pixels of a camera that looks at one light, or past it.
+double look_at(const Light& light, const Vec3f& from, bool is_before_background = false) {
+    Scene scene;
+    add_object(scene, make_floor(10), make_matte(0));
+    scene.objects[0].world_from_object.translation.y = -50;
+    scene.lights = {light};
+    scene.camera.from = from, scene.camera.to = {0, 1, 0}, scene.camera.fov_degrees = 0.1f;
+    RenderSettings settings = make_small_settings(4, 4, 2);
+    if (is_before_background) settings.image.background = Vec3f{0, 0.25f, 0};
+    const Image image = render(std::move(scene), settings).image;
+    EXPECT_EQ(image.at(2, 2, image.find_channel("A").value()), 0);
+    return image.at(2, 2, image.find_channel("G").value());
+}
+
+TEST(ShapedLights, cameras_see_the_lights_that_are_to_be_seen) {
+    Light point = make_point({0, 1, 0}, 0.5f), sun = make_sun({0, 0, 1}, 2);
+    Light rectangle = make_shaped(LightType::rectangle, {0, 1, 0}, {0, 0, 1});
+    rectangle.width = 4, rectangle.height = 0.5f;
+    Light disk = make_shaped(LightType::disk, {0, 1, 0}, {0, 0, 1});
+    Light spot = make_shaped(LightType::spot, {0, 1, 0}, {0, 0, 1});
+    disk.radius = spot.radius = 0.5f;
+    const double half_angle = kPi / 180, sun_radiance = 3 / (kPi * std::pow(std::sin(half_angle), 2));
+    const double round = 5 / (kPi * 0.25);
+    const std::pair<Light, double> cases[] = {
+        {point, round}, {sun, sun_radiance}, {rectangle, 5 / 2.0}, {disk, round}, {spot, round}};
+    for (auto [light, radiance] : cases) {
+        EXPECT_EQ(look_at(light, {0, 1, 5}), 0) << int(light.type);
+        light.is_visible_to_camera = true;
+        EXPECT_NEAR(look_at(light, {0, 1, 5}), radiance, 1e-4 * radiance) << int(light.type);
+        EXPECT_NEAR(look_at(light, {0, 1, 5}, true), radiance + 0.25, 1e-4 * radiance) << int(light.type);
+        const bool is_round = light.type == LightType::point;
+        EXPECT_NEAR(look_at(light, {0, 1, -5}), is_round ? radiance : 0, 1e-4 * radiance) << int(light.type);
+    }
+}
+
+TEST(ShapedLights, visible_lights_give_surfaces_the_same_light) {
+    for (LightType type : {LightType::point, LightType::rectangle, LightType::disk, LightType::spot}) {
+        Scene scene = make_floor_scene();
+        scene.lights = {make_shaped(type, {0, 1.5f, 0}, {0, -1, 0})};
+        scene.lights[0].radius = 0.4f;
+        const Image hidden = render(scene, make_small_settings(8, 8, 2)).image;
+        scene.lights[0].is_visible_to_camera = true;
+        EXPECT_EQ(render(scene, make_small_settings(8, 8, 2)).image.pixels, hidden.pixels);
+    }
+}
+
+TEST(ShapedLights, surfaces_hide_visible_lights) {
+    Scene scene = make_floor_scene();
+    scene.lights = {make_shaped(LightType::disk, {0, -1, 0}, {0, 1, 0})};
+    scene.lights[0].radius = 3, scene.lights[0].is_visible_to_camera = true;
+    expect_irradiance(std::move(scene), 0, 8);
+}
+
+/// One light beside another, so that it is drawn seldom: found by chance or drawn, it must give the same.
+TEST(ShapedLights, shaped_lights_add_up_whatever_their_shares) {
+    Scene scene = make_floor_scene();
+    Light disk = make_shaped(LightType::disk, {0, 1, 0}, {0, -1, 0});
+    Light spot = make_shaped(LightType::spot, {0, 2, 0}, {0, -1, 0});
+    disk.radius = 1, spot.radius = 0.2f;
+    scene.lights = {disk, spot, make_point({0, 3, 0}, 0)};
+    expect_irradiance(std::move(scene), 5 / 2.0 + 5 / 4.0 + 5 / 9.0, 512);
+}
+
+} // namespace
+} // namespace relief
