@@ -107,16 +107,26 @@ void add_band(std::vector<Cell> band, std::vector<Cell>& cells) {
     }
 }
 
-/// The window that all parts say they are of, or that all have; else the display window.
+bool contains(const Rectangle& a, const Rectangle& b) {
+    return a.x0 <= b.x0 && a.y0 <= b.y0 && a.x1 >= b.x1 && a.y1 >= b.y1;
+}
+
+/// The window that parts say they are of, and in which all others lie; or that all have; else the display
+/// window.
 Rectangle find_whole_window(std::span<const Image> images) {
-    const auto get_whole = [](const Image& image) {
-        const std::optional<std::array<int, 4>> named = read_whole_window(image);
-        return named ? Rectangle{(*named)[0], (*named)[1], (*named)[2], (*named)[3]} : get_window(image);
-    };
-    const Rectangle whole = get_whole(images[0]);
-    for (const Image& image : images)
-        if (get_whole(image) != whole) return {0, 0, image.full_width, image.full_height};
-    return whole;
+    std::optional<Rectangle> named, common = get_window(images[0]);
+    const Rectangle display{0, 0, images[0].full_width, images[0].full_height};
+    for (const Image& image : images) {
+        if (get_window(image) != common) common.reset();
+        const std::optional<std::array<int, 4>> said = read_whole_window(image);
+        if (!said) continue;
+        const Rectangle whole{(*said)[0], (*said)[1], (*said)[2], (*said)[3]};
+        if (named && whole != *named) return display;
+        named = whole;
+    }
+    if (!named) return common.value_or(display);
+    const auto is_inside = [&](const Image& image) { return contains(*named, get_window(image)); };
+    return std::all_of(images.begin(), images.end(), is_inside) ? *named : display;
 }
 
 } // namespace

@@ -76,8 +76,10 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
                       fmt::format("its {} is {}, that of part 1 {}", key, metadata_or_empty(image, key),
                                   metadata_or_empty(first, key)),
                       "parts must come from one scene, one seed and one background");
+    // Older versions did not say it.
     const std::string settings = metadata_or_empty(image, kSettingsKey);
-    if (const std::string expected = metadata_or_empty(first, kSettingsKey); settings != expected)
+    const std::string expected = metadata_or_empty(first, kSettingsKey);
+    if (!settings.empty() && !expected.empty() && settings != expected)
         throw_bad(index, "it was rendered otherwise than part 1: " + describe_difference(settings, expected),
                   "render all parts with the same settings");
 }
@@ -270,6 +272,20 @@ void merge_pixel(const std::vector<PartPixel>& pixels, const ChannelRules& rules
     }
 }
 
+/// What parts say of the whole picture, where those that say it agree.
+void keep_if_common(std::span<const Image> images, const std::string& key, Image& result) {
+    std::string said;
+    for (const Image& image : images) {
+        const std::string own = metadata_or_empty(image, key);
+        if (!own.empty() && !said.empty() && own != said) {
+            result.metadata.erase(key);
+            return;
+        }
+        if (!own.empty()) said = own;
+    }
+    if (!said.empty()) result.metadata[key] = said;
+}
+
 } // namespace
 
 Image merge_images(std::span<const Image> images) {
@@ -287,9 +303,7 @@ Image merge_images(std::span<const Image> images) {
     for (const Image& image : images)
         if (image.metadata.contains(kInterruptedKey)) result.metadata[kInterruptedKey] = "yes";
     for (const char* key : {"relief:whole_window", "relief:whole_samples"})
-        for (const Image& image : images)
-            if (metadata_or_empty(image, key) != metadata_or_empty(images[0], key))
-                result.metadata.erase(key);
+        keep_if_common(images, key, result);
     const ChannelRules rules(result);
     std::vector<PartPixel> pixels;
     float* target = result.pixels.data();

@@ -70,6 +70,9 @@ TEST_F(Merge, tiles_of_one_crop_are_whole) {
     EXPECT_EQ(run({"merge", "t0.exr", "t1.exr", "-o", "whole.exr"}).errors, "");
     std::filesystem::remove(folder_ / "whole.exr");
     expect_refused({"t1.exr"}, "missing: rows 3 to 5 (--crop 2,3,20,6)");
+    render_ok("again.exr", {"--crop", "2,3,20,6"}); // as merge asks for it
+    EXPECT_EQ(run({"merge", "again.exr", "t1.exr", "-o", "whole.exr"}).errors, "");
+    EXPECT_EQ(run({"merge", "whole.exr", "-o", "same.exr"}).errors, "");
 }
 
 TEST_F(Merge, samples_of_a_given_number_are_missed) {
