@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "relief/error.h"
+#include "relief/io.h"
 
 namespace relief::cli {
 
@@ -31,8 +32,9 @@ void refuse_link_loop(const std::filesystem::path& file, ErrorKind kind) {
 
 std::filesystem::path find_place(const std::filesystem::path& file) {
     std::error_code ignored;
-    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    return std::filesystem::weakly_canonical(folder, ignored) / file.filename();
+    const std::filesystem::path end = find_link_end(file); // outputs go where links lead
+    const std::filesystem::path folder = end.has_parent_path() ? end.parent_path() : ".";
+    return std::filesystem::weakly_canonical(folder, ignored) / end.filename();
 }
 
 void refuse_output(const std::filesystem::path& output) {

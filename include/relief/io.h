@@ -125,7 +125,8 @@ void save_scene(const Scene& scene, const std::filesystem::path& folder,
 /// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by
 /// aim_scene, as a scene file that names the files of `input`; load_scene restores the same scene. Comments
 /// say what each section means, and `picture_options`: what its picture had beside. A mesh of the scene that
-/// came from no file is written beside it; what `file` held before is kept as FILE.bak. Throws as
+/// came from no file is written beside it; what `file` held before is kept as FILE.bak, or
+/// FILE.bak2 and so on where others are. Throws as
 /// write_text_file.
 void save_scene_copy(const Scene& scene, const std::filesystem::path& input, const MeshSceneOptions& options,
                      const std::filesystem::path& file, const std::vector<std::string>& picture_options = {});
@@ -159,6 +160,10 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 /// The same of what `write` writes to a binary stream.
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
+
+/// What a symbolic link, or a chain of them, leads to, be it there or not; other names as they are. Files are
+/// written there. Thread safe.
+std::filesystem::path find_link_end(std::filesystem::path file);
 
 /// Throws what write_text_file to this file would throw because of its folder or permissions.
 void check_text_writable(const std::filesystem::path& file);

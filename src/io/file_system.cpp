@@ -57,6 +57,17 @@ bool is_loop(const std::error_code& code) { return code == std::errc::too_many_s
 
 } // namespace
 
+fs::path find_link_end(fs::path file) {
+    constexpr int kMostLinks = 40; // as of Linux
+    std::error_code code;
+    for (int k = 0; k < kMostLinks && fs::is_symlink(file, code); ++k) {
+        const fs::path next = fs::read_symlink(file, code);
+        if (code) break;
+        file = next.is_absolute() ? next : file.parent_path() / next;
+    }
+    return file;
+}
+
 std::string get_extension(const fs::path& file) {
     std::string extension = file.extension().string();
     for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
@@ -94,9 +105,7 @@ std::string read_file_bytes(const fs::path& file) {
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     std::error_code code;
-    place_ = target_;
-    if (fs::is_symlink(target_, code)) // the link stays
-        if (fs::path end = fs::weakly_canonical(target_, code); !code) place_ = std::move(end);
+    place_ = find_link_end(target_); // the link stays
     temporary_ = place_;
     temporary_ += fmt::format(".{}.tmp", ::getpid());
     const fs::path folder = place_.has_parent_path() ? place_.parent_path() : fs::path(".");

@@ -272,7 +272,8 @@ TEST_F(Aim, a_copy_keeps_what_its_file_held_and_says_what_it_cannot_hold) {
     save_scene_copy(scene, input, {}, file, {"--background white", "--exposure 1"});
     EXPECT_EQ(read(backup), "mine") << "the same text again replaces nothing";
     save_scene_copy(scene, input, {}, file);
-    EXPECT_NE(read(backup), "mine");
+    EXPECT_EQ(read(backup), "mine");
+    EXPECT_NE(read(folder_ / "copy.json.bak2").find("--exposure 1"), std::string::npos);
     EXPECT_EQ(load_scene(file).meshes.size(), 1u);
 }
 
@@ -284,6 +285,10 @@ TEST_F(Aim, files_are_written_where_links_lead) {
     EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.txt"));
     std::ifstream stream(folder_ / "there" / "a.txt");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "new");
+    std::filesystem::create_symlink("there/b.txt", folder_ / "waits.txt");
+    write_text_file(folder_ / "waits.txt", "first");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "waits.txt"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "there" / "b.txt")) << "a link to what is not there yet";
 }
 
 TEST_F(Aim, a_copy_keeps_names_that_look_like_vectors) {

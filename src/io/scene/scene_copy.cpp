@@ -175,10 +175,17 @@ std::string format_commented(const Json& root, const std::vector<std::string>& p
 /// A file with other text stays beside the new one: somebody may have gone on with it.
 void keep_backup(const fs::path& file, const std::string& text) {
     std::error_code code;
-    if (!fs::is_regular_file(file, code) || read_file_bytes(file) == text) return;
+    if (!fs::is_regular_file(file, code)) return;
+    const std::string kept = read_file_bytes(file);
+    if (kept == text) return;
     fs::path backup = file;
     backup += ".bak";
-    fs::copy_file(file, backup, fs::copy_options::overwrite_existing, code);
+    for (int k = 2; fs::exists(backup, code); ++k) { // none is written over
+        if (fs::is_regular_file(backup, code) && read_file_bytes(backup) == kept) return;
+        backup = file;
+        backup += fmt::format(".bak{}", k);
+    }
+    fs::copy_file(file, backup, code);
     if (code)
         throw Error(ErrorKind::failed, {"what the file holds cannot be kept: " + code.message(),
                                         backup.string(), "check free space and rights"});
