@@ -54,8 +54,10 @@ Scene load_input(const RenderOptions& options) {
         return load_scene(options.input, make_mesh_reader());
     } catch (const Error& error) {
         if (extension == ".json" || !error.hint().empty()) throw;
-        throw Error(error.kind(), {error.message(), error.where(),
-                                   "a scene file is JSON; meshes are .obj, .ply, .gltf, .glb and .fbx"});
+        throw Error(error.kind(),
+                    {error.message(), error.where(),
+                     "a scene file is JSON; meshes are .obj, .ply, .gltf, .glb and .fbx"},
+                    error.further());
     }
 }
 

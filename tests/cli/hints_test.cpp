@@ -52,7 +52,7 @@ constexpr Slip kOptionSlips[] = {
     {"render plane.obj --floor", "--ground"},
     {"render plane.obj --ev 1", "--exposure EV"},
     {"render plane.obj --gamma 2.2", "--tonemap"},
-    {"render plane.obj --zoom 2", "--fov"},
+    {"render plane.obj --zoom 2", "--from"},
     {"render plane.obj --frames 24", "--turntable 24"},
     {"render plane.obj --hdri-rotation 90", "--env-rotate"},
     {"render plane.obj --adaptive 0.02", "--noise"},

@@ -157,16 +157,21 @@ TEST_F(SceneFiles, mistakes_of_independent_parts_are_told_together) {
         }
         return {};
     };
-    const std::vector<Error::Parts> all = find(R"({"camera": {"fov_degrees": 200}, "materials":
+    const std::vector<Error::Parts> all = find(R"({"displacements": [], "materials":
         {"a": {"rougness": 1}, "b": {"roughness": 2}}, "meshes": {"gone": {"file": "gone.obj"}},
         "objects": [{"mesh": "gone"}, {"mesh": "there", "material": "a"}], "lights": {}})");
     ASSERT_EQ(all.size(), 6u) << "and none of the object whose mesh cannot be read";
-    EXPECT_HAS(all[0].where, "camera.fov_degrees");
-    EXPECT_HAS(all[1].message, "rougness");
-    EXPECT_HAS(all[2].where, "materials.b.roughness");
+    EXPECT_HAS(all[0].message, "rougness");
+    EXPECT_HAS(all[1].where, "materials.b.roughness");
+    EXPECT_HAS(all[2].where, "displacements");
     EXPECT_HAS(all[3].message, "file not found");
     EXPECT_HAS(all[4].message, "there is no mesh 'there'");
     EXPECT_HAS(all[5].where, "lights");
+    EXPECT_EQ(find(R"({"render": {"spp": 0}, "camera": {"fov_degrees": 200},
+        "meshes": {"gone": {"file": "gone.obj"}}})")
+                  .size(),
+              2u)
+        << "before files are read";
     std::string many = R"({"objects": [)";
     for (int k = 0; k < 1000; ++k) many += R"({"mash": "a"},)";
     EXPECT_EQ(find(many + R"({"mesh": "a"}]})").size(), 10u) << "the rest is not read";

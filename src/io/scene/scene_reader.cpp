@@ -40,9 +40,11 @@ template <class Item, class Read>
 NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<Item>& items,
                        ErrorList& errors, const Read& read) {
     NameIndex index;
-    const auto section = root.find(key);
-    if (!section) return index;
-    for (const auto& [name, node] : section->members()) {
+    std::vector<std::pair<std::string, JsonNode>> members;
+    errors.attempt([&] {
+        if (const auto section = root.find(key)) members = section->members();
+    });
+    for (const auto& [name, node] : members) {
         index[name] = uint32_t(items.size());
         items.emplace_back(); // has its place, for objects that name it, though it may not be readable
         errors.attempt([&, &name = name, &node = node] { items.back() = read(name, node); });
@@ -138,6 +140,7 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     read_node("camera", [&](const JsonNode& node) { scene.camera = read_camera(node); });
     read_node("environment",
               [&](const JsonNode& node) { scene.environment = read_environment(node, assets); });
+    errors.throw_if_any(); // before large files are read
     ObjectNames names;
     names.materials =
         read_section(root, "materials", scene.materials, errors,
