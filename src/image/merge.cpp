@@ -43,11 +43,6 @@ enum class Rule { mean, mean_of_hits, direction, variance, samples, depth, id, m
     throw Error(ErrorKind::bad_input, {message, fmt::format("part {}", part + 1), hint});
 }
 
-std::string metadata_or_empty(const Image& image, const std::string& key) {
-    const auto found = image.metadata.find(key);
-    return found == image.metadata.end() ? std::string() : found->second;
-}
-
 Part make_part(const Image& image, size_t index) {
     Part part{&image, index, 0, 0, image.find_channel("samples.Y"), image.find_channel("A")};
     std::tie(part.first, part.last) = read_sample_range(image, index);
@@ -71,14 +66,14 @@ void check_same_picture(const Image& first, const Image& image, size_t index) {
         throw_bad(index, "its channels differ from those of part 1",
                   "render all parts with the same image.layers");
     for (const char* key : {"relief:seed", "relief:scene_hash", "relief:background"})
-        if (metadata_or_empty(image, key) != metadata_or_empty(first, key))
+        if (read_entry(image, key) != read_entry(first, key))
             throw_bad(index,
-                      fmt::format("its {} is {}, that of part 1 {}", key, metadata_or_empty(image, key),
-                                  metadata_or_empty(first, key)),
+                      fmt::format("its {} is {}, that of part 1 {}", key, read_entry(image, key),
+                                  read_entry(first, key)),
                       "parts must come from one scene, one seed and one background");
     // Older versions did not say it.
-    const std::string settings = metadata_or_empty(image, kSettingsKey);
-    const std::string expected = metadata_or_empty(first, kSettingsKey);
+    const std::string settings = read_entry(image, kSettingsKey);
+    const std::string expected = read_entry(first, kSettingsKey);
     if (!settings.empty() && !expected.empty() && settings != expected)
         throw_bad(index, "it was rendered otherwise than part 1: " + describe_difference(settings, expected),
                   "render all parts with the same settings");
@@ -276,7 +271,7 @@ void merge_pixel(const std::vector<PartPixel>& pixels, const ChannelRules& rules
 void keep_if_common(std::span<const Image> images, const std::string& key, Image& result) {
     std::string said;
     for (const Image& image : images) {
-        const std::string own = metadata_or_empty(image, key);
+        const std::string own = read_entry(image, key);
         if (!own.empty() && !said.empty() && own != said) {
             result.metadata.erase(key);
             return;

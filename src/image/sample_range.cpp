@@ -10,14 +10,10 @@
 
 namespace relief {
 
-namespace {
-
-std::string read_entry(const Image& image, const char* key) {
+std::string read_entry(const Image& image, const std::string& key) {
     const auto found = image.metadata.find(key);
     return found == image.metadata.end() ? std::string() : found->second;
 }
-
-} // namespace
 
 std::pair<int, int> read_sample_range(const Image& image, size_t part) {
     const std::string range = read_entry(image, kRenderedTag);

@@ -4,11 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "relief/image.h"
 
 namespace relief {
+
+/// An entry of the header; empty: there is none.
+std::string read_entry(const Image& image, const std::string& key);
 
 /// [first, last) of the header; throws Error{bad_input} without one. `part`: number, from 0, for messages.
 std::pair<int, int> read_sample_range(const Image& image, size_t part);

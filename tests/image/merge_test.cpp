@@ -79,6 +79,25 @@ TEST(MergeImages, joins_tiles_and_sample_ranges_to_the_whole_picture) {
     }
 }
 
+TEST(MergeImages, compares_settings_where_parts_say_them) {
+    Image a = make_part({0, 0, kWidth, kHeight}, 0, 4), b = make_part({0, 0, kWidth, kHeight}, 4, 8);
+    b.metadata["relief:settings"] = "bounces 2";
+    EXPECT_NO_THROW(merge_images(std::array{a, b})) << "the part of an older version does not say it";
+    a.metadata["relief:settings"] = "bounces 1";
+    EXPECT_THROW(merge_images(std::array{a, b}), Error);
+}
+
+TEST(MergeImages, keeps_what_parts_say_of_the_whole_picture) {
+    Image a = make_part({0, 0, 4, kHeight}, 0, 4), b = make_part({4, 0, kWidth, kHeight}, 0, 4);
+    a.metadata["relief:whole_samples"] = "8";
+    EXPECT_EQ(merge_images(std::array{b, a}).metadata.at("relief:whole_samples"), "8");
+    b.metadata["relief:whole_samples"] = "6";
+    EXPECT_FALSE(merge_images(std::array{b, a}).metadata.contains("relief:whole_samples"));
+    const std::vector<PictureGap> gaps = find_gaps(std::array{a, b});
+    ASSERT_FALSE(gaps.empty());
+    EXPECT_EQ(gaps.front().last_sample, 8);
+}
+
 TEST(MergeImages, makes_mean_normals_unit_vectors_again) {
     Image a = make_part({0, 0, kWidth, kHeight}, 0, 4), b = make_part({0, 0, kWidth, kHeight}, 4, 8);
     const size_t alpha = 3, normal = a.find_channel("N.X").value();
