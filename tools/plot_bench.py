@@ -90,6 +90,10 @@ def draw(chart, file):
             if "log" in chart:
                 axes.set_yscale("log")
             draw_bars(axes, panel, chart)
+    save(figure, file)
+
+
+def save(figure, file):
     figure.savefig(file, metadata={"Date": None})
     pyplot.close(figure)
     print(f"wrote {file}")
@@ -291,8 +295,42 @@ def chart_cycles(r):
                        for case in scene["cases"]]}
 
 
+def draw_lines(chart, file):
+    """Error against time, both logarithmic; a line a series."""
+    figure = pyplot.figure(figsize=(8, 6))
+    axes = figure.subplots(gridspec_kw={"left": 0.1, "right": 0.97, "top": 0.93, "bottom": 0.12 + 0.03 * len(chart["notes"])})
+    for line in chart["lines"]:
+        axes.plot(line["seconds"], line["errors"], marker="o", label=line["label"], color=line["color"],
+                  linestyle="--" if line["dashed"] else "-")
+        for x, y, samples in zip(line["seconds"], line["errors"], line["samples"]):
+            axes.annotate(str(samples), (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
+    axes.set(xscale="log", yscale="log", xlabel="seconds", ylabel="relative squared error", title=chart["title"])
+    axes.grid(True, which="both", linewidth=0.3)
+    axes.legend()
+    figure.text(0.02, 0.01, "\n".join(chart["notes"]), fontsize=7, color="#555")
+    save(figure, file)
+
+
+def chart_quality(r):
+    s = r["settings"]
+    where = (f"{s['width']} x {s['height']} pixels, {s['bounces']} bounces, {s['threads']} threads, {r['machine']['processor']}; "
+             f"Blender {r['blender']}; commit {r['build']['commit']}")
+
+    def line(series):
+        points = series["points"]
+        return {"label": ("Relief" if series["program"] == "relief" else "Cycles") + (", denoised" if series["denoised"] else ""),
+                "color": COLORS[0 if series["program"] == "relief" else 2], "dashed": series["denoised"],
+                **{name: [point[key] for point in points]
+                   for name, key in (("seconds", "seconds"), ("errors", "error"), ("samples", "samples"))}}
+
+    for scene in r["scenes"]:
+        yield f"quality_{scene['scene']}", {"title": f"Error against time: {scene['scene']}",
+                                            "lines": [line(series) for series in scene["series"]],
+                                            "notes": [where, "Numbers at points are samples a pixel."]}
+
+
 CHARTS = {"paper1": chart_paper1, "paper2": chart_paper2, "paper3": chart_paper3, "peers": chart_peers, "cycles": chart_cycles,
-          "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
+          "quality": chart_quality, "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
 
 
 def read_result(file):
@@ -316,7 +354,7 @@ def main():
             sys.exit(f"{path}: no result of `relief bench`")
         for file, result in results:
             for name, chart in CHARTS[result["suite"]](result):
-                draw(chart, file.with_name(name + ".svg"))
+                (draw_lines if "lines" in chart else draw)(chart, file.with_name(name + ".svg"))
 
 
 main()

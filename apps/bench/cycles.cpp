@@ -1,18 +1,12 @@
 #include "bench/cycles.h"
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "bench/child_process.h"
-#include "bench/cycles_log.h"
 #include "bench/machine.h"
+#include "bench/renderers.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -20,9 +14,6 @@ namespace relief::bench {
 
 namespace {
 
-/// Width in texels: Blender's default, 4096, is finer than the sky image and takes seconds to build.
-constexpr int kImportanceMap = 512;
-constexpr int kDefaultImportanceMap = 0; ///< the script's value for Blender's default
 constexpr int kBounces = 4;
 
 constexpr double kFirstSampleGoal = 10, kRenderGoal = 3, kMemoryGoal = 1.0 / 5;
@@ -47,24 +38,17 @@ constexpr const char* kAboutMemory =
     "Memory is the most that a process had resident since its start, the program itself included. "
     "`cycles_own_peak_bytes` is what Cycles counts of its own.";
 
-struct Case {
-    int samples = 1, bounces = 0, importance_map = kImportanceMap;
-};
-
-/// Measures of one render of one program.
-using Measures = std::map<std::string, double>;
-
 struct CaseRuns {
-    Case what;
+    RenderTask what;
     std::vector<Measures> cycles, relief;
 };
 
 std::vector<CaseRuns> list_cases(int samples) {
-    return {{{1, 0, kImportanceMap}, {}, {}},
-            {{1, kBounces, kImportanceMap}, {}, {}},
-            {{samples, 0, kImportanceMap}, {}, {}},
-            {{samples, kBounces, kImportanceMap}, {}, {}},
-            {{1, 0, kDefaultImportanceMap}, {}, {}}};
+    return {{{.samples = 1, .bounces = 0}, {}, {}},
+            {{.samples = 1, .bounces = kBounces}, {}, {}},
+            {{.samples = samples, .bounces = 0}, {}, {}},
+            {{.samples = samples, .bounces = kBounces}, {}, {}},
+            {{.samples = 1, .bounces = 0, .importance_map = kDefaultImportanceMap}, {}, {}}};
 }
 
 Value describe_runs(const std::vector<Measures>& runs) {
@@ -94,32 +78,18 @@ Value describe_case(const CaseRuns& runs) {
     return result;
 }
 
-[[noreturn]] void throw_child_error(const std::string& program, const ChildResult& child) {
-    std::string end;
-    for (size_t k = child.lines.size() - std::min<size_t>(child.lines.size(), 8); k < child.lines.size(); ++k)
-        end += "\n" + child.lines[k].text;
-    throw Error(ErrorKind::failed,
-                {fmt::format("ended with exit code {}:{}", child.exit_code, end), program, ""});
-}
-
 class CyclesSuite {
   public:
-    CyclesSuite(const CyclesOptions& options, const Report& report) : options_(options), report_(report) {
-        const auto blender = find_program("blender");
-        if (!blender)
-            throw Error(ErrorKind::usage,
-                        {"no command `blender` is found in PATH", "bench cycles",
-                         "install Blender; on Debian: apt-get install --no-install-recommends blender"});
-        blender_ = blender->string();
-        threads_ = options.settings.device.threads > 0 ? options.settings.device.threads
-                                                       : int(std::thread::hardware_concurrency());
-    }
+    CyclesSuite(const CyclesOptions& options, const Report& report)
+        : options_(options),
+          report_(report),
+          threads_(count_threads(options.settings)),
+          renderers_(options.relief, options.folder, describe_size(options.settings), threads_) {}
 
     Value run() {
-        std::filesystem::create_directories(options_.folder);
-        write_text_file(options_.folder / "cycles_scene.py", cycles_script());
         make_head();
         for (const std::string& name : options_.scenes) measure(name);
+        result_["blender"] = renderers_.blender_version(), result_["device"] = renderers_.device();
         return std::move(result_);
     }
 
@@ -138,9 +108,6 @@ class CyclesSuite {
     std::filesystem::path scene_file(const std::string& name) const {
         return options_.folder / "scenes" / name / "scene.json";
     }
-    std::string size() const {
-        return fmt::format("{}x{}", options_.settings.image.width, options_.settings.image.height);
-    }
 
     void measure(const std::string& name) {
         report_("making the scene " + name);
@@ -151,8 +118,8 @@ class CyclesSuite {
             for (CaseRuns& runs : cases) {
                 report_(fmt::format("{}: {} samples, {} bounces, run {}", name, runs.what.samples,
                                     runs.what.bounces, run));
-                runs.cycles.push_back(render_with_cycles(name, runs.what, {}));
-                runs.relief.push_back(render_with_relief(name, runs.what, options_.folder / "relief.exr"));
+                runs.cycles.push_back(renderers_.render_with_cycles(scene_file(name), runs.what));
+                runs.relief.push_back(renderers_.render_with_relief(scene_file(name), runs.what));
             }
         for (const CaseRuns& runs : cases) entry["cases"].push_back(describe_case(runs));
         add_goals(entry);
@@ -164,9 +131,11 @@ class CyclesSuite {
         report_(name + ": comparing the pictures");
         const std::filesystem::path relief = options_.folder / (name + "_relief.exr");
         const std::filesystem::path cycles = options_.folder / (name + "_cycles.exr");
-        const Case picture{options_.samples, kBounces, kImportanceMap};
-        render_with_cycles(name, picture, cycles);
-        render_with_relief(name, picture, relief);
+        RenderTask task{.samples = options_.samples, .bounces = kBounces};
+        task.picture = cycles;
+        renderers_.render_with_cycles(scene_file(name), task);
+        task.picture = relief;
+        renderers_.render_with_relief(scene_file(name), task);
         const Value agreement = compare_with_cycles(read_image(relief), read_image(cycles));
         const double hits = agreement["hit_pixels"].get<double>();
         const double brightness = agreement["brightness_ratio"].get<double>();
@@ -176,70 +145,6 @@ class CyclesSuite {
                                                 write_json(agreement),
                                             cycles.string(), ""});
         return agreement;
-    }
-
-    /// `picture`: output file; empty: none.
-    Measures render_with_cycles(const std::string& name, const Case& what,
-                                const std::filesystem::path& picture) {
-        std::vector<std::string> words = {blender_,
-                                          "-b",
-                                          "-noaudio",
-                                          "--factory-startup",
-                                          "--python-exit-code",
-                                          "3",
-                                          "--python",
-                                          (options_.folder / "cycles_scene.py").string(),
-                                          "--"};
-        const std::pair<const char*, std::string> arguments[] = {
-            {"--scene", scene_file(name).string()},
-            {"--size", size()},
-            {"--samples", std::to_string(what.samples)},
-            {"--bounces", std::to_string(what.bounces)},
-            {"--threads", std::to_string(threads_)},
-            {"--importance-map", std::to_string(what.importance_map)}};
-        for (const auto& [option, value] : arguments) words.insert(words.end(), {option, value});
-        if (!picture.empty())
-            words.insert(words.end(), {"--output", std::filesystem::absolute(picture).string()});
-        const ChildResult child = run_child(words);
-        if (child.exit_code != 0) throw_child_error(blender_, child);
-        const CyclesTimes times = read_cycles_log(child.lines);
-        result_["blender"] = times.version;
-        return {{"images_s", times.images_s},
-                {"prepare_s", times.synchronisation_s - times.images_s},
-                {"first_sample_s", times.first_sample_s - times.images_s},
-                {"render_s", times.render_s - times.images_s},
-                {"with_reading_s", times.render_s},
-                {"cycles_own_peak_bytes", double(times.cycles_peak_bytes)},
-                {"resident_peak_bytes", double(times.resident_peak_bytes)}};
-    }
-
-    Measures render_with_relief(const std::string& name, const Case& what,
-                                const std::filesystem::path& picture) {
-        const std::filesystem::path statistics = options_.folder / "relief.json";
-        std::vector<std::string> words = {options_.relief.string(), "render", scene_file(name).string(),
-                                          "-q"};
-        const std::pair<const char*, std::string> arguments[] = {{"-o", picture.string()},
-                                                                 {"--stats", statistics.string()},
-                                                                 {"--size", size()},
-                                                                 {"--spp", std::to_string(what.samples)},
-                                                                 {"--bounces", std::to_string(what.bounces)},
-                                                                 {"--threads", std::to_string(threads_)}};
-        for (const auto& [option, value] : arguments) words.insert(words.end(), {option, value});
-        const ChildResult child = run_child(words);
-        if (child.exit_code != 0) throw_child_error(options_.relief.string(), child);
-        std::ifstream stream(statistics);
-        const Value s = read_json({std::istreambuf_iterator<char>(stream), {}});
-        const Value& time = s["time_s"];
-        const double load = time["load"].get<double>(), prepare = time["prepare"].get<double>();
-        const double render = time["render"].get<double>();
-        result_["device"] = s["device"];
-        return {{"load_s", load},
-                {"prepare_s", prepare},
-                {"first_sample_s", time["first_image"].get<double>() - load},
-                {"render_s", prepare + render},
-                {"with_reading_s", load + prepare + render},
-                {"with_reading_and_writing_s", time["total"].get<double>()},
-                {"resident_peak_bytes", s["memory_bytes"]["peak_resident"].get<double>()}};
     }
 
     void add_goal(const std::string& name, double goal, double reached, const char* unit, bool is_met) {
@@ -262,8 +167,8 @@ class CyclesSuite {
 
     const CyclesOptions& options_;
     const Report& report_;
-    std::string blender_;
-    int threads_ = 1;
+    int threads_;
+    Renderers renderers_;
     Value result_;
 };
 

@@ -21,6 +21,8 @@ def parse_arguments():
     parser.add_argument("--bounces", type=int, required=True)
     parser.add_argument("--threads", type=int, required=True)
     parser.add_argument("--importance-map", type=int, required=True, help="width in texels; 0: Blender's default")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--denoise", type=int, default=0, help="1: by Open Image Denoise, with albedo and normal")
     parser.add_argument("--output", help="EXR with the background left out, written after the render")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
@@ -116,7 +118,9 @@ def make_material(scene, item, folder):
     if "displacement" in item:
         entry = scene["displacements"][item["displacement"]]
         tree.links.new(add_displacement(tree, entry, folder), output.inputs["Displacement"])
-        material.cycles.displacement_method = "DISPLACEMENT"
+        # Blender 4.2 moved it.
+        owner = material if hasattr(material, "displacement_method") else material.cycles
+        owner.displacement_method = "DISPLACEMENT"
     return material
 
 
@@ -195,8 +199,10 @@ def choose_settings(arguments):
     cycles = bpy.context.scene.cycles
     cycles.device, cycles.feature_set = "CPU", "EXPERIMENTAL"
     cycles.dicing_rate, cycles.max_subdivisions = 1.0, 12
-    cycles.samples, cycles.seed = arguments.samples, 1
-    cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_auto_tile = False
+    cycles.samples, cycles.seed = arguments.samples, arguments.seed
+    cycles.use_adaptive_sampling = cycles.use_auto_tile = False
+    cycles.use_denoising = arguments.denoise != 0
+    cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
     cycles.max_bounces = cycles.diffuse_bounces = arguments.bounces
     cycles.sample_clamp_indirect = 0
@@ -211,6 +217,8 @@ def read_peak_resident():
 
 def main():
     arguments = parse_arguments()
+    if getattr(bpy.app, "module", False):  # without the command `blender` and its --factory-startup
+        bpy.ops.wm.read_factory_settings()
     with open(arguments.scene, encoding="utf-8") as stream:
         scene = json.load(stream)
     folder = os.path.dirname(os.path.abspath(arguments.scene))

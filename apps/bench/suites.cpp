@@ -14,6 +14,7 @@
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
+#include "bench/quality.h"
 #include "bench/tables.h"
 #include "common/mesh_reader.h"
 #ifdef RELIEF_EMBREE
@@ -105,6 +106,17 @@ SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_cycles, make_cycles_table);
 }
 
+/// As the suite cycles.
+SuiteResult run_quality_suite(const BenchOptions& o, const Report& report) {
+    QualityOptions options;
+    options.settings = make_settings(o, 640, 360);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
+    check_scenes(o, cycles_scene_names());
+    if (!o.scenes.empty()) options.scenes = o.scenes;
+    return run_suite(o, std::move(options), report, run_quality, make_quality_table);
+}
+
 /// CPU engine, own scene.
 SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     EditsOptions options;
@@ -160,6 +172,10 @@ const std::vector<Suite>& list_suites() {
         {"cycles",
          "displaced scenes beside Blender's Cycles, where `blender` is found",
          run_cycles_suite,
+         {"--scenes", "--size", "--threads"}},
+        {"quality",
+         "error against time beside Blender's Cycles, denoised and not",
+         run_quality_suite,
          {"--scenes", "--size", "--threads"}},
         {"edits",
          "a painted rectangle of a map until the next picture, beside a fresh load",

@@ -147,6 +147,17 @@ Table make_cycles_table(const Value& result) {
     return table;
 }
 
+Table make_quality_table(const Value& result) {
+    Table table{{"scene", "program", "denoised", "samples", "seconds", "error"}, {}};
+    for (const Value& scene : result["scenes"])
+        for (const Value& series : scene["series"])
+            for (const Value& point : series["points"])
+                table.rows.push_back({scene["scene"], series["program"],
+                                      series["denoised"].get<bool>() ? "yes" : "no", point["samples"],
+                                      point["seconds"], point["error"]});
+    return table;
+}
+
 Table make_edits_table(const Value& result) {
     Table table{{"picture", "fresh_load_s", "fresh_prepare_s", "fresh_render_s", "fresh_picture_s", "edit_s",
                  "edit_picture_s", "slowest_edit_picture_s", "rays_share", "ratio", "ratio_of_slowest"},

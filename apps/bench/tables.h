@@ -9,6 +9,7 @@ Table make_paper1_table(const Value& result);
 Table make_paper2_table(const Value& result);
 Table make_paper3_table(const Value& result);
 Table make_cycles_table(const Value& result);
+Table make_quality_table(const Value& result);
 Table make_edits_table(const Value& result);
 Table make_triangles_table(const Value& result);
 Table make_peers_table(const Value& result);

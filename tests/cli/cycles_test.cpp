@@ -1,4 +1,4 @@
-// bench cycles without Blender, and with something that answers in its place.
+// bench cycles and quality without Blender, and with something that answers in its place.
 #include <cstdlib>
 
 #include <nlohmann/json.hpp>
@@ -20,11 +20,12 @@ while [ $# -gt 1 ]; do
     --samples) samples=$2 ;;
     --bounces) bounces=$2 ;;
     --output) output=$2 ;;
+    --seed) seed=$2 ;;
     esac
     shift
 done
 test -n "$output" && )" RELIEF_BINARY
-    R"( render "$scene" -o "$output" --size $size --spp $samples --bounces $bounces -q
+    R"( render "$scene" -o "$output" --size $size --spp $samples --bounces $bounces --seed $seed --background transparent -q
 echo "relief: blender 3.4.1"
 echo "relief: render starts"
 echo "Fra:1 Mem:9M (Peak 9M) | Time:00:00.00 | Mem:0.00M, Peak:7.50M | Scene, ViewLayer | Sample 0/$samples"
@@ -85,6 +86,40 @@ TEST_F(BenchCycles, reports_nothing_when_blender_fails_or_shows_something_else) 
     EXPECT_EQ(different.exit_code, 1);
     EXPECT_NE(different.errors.find("masks_differ"), std::string::npos) << different.errors;
     EXPECT_FALSE(exists("cycles/cycles.json"));
+}
+
+/// Blender as a module of `python3`, which is asked for it first.
+TEST_F(BenchCycles, takes_the_python_module_too) {
+    std::string python = kBlender;
+    python.insert(10, "test \"$1\" = -c && exit 0\n");
+    std::filesystem::create_directories(folder_ / "bin");
+    write("bin/python3", python);
+    std::filesystem::permissions(folder_ / "bin/python3", std::filesystem::perms::owner_all);
+    const std::string path = (folder_ / "bin").string() + ":/bin";
+    const CommandResult result = finish(start({"bench", "cycles", "--quick", "--scenes", "rock", "-q"},
+                                              [&] { setenv("PATH", path.c_str(), 1); }));
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(json::parse(read("cycles/cycles.json"))["blender"], "3.4.1");
+}
+
+TEST_F(BenchCycles, quality_finds_less_error_in_more_samples_and_the_time_to_the_same_error) {
+    const CommandResult result = run_with(
+        kBlender, {"bench", "quality", "--quick", "--scenes", "rock", "--threads", "1", "-q", "-o", "q"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json s = json::parse(read("q/quality.json"));
+    const json& scene = s["scenes"][0];
+    EXPECT_EQ(scene["series"].size(), scene.contains("denoised_relief") ? 3u : 4u);
+    EXPECT_EQ(s["goals"].size(), scene.contains("denoised_relief") ? 1u : 2u);
+    const json &cycles = scene["series"][0]["points"], &relief = scene["series"][1]["points"];
+    ASSERT_EQ(cycles.size(), 2u);
+    ASSERT_EQ(relief.size(), 3u);
+    for (size_t k = 1; k < relief.size(); ++k)
+        EXPECT_LT(relief[k]["error"].get<double>(), 0.5 * relief[k - 1]["error"].get<double>()) << k;
+    // Both are Relief here: the same pictures, so the same error after the same samples.
+    EXPECT_EQ(cycles[1]["error"], relief[1]["error"]);
+    EXPECT_EQ(scene["same_error"][1]["relief_s"], relief[1]["seconds"]);
+    EXPECT_EQ(read("q/quality.csv").rfind("scene,program,denoised,samples,seconds,error", 0), 0u);
+    EXPECT_NE(read("q/quality_rock.svg").find("</svg>"), std::string::npos);
 }
 
 TEST_F(BenchCycles, options_that_it_has_not_are_refused) {
