@@ -20,6 +20,7 @@ inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
+inline constexpr float kMaxNormalScale = 1000;
 inline constexpr float kInfiniteSharpness = 10; ///< of a crease
 
 /// Semi-sharp crease of a subdivided mesh (DeRose, Kass and Truong 1998) between two positions, given by
@@ -162,6 +163,12 @@ struct Material {
     float opacity = 1;
     std::shared_ptr<const Texture> opacity_texture; ///< first channel, raw
     MapFilter opacity_filter = MapFilter::none;     ///< not mip
+    /// Tangent-space normals about the shading normal, displacement included, +Y towards growing v: raw
+    /// values in [0, 1] of three channels or more, direction 2 value - 1. Objects with one need uvs.
+    std::shared_ptr<const Texture> normal_texture;
+    MapFilter normal_filter = MapFilter::none; ///< not mip
+    float normal_scale = 1;                    ///< [0, kMaxNormalScale], of x and y of the direction
+    bool normal_flip_y = false;                ///< +Y of the map points against v, as in DirectX
 };
 
 /// Calls visit(name, texture, filter) for each texture that a material may have, also where it has none.
@@ -170,6 +177,7 @@ template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& mater
     visit("roughness_texture", material.roughness_texture, material.roughness_filter);
     visit("metallic_texture", material.metallic_texture, material.metallic_filter);
     visit("opacity_texture", material.opacity_texture, material.opacity_filter);
+    visit("normal_texture", material.normal_texture, material.normal_filter);
 }
 
 /// Whether some rays pass through a surface of the material.

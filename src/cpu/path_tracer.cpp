@@ -9,6 +9,7 @@
 #include "base/timer.h"
 #include "cpu/bounce_rays.h"
 #include "cpu/cut_outs.h"
+#include "cpu/shading/normal_maps.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/textures.h"
 #include "formulas/camera.h"
@@ -220,6 +221,7 @@ void TileTracer::shade_paths() {
     drop_misses();
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
+    if (tracer_.scene().has_normal_maps) map_shading_normals(tracer_.scene(), hits_, points_);
     draw_random();
     size_t next = 0;
     for (size_t first = 0; first < active_.size(); first += kBlock)

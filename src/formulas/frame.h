@@ -32,11 +32,16 @@ struct TangentFrame {
     Vec3 t, b, n;
 };
 
+/// The tangent alone, not quite at right angles to the normal.
+FN Vec3 unpack_tangent(uint packed_tangent) {
+    return unfold_octahedron(dequantize_unit((packed_tangent >> 1u) & 0x7fffu, 15u, kCoarseUnit),
+                             dequantize_unit(packed_tangent >> 16u, 16u, kFineUnit));
+}
+
 FN TangentFrame unpack_tangent_frame(uint packed_normal, uint packed_tangent) {
     TangentFrame frame;
     frame.n = unpack_unit_normal(packed_normal);
-    Vec3 t = unfold_octahedron(dequantize_unit((packed_tangent >> 1u) & 0x7fffu, 15u, kCoarseUnit),
-                               dequantize_unit(packed_tangent >> 16u, 16u, kFineUnit));
+    Vec3 t = unpack_tangent(packed_tangent);
     frame.t = make_unit(subtract_exact(t, scale_exact(frame.n, dot_exact(frame.n, t))));
     Vec3 b = cross_exact(frame.n, frame.t);
     Vec3 turned = {-b.x, -b.y, -b.z};

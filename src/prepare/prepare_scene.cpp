@@ -17,6 +17,7 @@
 #include "prepare/tessellate.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
+#include "surface/mesh/corner_tangents.h"
 #include "surface/patch/patch_mips.h"
 
 namespace relief {
@@ -188,6 +189,20 @@ void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_o
     });
 }
 
+/// Of the surfaces that some normal map lies on.
+void add_tangents(PreparedScene& prepared) {
+    std::set<uint32_t> mapped;
+    for (const Instance& instance : prepared.instances)
+        if (prepared.materials[instance.material].normal_texture) mapped.insert(instance.surface);
+    const std::vector<uint32_t> list(mapped.begin(), mapped.end());
+    parallel_for("tangents", list.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            Surface& surface = prepared.surfaces[list[k]];
+            surface.corner_tangents = make_corner_tangents(surface);
+        }
+    });
+}
+
 } // namespace
 
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
@@ -211,6 +226,8 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     for (Material& material : prepared->materials)
         material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
     prepared->has_cut_outs = std::ranges::any_of(prepared->materials, is_cut_out);
+    prepared->has_normal_maps = std::ranges::any_of(
+        prepared->materials, [](const Material& material) { return !!material.normal_texture; });
     prepared->layers = make_material_layers(prepared->materials);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
@@ -231,6 +248,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepare_maps(scene, editable);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
     share_mips(scene, surface_of_key, *prepared);
+    add_tangents(*prepared);
     place_instances(scene, taken_off, origin, *prepared);
 
     prepared->levels = make_level_config(prepared->camera, settings);

@@ -60,6 +60,7 @@ struct PreparedScene {
     std::vector<PreparedMap> maps;   ///< of all displacements
     std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
     bool has_cut_outs = false;       ///< some material lets rays through
+    bool has_normal_maps = false;    ///< some material has one
     MaterialLayers layers;           ///< of the materials
     std::vector<Light> lights;
     std::optional<Environment> environment;

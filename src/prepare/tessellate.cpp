@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "formulas/normal_map.h"
 #include "relief/error.h"
+#include "surface/mesh/corner_tangents.h"
 
 namespace relief {
 
@@ -99,6 +101,28 @@ void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels&
         }
 }
 
+/// Tangents of the displaced surface at the corners of a patch's micro-quads, the first of which is `cell`.
+void tessellate_tangents(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t cell,
+                         Surface& result) {
+    const uint32_t side = 1u << levels.patch;
+    std::vector<uint32_t> packed;
+    for (uint32_t j = 0; j <= side; ++j)
+        for (uint32_t i = 0; i <= side; ++i) {
+            const Vec2f at{float(i) / float(side), float(j) / float(side)};
+            const Vec3f normal = compute_shading_normal(surface, patch, levels.patch, at.x, at.y);
+            const Vec3f tangent =
+                scalar::turn_tangent(blend_tangents(surface, patch, at),
+                                     normalize(blend_base_normals(surface, patch, at)), normalize(normal));
+            packed.push_back(pack_frame({}, tangent, find_handedness(surface, patch)).tangent);
+        }
+    for (uint32_t j = 0; j < side; ++j)
+        for (uint32_t i = 0; i < side; ++i) {
+            const uint32_t first = j * (side + 1) + i;
+            result.corner_tangents[cell + uint64_t(j) * side + i] = {
+                packed[first], packed[first + 1], packed[first + side + 2], packed[first + side + 1]};
+        }
+}
+
 Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     const PatchOffsets offsets = compute_offsets(surface, levels);
     Surface result;
@@ -108,10 +132,15 @@ Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     result.frames.resize(offsets.vertex.back());
     result.uvs.resize(offsets.vertex.back());
     result.quads.reset(offsets.cell.back(), uint32_t(offsets.vertex.back()));
+    const bool has_tangents = !surface.corner_tangents.empty();
+    if (has_tangents) result.corner_tangents.resize(offsets.cell.back());
     parallel_for("tessellate", surface.patch_count(), 16, [&](size_t begin, size_t end) {
-        for (size_t patch = begin; patch < end; ++patch)
-            tessellate_patch(surface, uint32_t(patch), levels.at(uint32_t(patch)), offsets.vertex[patch],
-                             offsets.cell[patch], result);
+        for (size_t k = begin; k < end; ++k) {
+            const uint32_t patch = uint32_t(k);
+            const PatchLevels patch_levels = levels.at(patch);
+            tessellate_patch(surface, patch, patch_levels, offsets.vertex[k], offsets.cell[k], result);
+            if (has_tangents) tessellate_tangents(surface, patch, patch_levels, offsets.cell[k], result);
+        }
     });
     return result;
 }
@@ -133,8 +162,10 @@ TessellationCost estimate_tessellation(const PreparedScene& scene) {
         const Surface& surface = scene.surfaces[scene.instances[k].surface];
         if (!surface.has_displacement || equals[k] != k) continue;
         const MicroCounts counts = count_micro(surface, *scene.instances[k].levels);
-        const uint64_t bytes =
-            QuadList::byte_count(counts.quads, counts.vertices) + counts.vertices * kBytesPerVertex;
+        const uint64_t tangent_bytes =
+            surface.corner_tangents.empty() ? 0 : counts.quads * sizeof(surface.corner_tangents[0]);
+        const uint64_t bytes = QuadList::byte_count(counts.quads, counts.vertices) +
+                               counts.vertices * kBytesPerVertex + tangent_bytes;
         cost.micro_quads += counts.quads;
         cost.geometry_bytes += bytes;
         cost.peak_bytes += bytes + counts.quads * kBuildBytesPerQuad;

@@ -197,11 +197,16 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "coat_color", material.coat_color, 0, 1);
     check_range(where, "fuzz_color", material.fuzz_color, 0, 1);
     check_range(where, "coat_ior", material.coat_ior, 1, kHuge);
+    check_range(where, "scale of normal_texture", material.normal_scale, 0, kMaxNormalScale);
     visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
         if (filter == MapFilter::mip || filter > MapFilter::bspline)
             fail(where, "a filter of its textures is neither none, cubic nor bspline");
         if (texture) check_texture(fmt::format("{}, {}", where, name), *texture);
     });
+    if (material.normal_texture && material.normal_texture->channel_count < 3)
+        fail(fmt::format("{}, normal_texture", where),
+             fmt::format("has {} channels, and a normal has three", material.normal_texture->channel_count),
+             "export it as RGB; a height map is a displacement");
 }
 
 /// Largest coordinate of a transformed box, in double precision: it may be beyond all floats.
@@ -237,6 +242,12 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
     if (object.displacement != kNoIndex && mesh.uv_indices.empty())
         fail(where,
              fmt::format("{} has no uvs, which its displacement needs",
+                         describe("mesh", mesh.name, object.mesh)),
+             "export the mesh with texture coordinates");
+    if (object.material != kNoIndex && scene.materials[object.material].normal_texture &&
+        mesh.uv_indices.empty())
+        fail(where,
+             fmt::format("{} has no uvs, which the normal_texture of its material needs",
                          describe("mesh", mesh.name, object.mesh)),
              "export the mesh with texture coordinates");
 }

@@ -44,6 +44,8 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           find_index(material.metallic_texture, material.metallic_filter),
                           find_index(material.opacity_texture, material.opacity_filter),
                           material.opacity,
+                          find_index(material.normal_texture, material.normal_filter),
+                          {material.normal_scale, material.normal_scale * (material.normal_flip_y ? -1 : 1)},
                           0,
                           {}});
     if (scene.layers.empty()) return result;

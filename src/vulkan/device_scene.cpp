@@ -90,6 +90,14 @@ std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) c
     return constants;
 }
 
+std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
+    constants = add_filter(std::move(constants));
+    if (!has_normal_maps_) return constants;
+    constants.resize(scalar::kNormalMapsConstant + 1);
+    constants[scalar::kNormalMapsConstant] = 1;
+    return constants;
+}
+
 std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
     if (!has_layers_) return constants;
@@ -118,6 +126,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
         });
     if (scene.environment) add(scene.environment->texture);
     has_layers_ = !scene.layers.empty();
+    has_normal_maps_ = scene.has_normal_maps;
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }
@@ -173,6 +182,9 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
             arrays.override_bits.push_back(uint32_t(word >> 32));
         }
         data.first_mip = append(arrays.override_bits, surface.mips);
+        data.first_tangent = surface.corner_tangents.empty() ? kNone : uint32_t(arrays.override_bits.size());
+        for (const std::array<uint32_t, 4>& tangents : surface.corner_tangents)
+            arrays.override_bits.insert(arrays.override_bits.end(), tangents.begin(), tangents.end());
         data.has_bilinear_uvs = surface.has_bilinear_uvs ? 1 : 0;
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
         if (surface.has_displacement) add_map(surface);

@@ -82,7 +82,8 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     camera_kernel_ = make_kernel(device, "camera");
     background_ = make_kernel(device, "background");
     surface_point_ = make_reading_kernel(tracer, "surface_point");
-    shading_normal_ = make_reading_kernel(tracer, "shading_normal");
+    shading_normal_ = Kernel(device, {.shader = "shading_normal",
+                                      .constants = tracer.device_scene().add_normal_maps({kGroupSize})});
     light_sample_ = make_scattering_kernel(tracer, "light_sample");
     bounce_ = make_scattering_kernel(tracer, "bounce");
     far_rays_ = make_kernel(device, "far_rays");

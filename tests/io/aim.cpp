@@ -233,7 +233,7 @@ TEST_F(Aim, a_copy_of_a_scene_file_keeps_its_keys_and_moves_its_paths) {
     write("plane.obj", kPlane);
     write_pixels<uint8_t>("colour.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});
     const std::filesystem::path input = write("s.json", R"({"camera": {"from": [0, 0, 9]},
-        "materials": {"red": {"base_color_texture": "colour.png", "roughness": 0.25}},
+        "materials": {"red": {"base_color_texture": "colour.png", "geometry_normal": "colour.png", "roughness": 0.25}},
         "meshes": {"plane": {"file": "plane.obj"}},
         "objects": [{"mesh": "plane", "material": "red", "transform": {"translate": [0, 1, 0], "scale": 2}}]})");
     std::filesystem::create_directories(folder_ / "a" / "b");
@@ -247,6 +247,7 @@ TEST_F(Aim, a_copy_of_a_scene_file_keeps_its_keys_and_moves_its_paths) {
     EXPECT_EQ(read.camera.to, (Vec3f{0, 1, 0}));
     EXPECT_EQ(read.materials[0].roughness, 0.25f);
     ASSERT_TRUE(read.materials[0].base_color_texture);
+    ASSERT_TRUE(read.materials[0].normal_texture);
     EXPECT_EQ(read.objects[0].world_from_object, scene.objects[0].world_from_object);
     std::ifstream text(file);
     const std::string content{std::istreambuf_iterator<char>(text), {}};

@@ -6,32 +6,12 @@
 #include "base/suggest.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/scene_reader.h"
-#include "io/test_files.h"
+#include "io/scene_files.h"
 #include "math/vec.h"
 #include "relief/io.h"
 #include "scene/displacement_conventions.h"
 
 namespace relief {
-
-class SceneFiles : public FileTest {
-  protected:
-    SceneFiles() {
-        write("plane.obj", kQuadObj);
-        write_pixels<float>("map.exr", 2, 2, 3, OIIO::TypeDesc::FLOAT,
-                            {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, .5f, 0});
-    }
-    Scene parse(const std::string& text) const { return parse_scene(text, folder_, "s.json"); }
-    std::string error_of(const std::string& text) const {
-        return message_of([&] { parse(text); });
-    }
-    std::string with_object(const std::string& members) const {
-        return R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane")" + members +
-               "}]}";
-    }
-    std::string with_map(const std::string& members) const {
-        return R"({"displacements": {"ear": {)" + members + "}}}";
-    }
-};
 
 /// Largest distance of the points from the middle of a square picture, 1 at its border.
 float measure_fill(const Camera& camera, const std::vector<Vec3f>& points) {
@@ -188,65 +168,6 @@ TEST_F(SceneFiles, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of("[]"), "must be an object");
 }
 
-TEST_F(SceneFiles, materials_have_the_names_of_open_pbr) {
-    const char* const text = R"({"materials": {"a": {"base_weight": 0.1, "base_color": [0.2, 0.3, 0.4],
-        "base_diffuse_roughness": 0.5, "base_metalness": 0.6, "specular_weight": 0.7,
-        "specular_color": [0.8, 0.9, 1], "specular_roughness": 0.11, "specular_ior": 1.2, "coat_weight": 0.13,
-        "coat_color": [0.14, 0.15, 0.16], "coat_roughness": 0.17, "coat_ior": 1.8, "coat_darkening": 0.19,
-        "fuzz_weight": 0.2, "fuzz_color": [0.21, 0.22, 0.23], "fuzz_roughness": 0.24, "emission_luminance": 4,
-        "emission_color": [1, 0.5, 0.25]}}})";
-    Scene scene = parse(text);
-    for (int round = 0; round < 2; ++round) {
-        const Material& m = scene.materials.at(0);
-        EXPECT_EQ(m.base_weight, 0.1f);
-        EXPECT_EQ(m.base_color, (Vec3f{0.2f, 0.3f, 0.4f}));
-        EXPECT_EQ(m.base_diffuse_roughness, 0.5f);
-        EXPECT_EQ(m.metallic, 0.6f);
-        EXPECT_EQ(m.specular_weight, 0.7f);
-        EXPECT_EQ(m.specular_color, (Vec3f{0.8f, 0.9f, 1}));
-        EXPECT_EQ(m.roughness, 0.11f);
-        EXPECT_EQ(m.ior, 1.2f);
-        EXPECT_EQ(m.coat_weight, 0.13f);
-        EXPECT_EQ(m.coat_color, (Vec3f{0.14f, 0.15f, 0.16f}));
-        EXPECT_EQ(m.coat_roughness, 0.17f);
-        EXPECT_EQ(m.coat_ior, 1.8f);
-        EXPECT_EQ(m.coat_darkening, 0.19f);
-        EXPECT_EQ(m.fuzz_weight, 0.2f);
-        EXPECT_EQ(m.fuzz_color, (Vec3f{0.21f, 0.22f, 0.23f}));
-        EXPECT_EQ(m.fuzz_roughness, 0.24f);
-        EXPECT_EQ(m.emission, (Vec3f{4, 2, 1}));
-        // The same once more, written and read again.
-        scene.meshes.push_back(parse(with_object("")).meshes.at(0));
-        scene.objects.push_back({.name = "o", .mesh = 0, .material = 0});
-        save_scene(scene, folder_ / "layers");
-        scene = load_scene(folder_ / "layers" / "scene.json");
-    }
-}
-
-TEST_F(SceneFiles, a_material_says_each_number_under_one_name) {
-    const auto of_material = [&](const std::string& keys) {
-        return error_of(R"({"materials": {"m": {)" + keys + "}}}");
-    };
-    EXPECT_EQ(
-        of_material(R"("roughness": 1, "specular_roughness": 1)"),
-        "s.json: materials.m.specular_roughness: means the same as 'roughness', which is there too (leave "
-        "one of the two out)");
-    EXPECT_HAS(of_material(R"("metallic": 1, "base_metalness": 0)"),
-               "materials.m.base_metalness: means the same");
-    EXPECT_HAS(of_material(R"("specular_ior": 1.5, "ior": 1.5)"), "materials.m.specular_ior: means the same");
-    EXPECT_HAS(of_material(R"("emission": [1, 1, 1], "emission_luminance": 1)"), "emission_luminance: means");
-    EXPECT_HAS(of_material(R"("emission": [1, 1, 1], "emission_color": [1, 1, 1])"), "emission_color: means");
-    EXPECT_HAS(of_material(R"("emission_color": [1, 1, 1])"), "emission_luminance, which is not there");
-    EXPECT_HAS(of_material(R"("coat_weight": 1.5)"), "materials.m.coat_weight: must be in [0, 1], not 1.5");
-    EXPECT_HAS(of_material(R"("opacity": 1, "geometry_opacity": 1)"), "geometry_opacity: means the same");
-    EXPECT_HAS(of_material(R"("opacity": -1)"), "materials.m.opacity: must be in [0, 1]");
-    EXPECT_HAS(of_material(R"("coat_ior": 0.5)"), "materials.m.coat_ior: must be at least 1");
-    EXPECT_HAS(of_material(R"("fuzz_color": [0, 0, 2])"), "materials.m.fuzz_color[2]");
-    for (const char* later :
-         {"transmission_weight", "subsurface_weight", "specular_roughness_anisotropy", "thin_film_weight"})
-        EXPECT_HAS(of_material(std::string("\"") + later + R"(": 0.5)"), "unknown key");
-}
-
 TEST_F(SceneFiles, axes_are_signed_permutations_of_one_set_of_letters) {
     const AxisText axes = parse_axes("x, -z ,y");
     EXPECT_EQ(axes.axes.axis, (std::array<uint8_t, 3>{0, 2, 1}));
@@ -348,7 +269,8 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         "camera": {"from": [0.1, 0.2, 0.3]}, "materials": {"m n": {"roughness": 0.3,
             "base_color_texture": {"file": "env.exr", "filter": "bspline"}, "opacity": 0.1,
             "metallic_texture": {"file": "env.exr", "channel": "g"},
-            "opacity_texture": {"file": "env.exr", "channel": "b", "filter": "cubic"}}},
+            "opacity_texture": {"file": "env.exr", "channel": "b", "filter": "cubic"},
+            "geometry_normal": {"file": "map.exr", "scale": 0.25, "flip_y": true}}, "plain": {"normal_texture": "map.exr"}},
         "displacements": {"z": {"file": "h.<UDIM>.exr", "axes": "t,-n,b", "midlevel": 0.1, "frame": "file",
                                 "filter": "mip", "autobump": true, "dilate": false},
                           "a": {"file": "map.exr", "axes": "x,-z,y", "scale": 0.7, "wrap": "black", "frame": "dpdu",
@@ -395,6 +317,12 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
     EXPECT_EQ(material.metallic_texture->floats.at(0), 2);
     EXPECT_EQ(material.opacity_texture->floats, given.opacity_texture->floats);
     EXPECT_EQ(material.opacity_filter, MapFilter::cubic);
+    EXPECT_EQ(material.normal_texture->floats, given.normal_texture->floats);
+    EXPECT_EQ(material.normal_scale, 0.25f);
+    EXPECT_TRUE(material.normal_flip_y);
+    EXPECT_EQ(read.materials.at(1).normal_texture->floats, given.normal_texture->floats);
+    EXPECT_EQ(read.materials[1].normal_scale, 1);
+    EXPECT_FALSE(read.materials[1].normal_flip_y);
     EXPECT_EQ(read.camera.from, scene.camera.from);
     EXPECT_EQ(read.environment->strength, 0.1f);
     EXPECT_EQ(read.environment->texture->floats, scene.environment->texture->floats);

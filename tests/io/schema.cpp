@@ -68,6 +68,10 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
           "/properties/materials/additionalProperties/properties/metallic_texture/oneOf/1",
           "/properties/materials/additionalProperties/properties/opacity_texture/oneOf/1"})
         expect_keys(texture, scene_keys::kDataTexture);
+    for (const char* texture :
+         {"/properties/materials/additionalProperties/properties/normal_texture/oneOf/1",
+          "/properties/materials/additionalProperties/properties/geometry_normal/oneOf/1"})
+        expect_keys(texture, scene_keys::kNormalTexture);
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
     expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
     expect_keys("/properties/objects/items", scene_keys::kObject);
@@ -82,7 +86,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 21u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 23u) << "an object of the schema is compared with nothing";
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

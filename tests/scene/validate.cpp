@@ -136,6 +136,28 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
                "no lengths");
 }
 
+TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
+    const auto add_map = [](Scene& s, uint32_t channel_count) {
+        auto texture = std::make_shared<Texture>(*s.displacements[0].tiles[0].texture);
+        texture->channel_count = channel_count;
+        s.materials[0].normal_texture = texture;
+        s.objects[0].material = 0;
+    };
+    EXPECT_EQ(complaint([&](Scene& s) { add_map(s, 3); }), "accepted");
+    EXPECT_HAS(complaint([&](Scene& s) { add_map(s, 1); }), "has 1 channels, and a normal has three");
+    EXPECT_HAS(complaint([&](Scene& s) {
+                   add_map(s, 3);
+                   s.objects[0].displacement = kNoIndex;
+                   s.meshes[0].uv_indices.clear();
+               }),
+               "mesh 'quad' has no uvs, which the normal_texture of its material needs");
+    EXPECT_HAS(complaint([&](Scene& s) {
+                   add_map(s, 3);
+                   s.materials[0].normal_filter = MapFilter::mip;
+               }),
+               "neither none, cubic nor bspline");
+}
+
 TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].roughness = 1.5f; }), "roughness is 1.5");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].ior = 0.5f; }), "ior");
@@ -153,6 +175,8 @@ TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_color.x = 2; }), "fuzz_color");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].fuzz_roughness = 2; }), "fuzz_roughness");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].opacity = 2; }), "opacity");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].normal_scale = -1; }),
+               "scale of normal_texture is -1");
     EXPECT_HAS(complaint([](Scene& s) {
                    s.materials[0].opacity = 0.5f, s.materials[0].emission = {1, 0, 0};
                }),

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "formulas/frame.h"
+#include "surface/mesh/corner_tangents.h"
 #include "surface/mesh/mikk_tangents.h"
 #include "surface/mesh/vertex_frames.h"
 #include "surface/mikk_reference.h"
@@ -321,6 +323,41 @@ TEST(RelativeLengths, that_carry_too_far_are_refused) {
     EXPECT_NE(test::catch_message([&] { make_surface(mesh, &relative, {}); }), "");
     const Displacement absolute = make_map(FrameKind::dpdu);
     EXPECT_EQ(test::catch_message([&] { make_surface(mesh, &absolute, {}); }), "");
+}
+
+/// Those of the mesh's faces, whatever the surface is displaced by.
+TEST(CornerTangents, of_a_plain_mesh_are_those_of_blender) {
+    Surface surface = make_surface(make_reference_mesh(), nullptr, {});
+    surface.corner_tangents = make_corner_tangents(surface);
+    size_t corner = 0;
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+        const uint32_t size = surface.quads[patch].is_triangle() ? 3 : 4;
+        EXPECT_EQ(find_handedness(surface, patch), test::kMikkCorners[corner].sign) << patch;
+        for (size_t k = 0; k < size; ++k, ++corner)
+            EXPECT_LT(length(scalar::unpack_tangent(surface.corner_tangents[patch][k]) -
+                             to_vector(test::kMikkCorners[corner].tangent)),
+                      kPacked)
+                << corner;
+    }
+    EXPECT_EQ(corner, std::size(test::kMikkCorners)) << "no face of the reference is cut";
+}
+
+TEST(CornerTangents, of_heights_are_those_that_vectors_move_along) {
+    const Mesh mesh = make_unequal_quads();
+    Displacement displacement = make_map(FrameKind::mikk);
+    const Surface vectors = make_surface(mesh, &displacement, {});
+    displacement.type = DisplacementType::height;
+    Surface heights = make_surface(mesh, &displacement, {});
+    heights.corner_tangents = make_corner_tangents(heights);
+    ASSERT_EQ(heights.patch_count(), vectors.patch_count());
+    for (uint32_t patch = 0; patch < heights.patch_count(); ++patch)
+        for (size_t k = 0; k < 4; ++k) {
+            const Frame frame = vectors.frame(vectors.quads[patch].vertex[k]);
+            const Vec3f tangent = scalar::unpack_tangent(heights.corner_tangents[patch][k]);
+            EXPECT_LT(length(tangent - frame.t), kPacked) << patch << ' ' << k;
+            EXPECT_LT(length(cross(frame.n, tangent) * find_handedness(heights, patch) - frame.b), kPacked);
+        }
+    EXPECT_EQ(make_corner_tangents(vectors)[0][0], vectors.frames[vectors.quads[0].vertex[0]].tangent);
 }
 
 } // namespace

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "cpu/shading/lights.h"
+#include "cpu/shading/normal_maps.h"
 #include "cpu/shading/textures.h"
 #include "cpu/tracer.h"
 #include "formulas/basis.h"
@@ -87,6 +89,9 @@ inline Scene make_shading_scene() {
     shiny.coat_weight = 0.7f, shiny.coat_color = {0.9f, 0.5f, 0.2f}, shiny.coat_roughness = 0.2f;
     shiny.fuzz_weight = 0.6f, shiny.base_diffuse_roughness = 0.5f, shiny.specular_color = {1, 0.8f, 0.6f};
     glowing.emission = {4, 3, 1};
+    colored.normal_texture = make_colors(23, 11, 1, 9), colored.normal_scale = 0.6f;
+    shiny.normal_texture = colored.normal_texture, shiny.normal_filter = MapFilter::cubic;
+    shiny.normal_flip_y = true;
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
     scene.displacements.back().filter = MapFilter::mip, scene.displacements.back().autobump = true;
     Mesh torus = test::make_torus(6, 8);
@@ -94,6 +99,7 @@ inline Scene make_shading_scene() {
     torus.subdivision.level = 0;
     add_displaced(scene, torus, DisplacementSpace::object,
                   compose(make_translation({2.5f, 0.5f, 0}), make_scale({-0.5f, 0.6f, 0.7f})), glowing);
+    scene.materials.back().normal_texture = colored.normal_texture;
     Mesh floor = make_floor(6);
     floor.uvs = {{-1.7f, 3.2f}, {2.9f, 3.1f}, {3.0f, -2.5f}, {-1.6f, -2.4f}};
     add_object(scene, floor, shiny);
@@ -169,7 +175,10 @@ class ShadingBench {
     }
 
     template <class Push> void run(const char* shader, const Push& push) {
-        const Kernel kernel(device_, {.shader = shader, .constants = device_scene.add_layers({64})});
+        const bool is_normal = std::string_view(shader) == "shading_normal";
+        const Kernel kernel(device_, {.shader = shader,
+                                      .constants = is_normal ? device_scene.add_normal_maps({64})
+                                                             : device_scene.add_layers({64})});
         commands.dispatch(kernel, push.count, push);
         commands.run();
     }
@@ -263,6 +272,7 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     const PreparedScene& scene = tracer.scene();
     CpuVertex v;
     v.point = tracer.make_surface_point(c.hit);
+    cpu::map_shading_normals(scene, {&c.hit, 1}, {&v.point, 1});
     v.material = scene.materials[scene.instances[c.hit.instance].material];
     Material& m = v.material;
     if (m.base_color_texture)

@@ -100,7 +100,7 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     if (use != TextureUse::data) {
         check_finite(*texture, 0);
         if (use == TextureUse::colour) decode_colours(*texture);
-        spread_grey(*texture);
+        if (use != TextureUse::vector) spread_grey(*texture);
         if (use == TextureUse::radiance && lift_negatives(*texture))
             warnings_.push_back(fmt::format("{}: negative radiance counts as 0", path.string()));
     }

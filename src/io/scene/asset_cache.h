@@ -13,8 +13,9 @@
 namespace relief {
 
 /// What a texture is for decides what is done to its values: `data` nothing; `colour` decodes integers from
-/// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0.
-enum class TextureUse { data, colour, radiance };
+/// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0; `vector` refuses NaN and
+/// infinity.
+enum class TextureUse { data, colour, radiance, vector };
 
 class AssetCache {
   public:

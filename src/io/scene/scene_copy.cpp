@@ -46,7 +46,8 @@ void move_paths(Json& node, const fs::path& folder, const fs::path& copy_folder)
     for (auto& [key, value] : node.items()) {
         if (value.is_structured())
             move_paths(value, folder, copy_folder);
-        else if (value.is_string() && (key == "file" || key.ends_with("_texture")))
+        else if (value.is_string() &&
+                 (key == "file" || key == "geometry_normal" || key.ends_with("_texture")))
             value = move_path(value.get<std::string>(), folder, copy_folder);
     }
 }

@@ -21,9 +21,10 @@ inline constexpr auto kMaterial = make_keys(
     "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
     "specular_color", "specular_roughness", "specular_ior", "coat_weight", "coat_color", "coat_roughness",
     "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_color", "fuzz_roughness", "emission_luminance",
-    "emission_color", "opacity", "geometry_opacity", "opacity_texture");
+    "emission_color", "opacity", "geometry_opacity", "opacity_texture", "normal_texture", "geometry_normal");
 inline constexpr auto kColourTexture = make_keys("file", "filter");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
+inline constexpr auto kNormalTexture = make_keys("file", "filter", "scale", "flip_y");
 inline constexpr auto kDisplacement =
     make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
               "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");

@@ -68,6 +68,8 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
     if (!found || found->is_string()) return {read_texture_key(node, key, use, assets), MapFilter::none};
     if (use == TextureUse::colour)
         found->check_keys(scene_keys::kColourTexture);
+    else if (use == TextureUse::vector)
+        found->check_keys(scene_keys::kNormalTexture);
     else
         found->check_keys(scene_keys::kDataTexture);
     FilteredTexture result;
@@ -279,6 +281,16 @@ void read_layers(const JsonNode& node, Material& material) {
     read_float(node, "coat_ior", material.coat_ior, 1);
 }
 
+void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& material) {
+    const char* key = choose_key(node, "normal_texture", "geometry_normal");
+    read_filtered_texture(node, key, TextureUse::vector, assets)
+        .move_to(material.normal_texture, material.normal_filter);
+    const auto found = node.find(key);
+    if (!found || found->is_string()) return;
+    read_float(*found, "scale", material.normal_scale, 0, double(kMaxNormalScale));
+    if (const auto flip = found->find("flip_y")) material.normal_flip_y = flip->as_bool();
+}
+
 } // namespace
 
 Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets) {
@@ -293,6 +305,7 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
     read_emission(node, material.emission);
     read_layers(node, material);
     visit_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
+        if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);
         const bool is_colour = &texture == &material.base_color_texture;
         read_filtered_texture(node, key, is_colour ? TextureUse::colour : TextureUse::data, assets)
             .move_to(texture, filter);

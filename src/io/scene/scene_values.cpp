@@ -45,6 +45,16 @@ void write_layers(const Material& material, Json& node) {
     write("fuzz_roughness", &Material::fuzz_roughness);
 }
 
+void write_normal_options(const Material& material, Json& node) {
+    const Material plain;
+    if (!material.normal_texture) return;
+    if (material.normal_scale == plain.normal_scale && !material.normal_flip_y) return;
+    Json& texture = node["normal_texture"];
+    if (texture.is_string()) texture = Json{{"file", texture}};
+    if (material.normal_scale != plain.normal_scale) texture["scale"] = to_json(material.normal_scale);
+    if (material.normal_flip_y) texture["flip_y"] = true;
+}
+
 void write_environment(const Environment& environment, Json& node) {
     node["color"] = to_json(environment.color);
     node["strength"] = to_json(environment.strength);

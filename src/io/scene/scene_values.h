@@ -17,6 +17,8 @@ Json write_light(const Light& light);
 /// What of base, coat and fuzz differs from a material that only has a base colour, roughness, metallic and
 /// ior.
 void write_layers(const Material& material, Json& node);
+/// Adds what the entry of the normal map, which is there already, says beside file and filter.
+void write_normal_options(const Material& material, Json& node);
 /// All but its picture.
 void write_environment(const Environment& environment, Json& node);
 

@@ -168,6 +168,7 @@ class SceneWriter {
                     node[name] =
                         add_texture(texture, filter, fmt::format("{}_{}", material_names_.back(), input));
             });
+            write_normal_options(material, node);
         }
     }
 

@@ -19,8 +19,8 @@ Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
 size_t Surface::geometry_bytes() const {
     return positions.size() * sizeof(Vec3f) + copies.byte_count() + uvs.size() * sizeof(Vec2f) +
            frames.size() * sizeof(PackedFrame) + derivatives.size() * sizeof(derivatives[0]) +
-           vertex_tiles.size() + quads.byte_count() + mips.size() * sizeof(uint32_t) +
-           controls.size() * sizeof(InnerControls) + overrides.byte_count();
+           corner_tangents.size() * sizeof(corner_tangents[0]) + vertex_tiles.size() + quads.byte_count() +
+           mips.size() * sizeof(uint32_t) + controls.size() * sizeof(InnerControls) + overrides.byte_count();
 }
 
 } // namespace relief

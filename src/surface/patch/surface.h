@@ -78,6 +78,8 @@ struct Surface {
     std::vector<PackedFrame> frames; ///< one a split vertex, or empty: facets (undisplaced, no normals)
     std::vector<std::array<Vec3f, 2>> derivatives; ///< dP/du, dP/dv; one a split vertex where lengths are
                                                    ///< relative, or empty
+    /// Of normal maps, one a corner of each patch as in PackedFrame::tangent, or empty: no material has one.
+    std::vector<std::array<uint32_t, 4>> corner_tangents;
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear

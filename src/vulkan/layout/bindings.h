@@ -88,6 +88,8 @@ const uint kMaxPushBytes = 128u;
 const uint kSmoothConstant = 7u;
 // Likewise of kernels that scatter: not 0 where a material of the scene has layers.
 const uint kLayersConstant = 8u;
+// Likewise of the kernel that finds shading normals: not 0 where a material of the scene has a normal map.
+const uint kNormalMapsConstant = 9u;
 
 #include "formulas/end.h"
 #endif

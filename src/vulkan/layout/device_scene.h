@@ -39,6 +39,7 @@ struct SurfaceData {
     uint first_mip;        ///< of override_bits: one word per patch (mips.h); kNone: mip level 0 everywhere
     uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
     uint has_bilinear_uvs; ///< of polygons; else linear on each triangle
+    uint first_tangent;    ///< of override_bits: one word per corner of each patch (frame.h); kNone: none
 };
 
 /// d = matrix (texel - midlevel).
@@ -72,6 +73,8 @@ struct MaterialData {
     float ior;
     uint color_texture, roughness_texture, metallic_texture, opacity_texture;
     float opacity;
+    uint normal_texture;
+    Vec2 normal_scale; ///< of x and y; negative y: flipped
     uint has_layers;
     LayerParameters layers;
 };

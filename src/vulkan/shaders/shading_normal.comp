@@ -4,25 +4,49 @@
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
 #include "vulkan/shaders/shading_normal.glsl"
+#include "formulas/normal_map.h"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
+
+layout(constant_id = kNormalMapsConstant) const uint kHasNormalMaps = 0;
 
 struct Appearance {
     vec3 shading_normal; ///< on the viewer's side
     vec2 uv;
     vec3 base_color;
     float roughness, metallic;
+    vec3 normal_texel; ///< where the material has a normal map
 };
 
 void apply_material(MaterialData material, inout Appearance appearance) {
-    uint indices[3] = {material.color_texture, material.roughness_texture, material.metallic_texture};
-    vec3 values[3] = {vec3(1.0), vec3(1.0), vec3(1.0)};
+    uint indices[4] = {material.color_texture, material.roughness_texture, material.metallic_texture,
+                       material.normal_texture};
+    vec3 values[4] = {vec3(1.0), vec3(1.0), vec3(1.0), vec3(1.0)};
     // A loop, so that the look-up is inlined only once.
-    for (uint k = 0u; k < 3u; ++k)
+    for (uint k = 0u; k < (kHasNormalMaps != 0u ? 4u : 3u); ++k)
         if (indices[k] != kNone) values[k] = fetch_texture(indices[k], appearance.uv);
     appearance.base_color = limit_color(material.base_color * values[0]);
     appearance.roughness = clamp(material.roughness * values[1].x, 0.0, 1.0);
     appearance.metallic = clamp(material.metallic * values[2].x, 0.0, 1.0);
+    appearance.normal_texel = values[3];
+}
+
+/// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
+vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit, uvec4 quad, vec3 texel, vec3 normal) {
+    SurfaceData s = surfaces[instance.surface];
+    vec2 at = vec2(hit.u, hit.v);
+    int first = int(s.first_tangent + 4u * hit.patch_index);
+    vec3 tangents[4];
+    for (int k = 0; k < 4; ++k) tangents[k] = unpack_tangent(texelFetch(override_bits, first + k).x);
+    vec3 blended = is_triangle(quad) ? interpolate_triangle(tangents[0], tangents[1], tangents[2], at)
+                                     : interpolate_quad(tangents[0], tangents[1], tangents[2], tangents[3], at);
+    vec3 base = normal;
+    if (s.map != kNone) base = make_unit(transform_normal(instance.object_from_origin, blend_normals(s, quad, at)));
+    vec3 tangent = turn_tangent(make_unit(transform_vector(instance.world_from_object, blended)), base, normal);
+    bool is_turned = (texelFetch(override_bits, first).x & 1u) != 0u;
+    bool is_mirrored = (instance.levels & kMirrored) != 0u;
+    return map_normal(normal, tangent, is_turned != is_mirrored ? -1.0 : 1.0,
+                      decode_normal(texel, material.normal_scale));
 }
 
 Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
@@ -34,9 +58,12 @@ Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) 
     vec3 interpolated = compute_shading_normal(s, corners, hit.patch_index, level, at);
     vec3 normal = orient_shading_normal(transform_normal(instance.object_from_origin, interpolated), geometric_normal);
     Appearance appearance;
-    appearance.shading_normal = is_flipped ? -normal : normal;
     appearance.uv = interpolate_uv(s, corners, at);
-    apply_material(materials[instance.material], appearance);
+    MaterialData material = materials[instance.material];
+    apply_material(material, appearance);
+    if (kHasNormalMaps != 0u && material.normal_texture != kNone)
+        normal = apply_normal_map(material, instance, hit, corners.quad, appearance.normal_texel, normal);
+    appearance.shading_normal = is_flipped ? -normal : normal;
     return appearance;
 }
 

@@ -53,7 +53,7 @@ struct AllStructs {
     FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
     FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
     FIELD(s.first_override_word) FIELD(s.map) FIELD(s.first_control) FIELD(s.first_mip) \
-    FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs)
+    FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent)
 #define FIELDS_MAP(s) \
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
     FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.is_smooth)
@@ -67,7 +67,8 @@ struct AllStructs {
     FIELD(s.row_scale) FIELD(s.first_entry)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
-    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
+    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
+    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \

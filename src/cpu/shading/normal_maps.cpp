@@ -1,0 +1,43 @@
+#include "cpu/shading/normal_maps.h"
+
+#include "cpu/shading/textures.h"
+#include "formulas/normal_map.h"
+#include "surface/mesh/corner_tangents.h"
+
+namespace relief::cpu {
+
+namespace {
+
+Vec3f map_shading_normal(const Instance& instance, const Surface& surface, const Material& material,
+                         const TraceHit& hit, const SurfacePoint& point) {
+    const Vec2f at{hit.u, hit.v};
+    const Vec3f texel = fetch_texture(*material.normal_texture, material.normal_filter, point.uv);
+    const float scale = material.normal_scale;
+    const Vec3f direction =
+        scalar::decode_normal({texel.x, texel.y, texel.z}, {scale, material.normal_flip_y ? -scale : scale});
+    const Vec3f& normal = point.shading_normal;
+    // Without displacement the shading normal is the one that the tangents were made for.
+    const Vec3f base = surface.has_displacement
+                           ? normalize(transform_normal(instance.object_space.from_origin,
+                                                        blend_base_normals(surface, hit.patch, at)))
+                           : normal;
+    const Vec3f tangent =
+        normalize(transform_vector(instance.world_from_object, blend_tangents(surface, hit.patch, at)));
+    const float handedness = find_handedness(surface, hit.patch) * (instance.is_mirrored ? -1.0f : 1.0f);
+    return scalar::map_normal(normal, scalar::turn_tangent(tangent, base, normal), handedness, direction);
+}
+
+} // namespace
+
+void map_shading_normals(const PreparedScene& scene, std::span<const TraceHit> hits,
+                         std::span<SurfacePoint> points) {
+    for (size_t k = 0; k < hits.size(); ++k) {
+        const Instance& instance = scene.instances[hits[k].instance];
+        const Material& material = scene.materials[instance.material];
+        if (!material.normal_texture) continue;
+        points[k].shading_normal =
+            map_shading_normal(instance, scene.surfaces[instance.surface], material, hits[k], points[k]);
+    }
+}
+
+} // namespace relief::cpu

@@ -1,0 +1,15 @@
+// Shading normals of points whose material has a normal map.
+#pragma once
+
+#include <span>
+
+#include "cpu/tracer.h"
+
+namespace relief::cpu {
+
+/// Replaces the shading normals of points on materials with a normal map; `points` are those of `hits`, whose
+/// normals lie on the side of the winding, as the new ones do with respect to the old.
+void map_shading_normals(const PreparedScene& scene, std::span<const TraceHit> hits,
+                         std::span<SurfacePoint> points);
+
+} // namespace relief::cpu
