@@ -14,6 +14,7 @@
 #include "cpu/shading/textures.h"
 #include "formulas/camera.h"
 #include "formulas/light.h"
+#include "formulas/light_tree.h"
 #include "formulas/path.h"
 #include "formulas/sobol.h"
 #include "prepare/bounce_lod.h"
@@ -29,8 +30,8 @@ constexpr int kPacketEdge = 4;
 /// What a path brings from vertex to vertex; its ray and hit are in the wave.
 struct Path {
     Vec3f throughput{1, 1, 1};
-    Vec3f previous{};   ///< the vertex that the ray left
-    float bsdf_pdf = 0; ///< with which the ray was drawn there
+    scalar::LitPoint previous{}; ///< the vertex that the ray left
+    float bsdf_pdf = 0;          ///< with which the ray was drawn there
     int x = 0, y = 0;
     FilmSample result;
 };
@@ -259,9 +260,8 @@ void TileTracer::add_backgrounds() {
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
         Path& path = paths_[active_[k]];
-        add_found_light(path, path.throughput * lights_.evaluate_mis({path.previous, rays_[k].direction,
-                                                                      hits_[k].t, path.bsdf_pdf},
-                                                                     behind));
+        const LightSet::BounceRay ray{path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf};
+        add_found_light(path, path.throughput * lights_.evaluate_mis(ray, behind));
     };
     for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
     if (!lights_.has_analytic_lights()) return;
@@ -286,7 +286,7 @@ void TileTracer::sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::
 void TileTracer::draw_random() {
     wave_seeds_.clear();
     for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]);
-    const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.has_emitters();
+    const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.needs_emitter_number();
     for (const uint32_t kind :
          {scalar::kPickPair, scalar::kLightPair, scalar::kBsdfPair, scalar::kRoulettePair}) {
         if (kind == scalar::kRoulettePair && !needs_roulette)
@@ -324,7 +324,9 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
 void TileTracer::draw_lights(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
-        receivers_[n] = {points_[k].position, hits_[k].lod_bias};
+        const Vec3f& normal = points_[k].geometric_normal;
+        const bool is_seen_from_behind = dot(normal, rays_[k].direction) > 0;
+        receivers_[n] = {points_[k].position, hits_[k].lod_bias, is_seen_from_behind ? -normal : normal};
         light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
                             random_[scalar::kLightPair][k]};
     }
@@ -435,7 +437,7 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
     if (!is_finite(path.throughput) || random_[scalar::kRoulettePair][k].x >= probability) return false;
     path.throughput *= 1 / probability;
-    path.previous = points_[k].position;
+    path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane)};
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
     active_[next] = active_[k];

@@ -36,6 +36,12 @@ Affine compose(const Affine& outer, const Affine& inner) {
 
 float compute_determinant(const Affine& m) { return float(compute_determinant(to_matrix(m))); }
 
+double bound_scale(const Affine& m) {
+    double squared = 0;
+    for (const Vec3f& row : m.rows) squared += double(dot(row, row));
+    return std::sqrt(squared);
+}
+
 std::optional<Affine> invert(const Affine& m) {
     const Matrix a = to_matrix(m);
     const double determinant = compute_determinant(a);

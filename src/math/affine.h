@@ -25,6 +25,9 @@ Affine compose(const Affine& outer, const Affine& inner);
 /// Determinant of the linear part; negative for a mirror.
 float compute_determinant(const Affine& m);
 
+/// No vector becomes longer by more than this factor.
+double bound_scale(const Affine& m);
+
 /// Inverse, computed in double precision; nullopt for a singular or non-finite map.
 std::optional<Affine> invert(const Affine& m);
 

@@ -1,12 +1,16 @@
 #include "prepare/light_sources.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
 #include "formulas/light_source.h"
 #include "math/affine.h"
+#include "prepare/light_tree.h"
+#include "surface/map/displacement_map.h"
 
 namespace relief {
 
@@ -91,6 +95,75 @@ scalar::LightSourceData make_light_source(const Light& light, float power) {
     return source;
 }
 
+bool has_place(const scalar::LightSourceData& source) {
+    return source.kind != scalar::kSourceEnvironment && source.kind != scalar::kSourceSun;
+}
+
+LightLeaf make_leaf(const scalar::LightSourceData& source, uint32_t index) {
+    LightLeaf leaf;
+    leaf.power = source.power;
+    leaf.source = index;
+    const bool is_met = scalar::is_flat(source) || source.radius > 0;
+    if (is_met) leaf.flags = scalar::kCanBeMet | (source.is_visible != 0 ? scalar::kCanBeSeen : 0);
+    Vec3f reach{source.radius, source.radius, source.radius};
+    if (source.kind == scalar::kSourceRectangle)
+        for (int axis = 0; axis < 3; ++axis)
+            set_component(reach, axis,
+                          std::fabs(get_component(source.basis.t, axis)) * source.half_width +
+                              std::fabs(get_component(source.basis.b, axis)) * source.half_height);
+    leaf.box.extend(source.center - reach), leaf.box.extend(source.center + reach);
+    constexpr double right_angle = std::numbers::pi / 2;
+    const auto angle_of = [](float height) { return 2 * std::asin(std::sqrt(double(height) / 2)); };
+    if (source.kind == scalar::kSourceSpot)
+        leaf.cone = {source.basis.n, angle_of(source.edge), angle_of(source.cone) - angle_of(source.edge)};
+    else if (scalar::is_flat(source))
+        leaf.cone = {source.basis.n, 0, right_angle};
+    else
+        leaf.cone.spread = std::numbers::pi, leaf.cone.reach = right_angle;
+    return leaf;
+}
+
+/// Emissive patches shine to both sides, and the displacement turns them: no way is left out.
+void add_emitters(const PreparedScene& scene, const EmitterTable& emitters, std::vector<LightLeaf>& leaves) {
+    for (const EmitterTable::Range& range : emitters.ranges) {
+        const Instance& instance = scene.instances[range.instance];
+        const Surface& surface = scene.surfaces[instance.surface];
+        const float reach =
+            float(find_longest_displacement(surface.map) * bound_scale(instance.world_from_object));
+        for (uint32_t patch = 0; patch < surface.quads.size(); ++patch) {
+            const uint32_t emitter = range.first + patch;
+            LightLeaf leaf;
+            leaf.power = float(double(emitters.probability(emitter)) * emitters.power);
+            leaf.source = emitter | scalar::kEmitterLeaf;
+            leaf.cone.spread = std::numbers::pi, leaf.cone.reach = std::numbers::pi / 2;
+            for (const uint32_t vertex : surface.quads[patch].vertex)
+                leaf.box.extend(transform_point(instance.world_from_object, surface.position(vertex)));
+            leaf.box.lower = leaf.box.lower - Vec3f{reach, reach, reach};
+            leaf.box.upper = leaf.box.upper + Vec3f{reach, reach, reach};
+            if (leaf.power > 0) leaves.push_back(leaf);
+        }
+    }
+}
+
+void add_tree(const PreparedScene& scene, const EmitterTable& emitters, LightTables& tables) {
+    std::vector<scalar::LightSourceData>& sources = tables.sources;
+    const auto placed =
+        std::stable_partition(sources.begin(), sources.end(),
+                              [](const scalar::LightSourceData& source) { return !has_place(source); });
+    tables.listed_count = uint32_t(placed - sources.begin());
+    std::vector<LightLeaf> leaves;
+    for (uint32_t k = tables.listed_count; k < sources.size(); ++k)
+        leaves.push_back(make_leaf(sources[k], k));
+    add_emitters(scene, emitters, leaves);
+    tables.nodes = make_light_tree(std::move(leaves));
+    tables.leaf_of_emitter.assign(emitters.size(), kNoIndex);
+    for (uint32_t k = 0; k < tables.nodes.size(); ++k) {
+        const uint32_t source = tables.nodes[k].source;
+        if (source != scalar::kNone && (source & scalar::kEmitterLeaf) != 0)
+            tables.leaf_of_emitter[source & ~scalar::kEmitterLeaf] = k;
+    }
+}
+
 } // namespace
 
 EmitterTable make_emitter_table(const PreparedScene& scene) {
@@ -119,9 +192,10 @@ EmitterTable make_emitter_table(const PreparedScene& scene) {
     return table;
 }
 
-std::vector<scalar::LightSourceData>
-make_light_sources(const PreparedScene& scene, float environment_luminance, const EmitterTable& emitters) {
-    std::vector<scalar::LightSourceData> sources;
+LightTables make_light_tables(const PreparedScene& scene, float environment_luminance,
+                              const EmitterTable& emitters) {
+    LightTables tables;
+    std::vector<scalar::LightSourceData>& sources = tables.sources;
     if (environment_luminance > 0)
         sources.push_back(
             make_source(scalar::kSourceEnvironment, std::numbers::pi_v<float> * environment_luminance));
@@ -129,13 +203,18 @@ make_light_sources(const PreparedScene& scene, float environment_luminance, cons
         const float power = scalar::luminance(light.color) * light.strength;
         if (power > 0) sources.push_back(make_light_source(light, power));
     }
+    if (sources.size() + emitters.ranges.size() > kMostListedLights) {
+        add_tree(scene, emitters, tables);
+        return tables;
+    }
     if (emitters.power > 0) {
         scalar::LightSourceData source = make_source(scalar::kSourceEmitters, float(emitters.power));
         source.center = emitters.center;
         source.radius2 = emitters.radius2;
         sources.push_back(source);
     }
-    return sources;
+    tables.listed_count = uint32_t(sources.size());
+    return tables;
 }
 
 } // namespace relief

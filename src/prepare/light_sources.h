@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "prepare/prepared_scene.h"
 
 namespace relief {
@@ -30,9 +31,21 @@ struct EmitterTable {
 
 EmitterTable make_emitter_table(const PreparedScene& scene);
 
-/// What may be drawn, in this order: the environment of the given mean luminance, the scene's list of lights,
-/// the emissive surfaces as one. Lights without power are left out.
-std::vector<scalar::LightSourceData>
-make_light_sources(const PreparedScene& scene, float environment_luminance, const EmitterTable& emitters);
+/// Up to so many lights are listed: each draw estimates all of them. Emissive objects count as lights.
+inline constexpr size_t kMostListedLights = 32;
+
+/// What may be drawn. Lights without power are left out.
+struct LightTables {
+    /// The environment, the scene's lights, the emissive surfaces as one. Of many lights those that have a
+    /// place come behind the others, and emissive surfaces are left out: the tree has them.
+    std::vector<scalar::LightSourceData> sources;
+    uint32_t listed_count = 0; ///< first sources, which are chosen by their estimates; all without a tree
+    std::vector<scalar::LightNodeData> nodes; ///< of the tree; empty: there are few lights
+    std::vector<uint32_t> leaf_of_emitter;    ///< of the tree: one an emissive patch; kNoIndex: none
+};
+
+/// `environment_luminance`: its mean.
+LightTables make_light_tables(const PreparedScene& scene, float environment_luminance,
+                              const EmitterTable& emitters);
 
 } // namespace relief

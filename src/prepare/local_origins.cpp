@@ -61,18 +61,11 @@ double find_base_reach(const Surface& surface) {
     return reach;
 }
 
-/// No vector becomes longer by more than this.
-double find_scale(const Affine& m) {
-    double squared = 0;
-    for (const Vec3f& row : m.rows) squared += double(dot(row, row));
-    return std::sqrt(squared);
-}
-
 /// A power of two, so that few edits of a map change it.
 float round_up(double reach) { return float(std::exp2(std::ceil(std::log2(std::max(reach, 1e-30))))); }
 
 float find_reach(const Surface& surface, double base_reach, const Affine& world_from_object) {
-    return round_up((base_reach + find_longest_displacement(surface.map)) * find_scale(world_from_object));
+    return round_up((base_reach + find_longest_displacement(surface.map)) * bound_scale(world_from_object));
 }
 
 /// Where the origin of an object whose mesh had `taken_off` taken off lies, world space.
@@ -153,14 +146,14 @@ void place_instances(const Scene& scene, std::span<const Vec3f> taken_off, Scene
         instance.reach = find_reach(prepared.surfaces[instance.surface], reach, object.world_from_object);
         is_camera_better =
             is_camera_better || is_better_seen_from(prepared.camera.from, places.back(),
-                                                    reach * find_scale(object.world_from_object));
+                                                    reach * bound_scale(object.world_from_object));
     }
     if (origin == SceneOrigin::camera && is_camera_better) move_world_to_camera(prepared);
     for (size_t k = 0; k < places.size(); ++k) {
         const Affine& world_from_object = scene.objects[k].world_from_object;
         Instance& instance = prepared.instances[k];
         place_instance(world_from_object, subtract(places[k], to_point(prepared.origin)),
-                       reaches[instance.surface] * find_scale(world_from_object), instance);
+                       reaches[instance.surface] * bound_scale(world_from_object), instance);
     }
 }
 

@@ -1,11 +1,14 @@
 #include "vulkan/device_lights.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "formulas/ggx_table.h"
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "prepare/environment_distribution.h"
 #include "prepare/light_sources.h"
 #include "vulkan/layout/bindings.h"
@@ -66,12 +69,33 @@ std::vector<Vec2f> join_albedos(const MaterialLayers& layers) {
     return entries;
 }
 
+/// The sources, then the nodes of the tree from the next whole node on, which refer to themselves from there.
+std::vector<std::byte> join_sources(const LightTables& tables, uint32_t& first_node) {
+    const size_t source_bytes = tables.sources.size() * sizeof(scalar::LightSourceData);
+    const size_t node_bytes = tables.nodes.size() * sizeof(scalar::LightNodeData);
+    first_node = tables.nodes.empty() ? 0 : uint32_t(source_bytes / sizeof(scalar::LightNodeData)) + 1;
+    const size_t node_offset = first_node == 0 ? source_bytes : first_node * sizeof(scalar::LightNodeData);
+    std::vector<std::byte> bytes(node_offset + node_bytes);
+    if (source_bytes > 0) std::memcpy(bytes.data(), tables.sources.data(), source_bytes);
+    for (size_t k = 0; k < tables.nodes.size(); ++k) {
+        scalar::LightNodeData node = tables.nodes[k];
+        node.end += first_node;
+        std::memcpy(bytes.data() + node_offset + k * sizeof node, &node, sizeof node);
+    }
+    return bytes;
+}
+
 /// Emissive patches, followed by the ranges of their instances.
-std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table) {
+std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table, const LightTables& lights,
+                                               uint32_t first_node) {
     std::vector<scalar::EmitterData> result;
     for (uint32_t k = 0; k < table.size(); ++k)
         result.push_back({uint32_t(std::ceil(table.cumulative[k + 1] * double(scalar::kEmitterParts))),
                           std::bit_cast<uint32_t>(table.probability(k))});
+    for (uint32_t k = 0; k < lights.leaf_of_emitter.size(); ++k) {
+        const uint32_t leaf = lights.leaf_of_emitter[k];
+        result[k].probability = leaf == kNoIndex ? scalar::kNone : leaf + first_node;
+    }
     for (const EmitterTable::Range& range : table.ranges) result.push_back({range.first, range.instance});
     return result;
 }
@@ -96,12 +120,12 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     const EmitterTable emitters = make_emitter_table(scene);
     description_.emitter_count = emitters.size();
     description_.emitter_range_count = uint32_t(emitters.ranges.size());
-    emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint, make_emitters(emitters));
-
-    const std::vector<scalar::LightSourceData> sources =
-        make_light_sources(scene, distribution.mean_luminance, emitters);
-    description_.source_count = uint32_t(sources.size());
-    sources_ = make_table(device, "light_sources", TexelFormat::none, sources);
+    const LightTables tables = make_light_tables(scene, distribution.mean_luminance, emitters);
+    description_.source_count = tables.listed_count;
+    sources_ = make_table(device, "light_sources", TexelFormat::none,
+                          join_sources(tables, description_.first_light_node));
+    emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint,
+                           make_emitters(emitters, tables, description_.first_light_node));
     if (!scene.layers.empty())
         albedos_ = make_table(device, "albedos", TexelFormat::rg32_float, join_albedos(scene.layers));
 }
@@ -114,8 +138,16 @@ void DeviceLights::bind(BindingTable& bindings) const {
     if (albedos_) bindings.bind(scalar::kBindAlbedos, *albedos_);
 }
 
+std::vector<uint32_t> DeviceLights::add_tree(std::vector<uint32_t> constants) const {
+    if (description_.first_light_node == 0) return constants;
+    constants.resize(std::max<size_t>(constants.size(), scalar::kLightTreeConstant + 1));
+    constants[scalar::kLightTreeConstant] = 1;
+    return constants;
+}
+
 void DeviceLights::describe(scalar::PathPush& push) const {
     push.source_count = description_.source_count;
+    push.first_light_node = description_.first_light_node;
     push.emitter_count = description_.emitter_count;
     push.emitter_range_count = description_.emitter_range_count;
     push.has_environment = description_.has_environment;

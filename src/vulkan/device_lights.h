@@ -1,7 +1,9 @@
 // Materials and lights in device memory, for the path tracing kernels.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "prepare/prepared_scene.h"
 #include "vulkan/device/buffer.h"
@@ -17,6 +19,8 @@ class DeviceLights {
     DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
 
     void bind(BindingTable& bindings) const;
+    /// Constants of a kernel that draws lights or meets them.
+    std::vector<uint32_t> add_tree(std::vector<uint32_t> constants) const;
     /// Fills in the light parameters of `push`; the rest is unchanged.
     void describe(scalar::PathPush& push) const;
 

@@ -11,8 +11,8 @@ from sources import INCLUDE, finish, list_code
 DECLARED = {
     "algorithm": """adjacent_find all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n find
         find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element next_permutation
-        none_of nth_element remove_if replace replace_if reverse shuffle sort stable_sort swap_ranges transform unique upper_bound
-        ranges""",
+        none_of nth_element partition remove_if replace replace_if reverse shuffle sort stable_partition stable_sort
+        swap_ranges transform unique upper_bound ranges""",
     "array": "array",
     "atomic": "atomic memory_order_acquire memory_order_relaxed memory_order_release memory_order_seq_cst",
     "bit": "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero endian has_single_bit popcount rotl",

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "formulas/tree.h"
 #include "lab/walks/trail.h"
 #include "vulkan/device/commands.h"

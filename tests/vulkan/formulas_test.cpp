@@ -21,6 +21,7 @@
 #include "formulas/layered_bsdf.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "formulas/local_start.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cpu/cpu_engine.h"
+#include "support/many_lights.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/shading_fixture.h"
 
@@ -70,6 +71,16 @@ void use_shaped_lights(Scene& scene, RenderSettings& settings) {
     for (Light& light : scene.lights) light.is_visible_to_camera = true;
     spot.radius = 0, spot.position = {-3, 2, 2}, spot.direction = {1, -0.8f, -0.5f}, spot.strength = 15;
     scene.lights.push_back(spot);
+}
+
+/// More than are listed: they come into the light tree, and emissive surfaces with them.
+void use_many_lights(Scene& scene, RenderSettings&) {
+    const std::vector<Light> lamps = make_many_lights(60, 4, 5);
+    scene.lights.insert(scene.lights.end(), lamps.begin(), lamps.end());
+    for (size_t k = 4; k < scene.lights.size(); ++k) {
+        Light& light = scene.lights[k];
+        light.is_visible_to_camera = k % 3 == 0 && light.radius > 0;
+    }
 }
 
 void use_cut_outs(Scene& scene, RenderSettings&) {
@@ -149,6 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
                                          Variant{"with_emitters_alone", use_emitters_alone},
                                          Variant{"in_the_dark", use_nothing_to_draw},
                                          Variant{"with_shaped_lights", use_shaped_lights},
+                                         Variant{"with_many_lights", use_many_lights},
                                          Variant{"with_direct_light_alone", use_direct_light_alone},
                                          Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
                                          Variant{"with_cut_outs", use_cut_outs},

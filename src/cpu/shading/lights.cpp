@@ -27,39 +27,23 @@ void LightSet::follow_surfaces() {
 
 void LightSet::find_sources() {
     emitters_ = make_emitter_table(tracer_.scene());
-    sources_ =
-        make_light_sources(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_);
-    has_analytic_lights_ = std::ranges::any_of(sources_, [](const scalar::LightSourceData& source) {
+    choice_ = LightChoice(
+        make_light_tables(tracer_.scene(), environment_ ? environment_->mean_luminance() : 0.0f, emitters_));
+    has_analytic_lights_ = std::ranges::any_of(choice_.sources(), [](const scalar::LightSourceData& source) {
         const bool is_sphere = source.kind == scalar::kSourcePoint || source.kind == scalar::kSourceSpot;
         return scalar::is_flat(source) || (is_sphere && source.radius > 0);
     });
     has_visible_lights_ = std::ranges::any_of(
-        sources_, [](const scalar::LightSourceData& source) { return source.is_visible != 0; });
-}
-
-float LightSet::total_irradiance(const Vec3f& position) const {
-    float total = 0;
-    for (const scalar::LightSourceData& source : sources_)
-        total += scalar::estimate_irradiance(source, position);
-    return total;
-}
-
-LightSet::Pick LightSet::pick_source(const Vec3f& position, float u_light) const {
-    const float total = total_irradiance(position);
-    if (!(total > 0)) return {nullptr, 0};
-    const float target = u_light * total;
-    size_t picked = 0;
-    float estimate = scalar::estimate_irradiance(sources_[0], position);
-    for (float running = estimate; running <= target && picked + 1 < sources_.size(); running += estimate)
-        estimate = scalar::estimate_irradiance(sources_[++picked], position);
-    return {&sources_[picked], estimate / total};
+        choice_.sources(), [](const scalar::LightSourceData& source) { return source.is_visible != 0; });
 }
 
 /// Not from the environment.
-void LightSet::draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+void LightSet::draw_from(const LightChoice::Pick& pick, const Receiver& at, const RandomNumbers& random,
                          LightSample& drawn) const {
-    if (pick.source->kind == scalar::kSourceEmitters)
-        draw_emitter(at, random.u_emitter, random.u, drawn);
+    if (!pick.source)
+        draw_emitter(at, pick.emitter, random.u, drawn);
+    else if (pick.source->kind == scalar::kSourceEmitters)
+        draw_emitter(at, find_emitter(random.u_emitter), random.u, drawn);
     else
         static_cast<scalar::LightDraw&>(drawn) =
             scalar::draw_listed_light(*pick.source, at.position, random.u);
@@ -83,12 +67,13 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
     std::array<DirectionSample, kBlock> directions;
     size_t count = 0;
     for (size_t k = 0; k < at.size(); ++k) {
-        const Pick pick = pick_source(at[k].position, random[k].u_light);
+        const LightChoice::Pick pick =
+            choice_.pick({at[k].position, at[k].normal}, random[k].u_light, random[k].u_emitter);
         drawn[k].lacks_radiance = false;
         drawn[k].emitter.reset();
-        if (!pick.source)
+        if (!pick.source && pick.emitter == kNoIndex)
             drawn[k].pdf = 0, drawn[k].direction = {};
-        else if (pick.source->kind == scalar::kSourceEnvironment)
+        else if (pick.source && pick.source->kind == scalar::kSourceEnvironment)
             receivers[count] = uint32_t(k), probabilities[count] = pick.probability, u[count++] = random[k].u;
         else
             draw_from(pick, at[k], random[k], drawn[k]);
@@ -123,10 +108,13 @@ void LightSet::complete_weight(std::span<LightSample> drawn, std::span<const uin
     }
 }
 
-void LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const {
+uint32_t LightSet::find_emitter(float u_emitter) const {
     const auto above =
         std::upper_bound(emitters_.cumulative.begin() + 1, emitters_.cumulative.end() - 1, double(u_emitter));
-    const uint32_t emitter = uint32_t(above - emitters_.cumulative.begin()) - 1;
+    return uint32_t(above - emitters_.cumulative.begin()) - 1;
+}
+
+void LightSet::draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u, LightSample& drawn) const {
     const auto after =
         std::upper_bound(emitters_.ranges.begin(), emitters_.ranges.end(), emitter,
                          [](uint32_t e, const EmitterTable::Range& range) { return e < range.first; });
@@ -144,15 +132,17 @@ void LightSet::draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u,
 }
 
 float LightSet::emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const {
-    return scalar::emitter_density(emitters_.probability(emitter), point.area_per_uv, point.geometric_normal,
+    // A tree has chosen the patch itself.
+    const float probability = choice_.has_tree() ? 1.0f : emitters_.probability(emitter);
+    return scalar::emitter_density(probability, point.area_per_uv, point.geometric_normal,
                                    point.position - origin);
 }
 
-float LightSet::emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const {
+float LightSet::emitter_pdf(const scalar::LitPoint& at, const SurfacePoint& point) const {
     const uint32_t first = emitters_.first_of_instance[point.instance];
-    if (first == kNoIndex || sources_.empty() || sources_.back().kind != scalar::kSourceEmitters) return 0;
-    const float probability = scalar::estimate_irradiance(sources_.back(), origin) / total_irradiance(origin);
-    return probability * emitter_density(first + point.patch, origin, point);
+    if (first == kNoIndex) return 0;
+    const uint32_t emitter = first + point.patch;
+    return choice_.find_emitter_probability(at, emitter) * emitter_density(emitter, at.position, point);
 }
 
 void LightSet::look_up_environment(std::span<const Vec3f> directions,
@@ -165,28 +155,38 @@ void LightSet::look_up_environment(std::span<const Vec3f> directions,
 
 Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const {
     Vec3f sum{};
-    const float total = total_irradiance(ray.origin);
-    for (const scalar::LightSourceData& source : sources_) {
-        scalar::LightSeen seen = scalar::meet_light(source, ray.origin, ray.direction, ray.distance);
+    const LightChoice::Shares shares = choice_.find_shares(ray.from);
+    const auto meet = [&](const scalar::LightSourceData& source) {
+        return scalar::meet_light(source, ray.from.position, ray.direction, ray.distance);
+    };
+    const auto add = [&](const scalar::LightSeen& seen, float share) {
+        sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
+    };
+    for (const scalar::LightSourceData& source : choice_.listed()) {
+        scalar::LightSeen seen = meet(source);
         if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
             seen = {behind.radiance, behind.pdf};
-        if (seen.radiance == Vec3f{}) continue;
-        const float share = total > 0 ? scalar::estimate_irradiance(source, ray.origin) / total : 0.0f;
-        sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
+        if (!(seen.radiance == Vec3f{})) add(seen, choice_.find_probability(shares, source, ray.from));
     }
+    const auto add_of_tree = [&](const scalar::LightSourceData& source, const auto& find_share) {
+        const scalar::LightSeen seen = meet(source);
+        if (!(seen.radiance == Vec3f{})) add(seen, find_share());
+    };
+    choice_.visit_met(ray.from, shares, ray.direction, ray.distance, add_of_tree);
     return sum;
 }
 
 Vec3f LightSet::see(const Vec3f& origin, const Vec3f& direction, float distance) const {
     Vec3f sum{};
-    for (const scalar::LightSourceData& source : sources_)
-        if (source.is_visible != 0) sum += scalar::see_light(source, origin, direction, distance);
+    choice_.visit_seen(origin, direction, distance, [&](const scalar::LightSourceData& source) {
+        sum += scalar::see_light(source, origin, direction, distance);
+    });
     return sum;
 }
 
 size_t LightSet::byte_count() const {
-    return (environment_ ? environment_->byte_count() : 0) +
-           sources_.size() * sizeof(scalar::LightSourceData) + emitters_.cumulative.size() * sizeof(double) +
+    return (environment_ ? environment_->byte_count() : 0) + choice_.byte_count() +
+           emitters_.cumulative.size() * sizeof(double) +
            emitters_.ranges.size() * sizeof(EmitterTable::Range) +
            emitters_.first_of_instance.size() * sizeof(uint32_t);
 }

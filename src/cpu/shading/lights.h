@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "cpu/shading/environment_light.h"
+#include "cpu/shading/light_choice.h"
 #include "cpu/tracer.h"
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "prepare/light_sources.h"
 
 namespace relief::cpu {
@@ -35,11 +37,13 @@ class LightSet {
     struct Receiver {
         Vec3f position;
         uint32_t lod_bias; ///< emitters are sampled on surface M_bias
+        Vec3f normal;      ///< geometric, on the viewer's side
     };
 
     /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,
-    /// `u_emitter` the emissive patch, `u` the point. Its pdf is 0 where nothing could be drawn: all is dark,
-    /// or a light is at the point itself or seen edge on. It may lie behind the surface.
+    /// `u_emitter` the emissive patch (or goes on with picking one of many lights), `u` the point. Its pdf is
+    /// 0 where nothing could be drawn: all is dark, or a light is at the point itself or seen edge on. It may
+    /// lie behind the surface.
     struct RandomNumbers {
         float u_light, u_emitter;
         Vec2f u;
@@ -51,8 +55,9 @@ class LightSet {
     /// too large for a cache, is not read for the many directions that lead into the surface.
     void complete_weight(std::span<LightSample> drawn, std::span<const uint32_t> which) const;
 
-    /// False: `u_emitter` is never looked at.
     bool has_emitters() const { return emitters_.size() > 0; }
+    /// False: `u_emitter` is never looked at.
+    bool needs_emitter_number() const { return has_emitters() || choice_.has_tree(); }
 
     /// The environment along many directions; black without one.
     void look_up_environment(std::span<const Vec3f> directions, std::span<EnvironmentLookup> found) const;
@@ -62,7 +67,8 @@ class LightSet {
 
     /// A bounce ray, and how far it came.
     struct BounceRay {
-        Vec3f origin, direction;
+        scalar::LitPoint from;
+        Vec3f direction;
         float distance; ///< infinity: out of the scene
         float bsdf_pdf; ///< the ray's own density
     };
@@ -75,31 +81,25 @@ class LightSet {
     /// The lights themselves that a camera ray meets within `distance`.
     Vec3f see(const Vec3f& origin, const Vec3f& direction, float distance) const;
 
-    /// Density with which draw() from `origin` would have found a point of an emissive surface.
-    float emitter_pdf(const Vec3f& origin, const SurfacePoint& point) const;
+    /// Density with which draw() would have found a point of an emissive surface.
+    float emitter_pdf(const scalar::LitPoint& at, const SurfacePoint& point) const;
 
     size_t byte_count() const;
 
   private:
     void find_sources();
-    float total_irradiance(const Vec3f& position) const;
-    /// One light, and the probability of having picked it.
-    struct Pick {
-        const scalar::LightSourceData* source; ///< null: all is dark
-        float probability;
-    };
-    Pick pick_source(const Vec3f& position, float u_light) const;
-    void draw_from(const Pick& pick, const Receiver& at, const RandomNumbers& random,
+    void draw_from(const LightChoice::Pick& pick, const Receiver& at, const RandomNumbers& random,
                    LightSample& drawn) const;
     void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
                     std::span<LightSample> drawn) const;
-    void draw_emitter(const Receiver& at, float u_emitter, const Vec2f& u, LightSample& drawn) const;
+    uint32_t find_emitter(float u_emitter) const;
+    void draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u, LightSample& drawn) const;
     float emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const;
 
     const Tracer& tracer_;
     std::optional<EnvironmentLight> environment_;
     EmitterTable emitters_;
-    std::vector<scalar::LightSourceData> sources_;
+    LightChoice choice_;
     bool has_analytic_lights_ = false, has_visible_lights_ = false;
 };
 

@@ -10,7 +10,7 @@ const uint kBindSurfaces = 1u;      ///< SurfaceData
 const uint kBindMaps = 2u;          ///< MapData
 const uint kBindTextures = 3u;      ///< TextureData
 const uint kBindMaterials = 4u;     ///< MaterialData
-const uint kBindSources = 5u;       ///< LightSourceData
+const uint kBindSources = 5u;       ///< LightSourceData; behind all of them LightNodeData
 const uint kBindTileRecords = 6u;   ///< TileRecord: tiles of patches above level 5
 const uint kBindRays = 7u;          ///< RayData
 const uint kBindHits = 8u;          ///< HitData
@@ -90,6 +90,8 @@ const uint kSmoothConstant = 7u;
 const uint kLayersConstant = 8u;
 // Likewise of the kernel that finds shading normals: not 0 where a material of the scene has a normal map.
 const uint kNormalMapsConstant = 9u;
+// Likewise of kernels that draw lights or meet them: not 0 where there is a light tree.
+const uint kLightTreeConstant = 10u;
 
 #include "formulas/end.h"
 #endif

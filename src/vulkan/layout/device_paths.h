@@ -17,6 +17,7 @@ struct PathData {
     Vec3 radiance;
     float cost;        ///< rays so far
     Vec3 contribution; ///< of its shadow ray, if unoccluded
+    Vec3 normal;       ///< at `previous`, of the side that the ray left to; where there is a light tree
 };
 
 /// A surface point for shading, world space; normals on the viewer's side.
@@ -47,7 +48,7 @@ struct FilmSumsData {
 /// Emissive patch `index`: cumulative probability in units of 2^-24, as fine as random numbers.
 struct EmitterData {
     uint end;
-    uint probability; ///< bits of a float
+    uint probability; ///< bits of a float; where there is a light tree, its leaf
 };
 
 const float kEmitterParts = 16777216.0f;
@@ -82,7 +83,8 @@ struct PathPush {
     uint depth, last_depth;
     float clamp_indirect; ///< 0: none
     uint sample_index;
-    uint source_count;
+    uint source_count;     ///< listed ones (prepare/light_sources.h)
+    uint first_light_node; ///< of the light tree behind all sources; 0: none
     uint emitter_count, emitter_range_count;
     uint has_environment;
     uint has_background; ///< camera rays see `background` in place of the environment

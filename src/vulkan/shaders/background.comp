@@ -2,14 +2,33 @@
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"
+#include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
+/// Lights of the tree that a ray meets.
+vec3 gather_in_tree(PathData path, LitPoint at, float tree_share, vec3 direction, float distance) {
+    vec3 sum = vec3(0.0);
+    uint root = push.first_light_node;
+    uint end = light_nodes[root].end;
+    for (uint k = root; k < end; ++k) {
+        k = find_leaf(k, end, at.position, direction, distance, kCanBeMet);
+        if (k == end) break;
+        LightSeen seen = meet_light(sources[light_nodes[k].source], at.position, direction, distance);
+        if (seen.radiance == vec3(0.0)) continue;
+        float share = tree_share * find_in_tree(root, at, k);
+        sum += seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
+    }
+    return sum;
+}
+
 /// Each light is MIS-weighted against next-event estimation at the previous vertex.
 vec3 gather_light(PathData path, vec3 direction, float distance) {
     vec3 sum = vec3(0.0);
+    LitPoint at = {path.previous, path.normal};
     float total = total_irradiance(push.source_count, path.previous);
+    float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, total);
     for (uint k = 0u; k < push.source_count; ++k) {
         LightSourceData source = sources[k];
         LightSeen seen = meet_light(source, path.previous, direction, distance);
@@ -18,9 +37,10 @@ vec3 gather_light(PathData path, vec3 direction, float distance) {
             seen.pdf = environment_pdf(push.environment, direction);
         }
         if (seen.radiance == vec3(0.0)) continue;
-        float share = total > 0.0 ? estimate_irradiance(source, path.previous) / total : 0.0;
+        float share = total > 0.0 ? estimate_irradiance(source, path.previous) / total * list_share : 0.0;
         sum += seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
     }
+    if (kHasLightTree != 0u) sum += gather_in_tree(path, at, 1.0 - list_share, direction, distance);
     return sum;
 }
 
@@ -29,6 +49,13 @@ vec3 see_lights(RayData ray, float distance) {
     vec3 sum = vec3(0.0);
     for (uint k = 0u; k < push.source_count; ++k)
         if (sources[k].is_visible != 0u) sum += see_light(sources[k], ray.origin, ray.direction, distance);
+    if (kHasLightTree == 0u) return sum;
+    uint end = light_nodes[push.first_light_node].end;
+    for (uint k = push.first_light_node; k < end; ++k) {
+        k = find_leaf(k, end, ray.origin, ray.direction, distance, kCanBeSeen);
+        if (k == end) break;
+        sum += see_light(sources[light_nodes[k].source], ray.origin, ray.direction, distance);
+    }
     return sum;
 }
 

@@ -2,6 +2,7 @@
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"
+#include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/surface_point.glsl"
 
@@ -24,8 +25,10 @@ DrawnLight draw_from_environment(vec3 normal, vec2 u) {
     return result;
 }
 
-DrawnLight draw_from_emitters(vec3 position, uint lod_bias, float u_emitter, vec2 u) {
-    uint emitter = find_emitter(push.emitter_count, u_emitter);
+/// A tree has chosen the emissive patch itself.
+float load_probability(uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }
+
+DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u) {
     uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, 0u, emitter);
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
@@ -33,44 +36,60 @@ DrawnLight draw_from_emitters(vec3 position, uint lod_bias, float u_emitter, vec
     CellPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, lod_bias);
     vec3 to = point.triangle.position - position;
     float pdf =
-        emitter_density(load_emitter_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
+        emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
     DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0)};
     result.end =
         offset_origin(point.triangle.position, point.triangle.normal, point.position_error, -result.light.direction);
     return result;
 }
 
-DrawnLight draw_from(LightSourceData source, SurfacePointData at, uint lod_bias, float u_emitter, vec2 u) {
+DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u_emitter, vec2 u) {
+    if (kHasLightTree != 0u && pick.source == kNone) return draw_from_emitter(at.position, lod_bias, pick.emitter, u);
+    LightSourceData source = sources[pick.source];
     if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, u);
-    if (source.kind == kSourceEmitters) return draw_from_emitters(at.position, lod_bias, u_emitter, u);
+    if (source.kind == kSourceEmitters)
+        return draw_from_emitter(at.position, lod_bias, find_emitter(push.emitter_count, u_emitter), u);
     DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0)};
     return result;
 }
 
 /// Selects a light in proportion to its estimated irradiance, then a direction; density 0: no sample.
 DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
-    float total = total_irradiance(push.source_count, at.position);
-    float target = pick_and_emitter.x * total;
-    uint picked = 0u;
-    float estimate = estimate_irradiance(sources[0], at.position);
-    for (float running = estimate; running <= target && picked + 1u < push.source_count; running += estimate)
-        estimate = estimate_irradiance(sources[++picked], at.position);
-    DrawnLight drawn = draw_from(sources[picked], at, lod_bias, pick_and_emitter.y, u);
-    if (!(total > 0.0) || dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
-    float probability = estimate / total;
-    drawn.light.pdf *= probability;
-    drawn.light.weight *= 1.0 / probability;
+    LitPoint lit = {at.position, at.geometric_normal};
+    LightPick pick =
+        pick_light(push.source_count, push.first_light_node, lit, pick_and_emitter.x, pick_and_emitter.y);
+    DrawnLight drawn = {{vec3(0.0), 0.0, vec3(0.0), 0.0}, false, vec3(0.0)};
+    if (pick.source == kNone && pick.emitter == kNone) return drawn;
+    drawn = draw_from(pick, at, lod_bias, pick_and_emitter.y, u);
+    if (dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
+    drawn.light.pdf *= pick.probability;
+    drawn.light.weight *= 1.0 / pick.probability;
     return drawn;
+}
+
+/// Probability of an emissive patch; without a tree of all of them.
+float find_emitter_probability(LitPoint at, uint emitter) {
+    if (kHasLightTree != 0u) {
+        uint leaf = texelFetch(emitter_table, int(emitter)).y;
+        if (leaf == kNone) return 0.0;
+        float listed = total_irradiance(push.source_count, at.position);
+        float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, listed);
+        return (1.0 - list_share) * find_in_tree(push.first_light_node, at, leaf);
+    }
+    if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
+    return estimate_irradiance(sources[push.source_count - 1u], at.position) /
+           total_irradiance(push.source_count, at.position);
 }
 
 /// Density with which draw_light at the previous vertex would have sampled this point.
 float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
-    if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
-    uint first = find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x;
-    float probability = estimate_irradiance(sources[push.source_count - 1u], path.previous) /
-                        total_irradiance(push.source_count, path.previous);
-    return probability * emitter_density(load_emitter_probability(first + hit.patch_index), point.area_per_uv,
-                                         point.geometric_normal, point.position - path.previous);
+    if (push.emitter_range_count == 0u) return 0.0;
+    uint emitter =
+        find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
+    LitPoint previous = {path.previous, path.normal};
+    return find_emitter_probability(previous, emitter) *
+           emitter_density(load_probability(emitter), point.area_per_uv, point.geometric_normal,
+                           point.position - path.previous);
 }
 
 vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emission) {
@@ -118,7 +137,7 @@ bool light_vertex(uint path_index, HitData hit) {
     SurfacePointData point = points[path_index];
     MaterialData material = materials[instances[hit.instance].material];
     paths[path_index].radiance = path.radiance + find_emission(path, hit, point, material.emission);
-    return push.source_count > 0u && sample_light(path_index, path, point, material);
+    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, material);
 }
 
 void main() {

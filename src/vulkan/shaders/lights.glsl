@@ -3,19 +3,41 @@
 #define RELIEF_LIGHTS_GLSL
 
 #include "vulkan/shaders/scene.glsl"
+#include "vulkan/shaders/paths.glsl"
 #include "formulas/warp.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "vulkan/layout/device_paths.h"
 
 layout(scalar, set = 0, binding = kBindSources) readonly buffer Sources { LightSourceData sources[]; };
+layout(scalar, set = 0, binding = kBindSources) readonly buffer LightNodes { LightNodeData light_nodes[]; };
 /// EmitterData, then a range (first emitter, instance) for each emissive instance.
 layout(set = 0, binding = kBindEmitters) uniform usamplerBuffer emitter_table;
+
+/// A light source or an emissive patch, of all lights, which has been chosen with `probability`.
+struct LightPick {
+    uint source;  ///< kNone: an emissive patch, or all is dark
+    uint emitter; ///< that patch; kNone: a source, or all is dark
+    float probability;
+};
 
 float total_irradiance(uint source_count, vec3 position) {
     float total = 0.0;
     for (uint k = 0u; k < source_count; ++k) total += estimate_irradiance(sources[k], position);
     return total;
+}
+
+LightPick pick_listed(uint source_count, LitPoint at, float u, float total) {
+    LightPick dark = {kNone, kNone, 0.0};
+    if (!(total > 0.0)) return dark;
+    float target = u * total;
+    uint picked = 0u;
+    float estimate = estimate_irradiance(sources[0], at.position);
+    for (float running = estimate; running <= target && picked + 1u < source_count; running += estimate)
+        estimate = estimate_irradiance(sources[++picked], at.position);
+    LightPick pick = {picked, kNone, estimate / total};
+    return pick;
 }
 
 float load_emitter_probability(uint emitter) { return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y); }

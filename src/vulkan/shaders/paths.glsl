@@ -34,6 +34,7 @@ layout(scalar, set = 0, binding = kBindShadowList) buffer ShadowList { uint shad
 bool is_hit(HitData hit) { return hit.instance != kNone; }
 
 layout(constant_id = kLayersConstant) const uint kHasLayers = 0;
+layout(constant_id = kLightTreeConstant) const uint kHasLightTree = 0;
 
 /// The BSDF for one outgoing direction, in a local frame: one of the two.
 struct Scattering {

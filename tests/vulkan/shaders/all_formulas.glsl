@@ -21,6 +21,7 @@
 #include "formulas/levels.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
+#include "formulas/light_tree.h"
 #include "formulas/local_start.h"
 #include "formulas/lod.h"
 #include "formulas/mips.h"

@@ -21,6 +21,7 @@ struct AllStructs {
     FilmSumsData film;
     EmitterData emitter;
     LightSourceData light;
+    LightNodeData light_node;
     CameraPush camera_push;
     PathPush path_push;
     SortPush sort_push;
@@ -102,7 +103,7 @@ struct AllStructs {
     FIELD(s.builds_per_group[2])
 #define FIELDS_PATH(s) \
     FIELD3(s.throughput) FIELD(s.bsdf_pdf) FIELD3(s.previous) FIELD(s.pixel_seed) FIELD3(s.radiance) \
-    FIELD(s.cost) FIELD3(s.contribution)
+    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal)
 #define FIELDS_POINT(s) \
     FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
     FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)
@@ -115,6 +116,9 @@ struct AllStructs {
     FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
     FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone) \
     FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible)
+#define FIELDS_LIGHT_NODE(s) \
+    FIELD3(s.center) FIELD(s.radius) FIELD3(s.axis) FIELD(s.spread_cosine) FIELD(s.spread_sine) \
+    FIELD(s.reach_cosine) FIELD(s.power) FIELD(s.source) FIELD(s.end) FIELD(s.flags)
 #define FIELDS_CAMERA_PUSH(s) \
     FIELD3(s.camera.origin) FIELD3(s.camera.right) FIELD3(s.camera.up) FIELD3(s.camera.forward) \
     FIELD3(s.camera.corner) FIELD3(s.camera.step_x) FIELD3(s.camera.step_y) \
@@ -122,7 +126,7 @@ struct AllStructs {
     FIELD(s.first_pixel) FIELD(s.count) FIELD(s.sample_index) FIELD(s.seed)
 #define FIELDS_PATH_PUSH(s) \
     FIELD(s.count) FIELD(s.capacity) FIELD(s.depth) FIELD(s.last_depth) FIELD(s.clamp_indirect) FIELD(s.sample_index) \
-    FIELD(s.source_count) FIELD(s.emitter_count) FIELD(s.emitter_range_count) \
+    FIELD(s.source_count) FIELD(s.first_light_node) FIELD(s.emitter_count) FIELD(s.emitter_range_count) \
     FIELD(s.has_environment) FIELD(s.has_background) FIELD3(s.background) FIELD3(s.environment.scale) FIELD(s.environment.sin_turn) \
     FIELD(s.environment.cos_turn) FIELD(s.environment.cells_x) FIELD(s.environment.cells_y) \
     FIELD(s.environment.texture_index) FIELD3(s.bounce_lod.camera) FIELD(s.bounce_lod.cell_angle) \
@@ -187,6 +191,7 @@ struct AllStructs {
     FIELDS_FILM(s.film) \
     FIELDS_EMITTER(s.emitter) \
     FIELDS_LIGHT(s.light) \
+    FIELDS_LIGHT_NODE(s.light_node) \
     FIELDS_CAMERA_PUSH(s.camera_push) \
     FIELDS_PATH_PUSH(s.path_push) \
     FIELDS_SORT_PUSH(s.sort_push) \

@@ -66,6 +66,7 @@ struct SourceResults {
     Vec3 visible;
     Vec3 into, out_of;
     float density, position;
+    float node, leaf, tree_share, left; ///< of a light tree
 };
 
 struct SurfaceResults {
@@ -268,6 +269,22 @@ FN LightSourceData make_facing_source(FormulaInput from, uint kind, Vec3 positio
     return source;
 }
 
+/// A node about a light; its cones are wide and narrow.
+FN LightNodeData make_test_node(FormulaInput from, LightSourceData source) {
+    LightNodeData node;
+    node.center = source.center;
+    node.radius = 2.0f * from.u[5];
+    node.axis = source.basis.n;
+    node.spread_cosine = 2.0f * from.u[6] - 1.0f;
+    node.spread_sine = sqrt(max(1.0f - node.spread_cosine * node.spread_cosine, 0.0f));
+    node.reach_cosine = 0.0f;
+    node.power = source.power;
+    node.source = kNone;
+    node.end = 1u;
+    node.flags = kCanBeMet;
+    return node;
+}
+
 FN SourceResults run_source(FormulaInput from) {
     Vec2 u = make_pair(from.u[10], from.u[11]);
     Vec3 position = make_triple(-from.u[9], from.u[8], from.u[7]);
@@ -300,6 +317,12 @@ FN SourceResults run_source(FormulaInput from) {
     r.out_of = turn_out_of_environment(e, to);
     r.density = environment_cell_density(e, from.u[5], normalize(to));
     r.position = locate_in_interval(from.u[6], 0.0f, 1.0f);
+    LitPoint lit = {position, normalize(to)};
+    LightNodeData node = make_test_node(from, spot);
+    r.node = estimate_node(node, lit);
+    r.leaf = estimate_leaf(node, spot, lit);
+    r.tree_share = find_tree_share(from.u[0], from.u[1]);
+    r.left = stretch_random(0.5f * from.u[2], 0.0f, 0.5f);
     return r;
 }
 

@@ -1,0 +1,97 @@
+// Walks through the tree of many lights. `root`: PathPush::first_light_node.
+#ifndef RELIEF_LIGHT_TREE_GLSL
+#define RELIEF_LIGHT_TREE_GLSL
+
+#include "vulkan/shaders/lights.glsl"
+
+float estimate_alone(LightNodeData node, LitPoint at) {
+    if (node.source >= kEmitterLeaf) return estimate_node(node, at); // kNone too
+    return estimate_leaf(node, sources[node.source], at);
+}
+
+/// Of a node that is near, that of its children, which knows more.
+float estimate_child(uint node_index, LitPoint at) {
+    LightNodeData node = light_nodes[node_index];
+    if (node.source != kNone || !is_near(node, at)) return estimate_alone(node, at);
+    LightNodeData first = light_nodes[node_index + 1u];
+    return estimate_alone(first, at) + estimate_alone(light_nodes[first.end], at);
+}
+
+/// Part of the draws that the tree gets.
+float find_share_of_tree(uint root, LitPoint at, float listed) {
+    return kHasLightTree != 0u ? find_tree_share(listed, estimate_child(root, at)) : 0.0;
+}
+
+/// From each node to the child that the random number falls upon.
+LightPick pick_in_tree(uint root, LitPoint at, float u, float u_further) {
+    uint place = root;
+    float probability = 1.0;
+    bool is_continued = false;
+    while (light_nodes[place].source == kNone) {
+        uint first = place + 1u;
+        uint second = light_nodes[first].end;
+        float a = estimate_child(first, at);
+        float b = estimate_child(second, at);
+        float sum = a + b;
+        LightPick dark = {kNone, kNone, 0.0};
+        if (!(sum > 0.0)) return dark;
+        float share = a / sum;
+        place = u < share ? first : second;
+        probability *= place == first ? share : b / sum;
+        u = place == first ? stretch_random(u, 0.0, share) : stretch_random(u, share, 1.0 - share);
+        if (!is_continued && probability < kContinuedBelow) {
+            is_continued = true;
+            u = u_further;
+        }
+    }
+    uint source = light_nodes[place].source;
+    bool is_emitter = source >= kEmitterLeaf;
+    LightPick pick = {is_emitter ? kNone : source, is_emitter ? source & ~kEmitterLeaf : kNone, probability};
+    return pick;
+}
+
+/// Probability of a leaf among all of the tree: that of the ways down to it.
+float find_in_tree(uint root, LitPoint at, uint leaf) {
+    uint place = root;
+    float probability = 1.0;
+    while (place != leaf) {
+        uint first = place + 1u;
+        uint second = light_nodes[first].end;
+        float a = estimate_child(first, at);
+        float b = estimate_child(second, at);
+        float sum = a + b;
+        if (!(sum > 0.0)) return 0.0;
+        probability *= (leaf < second ? a : b) / sum;
+        place = leaf < second ? first : second;
+    }
+    return probability;
+}
+
+/// One of all lights.
+LightPick pick_light(uint source_count, uint root, LitPoint at, float u, float u_further) {
+    float listed = total_irradiance(source_count, at.position);
+    if (kHasLightTree == 0u) return pick_listed(source_count, at, u, listed);
+    // As cpu/shading/light_choice.cpp, so that both round alike.
+    float list_share = 1.0 - find_share_of_tree(root, at, listed);
+    float tree_share = 1.0 - list_share;
+    LightPick pick;
+    if (u < tree_share)
+        pick = pick_in_tree(root, at, stretch_random(u, 0.0, tree_share), u_further);
+    else
+        pick = pick_listed(source_count, at, stretch_random(u, tree_share, list_share), listed);
+    pick.probability *= u < tree_share ? tree_share : list_share;
+    return pick;
+}
+
+/// The next leaf from `place` on, before `end`, with a flag and a sphere that the ray meets; `end`: none.
+uint find_leaf(uint place, uint end, vec3 origin, vec3 direction, float distance, uint flag) {
+    while (place < end) {
+        LightNodeData node = light_nodes[place];
+        bool is_met = (node.flags & flag) != 0u && may_meet(node, origin, direction, distance);
+        if (is_met && node.source != kNone) return place;
+        place = is_met ? place + 1u : node.end;
+    }
+    return end;
+}
+
+#endif
