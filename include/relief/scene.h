@@ -233,6 +233,9 @@ struct Light {
     /// Whether camera rays see the light itself; only of one with extent. It never hides what is behind it,
     /// and stays out of the alpha channel.
     bool is_visible_to_camera = false;
+    /// Light linking, by the names of objects, or of their meshes where they have none: those that the light
+    /// lights (none named: all), but for those that it does not. Shadows fall from all objects.
+    std::vector<std::string> link_includes, link_excludes;
 };
 
 /// Image settings stored in a scene file; the command line overrides them.

@@ -2,24 +2,12 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "image/cryptomatte.h"
+#include "scene/object_names.h"
 
 namespace relief {
 
 namespace {
-
-/// Scenes made in memory may hold things without a name; indices are not checked yet.
-template <class Item>
-std::string name_item(const std::vector<Item>& items, uint32_t index, const char* kind) {
-    const bool has_name = index < items.size() && !items[index].name.empty();
-    return has_name ? items[index].name : fmt::format("{} {}", kind, uint64_t(index) + 1);
-}
-
-std::string name_object(const Scene& scene, const Object& object) {
-    return object.name.empty() ? name_item(scene.meshes, object.mesh, "mesh") : object.name;
-}
 
 std::string name_material(const Scene& scene, const Object& object) {
     return object.material == kNoIndex ? "default" : name_item(scene.materials, object.material, "material");

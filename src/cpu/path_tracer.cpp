@@ -326,7 +326,8 @@ void TileTracer::draw_lights(size_t first, size_t count) {
         const size_t k = first + n;
         const Vec3f& normal = points_[k].geometric_normal;
         const bool is_seen_from_behind = dot(normal, rays_[k].direction) > 0;
-        receivers_[n] = {points_[k].position, hits_[k].lod_bias, is_seen_from_behind ? -normal : normal};
+        receivers_[n] = {points_[k].position, hits_[k].lod_bias, is_seen_from_behind ? -normal : normal,
+                         points_[k].instance};
         light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
                             random_[scalar::kLightPair][k]};
     }
@@ -437,7 +438,7 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
     if (!is_finite(path.throughput) || random_[scalar::kRoulettePair][k].x >= probability) return false;
     path.throughput *= 1 / probability;
-    path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane)};
+    path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane), points_[k].instance};
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
     active_[next] = active_[k];

@@ -32,6 +32,7 @@ struct LightSourceData {
     float edge;    ///< of the spot: 1 - cos of the half angle from which on it fades, at most `cone`
     float half_width, half_height; ///< of the rectangle, along basis.t and basis.b
     uint is_visible;               ///< to camera rays
+    uint link;                     ///< first word of the set of instances that it lights; kNone: all
 };
 
 /// A sampled direction towards a light with density `pdf` per solid angle; 0: no sample.
@@ -47,6 +48,9 @@ struct LightSeen {
     Vec3 radiance; ///< zero: missed
     float pdf;     ///< density with which sampling would have chosen the direction
 };
+
+/// Whether an instance is in a set, by the word of the set that it belongs to: word `instance` / 32.
+FN bool is_in_set(uint word, uint instance) { return ((word >> (instance & 31u)) & 1u) != 0u; }
 
 /// Of a flat light; of the disc that a sphere looks like.
 FN float shape_area(LightSourceData source) {

@@ -30,7 +30,8 @@ struct LightNodeData {
 /// What is lit.
 struct LitPoint {
     Vec3 position;
-    Vec3 normal; ///< geometric, of the side that is seen
+    Vec3 normal;   ///< geometric, of the side that is seen
+    uint instance; ///< that it is on
 };
 
 /// Least factor of a cosine. Estimates are rather too large than zero: what is wrong with them costs samples,

@@ -27,6 +27,7 @@ scalar::LightSourceData make_source(uint32_t kind, float power) {
     scalar::LightSourceData source{};
     source.kind = kind;
     source.power = power;
+    source.link = kNoIndex;
     return source;
 }
 
@@ -199,10 +200,14 @@ LightTables make_light_tables(const PreparedScene& scene, float environment_lumi
     if (environment_luminance > 0)
         sources.push_back(
             make_source(scalar::kSourceEnvironment, std::numbers::pi_v<float> * environment_luminance));
-    for (const Light& light : scene.lights) {
+    for (size_t k = 0; k < scene.lights.size(); ++k) {
+        const Light& light = scene.lights[k];
         const float power = scalar::luminance(light.color) * light.strength;
-        if (power > 0) sources.push_back(make_light_source(light, power));
+        if (!(power > 0)) continue;
+        sources.push_back(make_light_source(light, power));
+        if (!scene.links.first_word.empty()) sources.back().link = scene.links.first_word[k];
     }
+    tables.link_words = scene.links.words;
     if (sources.size() + emitters.ranges.size() > kMostListedLights) {
         add_tree(scene, emitters, tables);
         return tables;

@@ -42,6 +42,7 @@ struct LightTables {
     uint32_t listed_count = 0; ///< first sources, which are chosen by their estimates; all without a tree
     std::vector<scalar::LightNodeData> nodes; ///< of the tree; empty: there are few lights
     std::vector<uint32_t> leaf_of_emitter;    ///< of the tree: one an emissive patch; kNoIndex: none
+    std::vector<uint32_t> link_words;         ///< as LightLinks::words; empty: all lights light all
 };
 
 /// `environment_luminance`: its mean.

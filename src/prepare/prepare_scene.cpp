@@ -229,6 +229,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->has_normal_maps = std::ranges::any_of(
         prepared->materials, [](const Material& material) { return !!material.normal_texture; });
     prepared->layers = make_material_layers(prepared->materials);
+    prepared->links = make_light_links(scene);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
     prepared->camera = scene.camera;

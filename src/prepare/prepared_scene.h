@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/affine.h"
+#include "prepare/light_links.h"
 #include "prepare/material_layers.h"
 #include "relief/render.h"
 #include "relief/scene.h"
@@ -63,6 +64,7 @@ struct PreparedScene {
     bool has_normal_maps = false;    ///< some material has one
     MaterialLayers layers;           ///< of the materials
     std::vector<Light> lights;
+    LightLinks links; ///< of the lights
     std::optional<Environment> environment;
     Camera camera;
     uint32_t mesh_count = 0;   ///< of the scene

@@ -1,15 +1,21 @@
 // validate_scene: every index, range and number of a scene, before anything is built from it.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "base/suggest.h"
 #include "math/affine.h"
 #include "math/box.h"
 #include "relief/error.h"
 #include "relief/scene.h"
 #include "scene/displacement_conventions.h"
+#include "scene/object_names.h"
 
 namespace relief {
 
@@ -318,6 +324,22 @@ void check_light(const Light& light, size_t index) {
              light.type == LightType::sun ? "give it angle_degrees above 0" : "give it a radius");
 }
 
+/// Lights name objects that there are.
+void check_links(const Scene& scene) {
+    std::set<std::string, std::less<>> names;
+    if (std::ranges::any_of(scene.lights, is_linked))
+        for (const Object& object : scene.objects) names.insert(name_object(scene, object));
+    for (size_t i = 0; i < scene.lights.size(); ++i)
+        for (const auto& [key, linked] : {std::pair("light_link_includes", &Light::link_includes),
+                                          std::pair("light_link_excludes", &Light::link_excludes)})
+            for (const std::string& name : scene.lights[i].*linked) {
+                if (names.contains(name)) continue;
+                const std::vector<std::string_view> known(names.begin(), names.end());
+                fail(fmt::format("light {}", i), fmt::format("{} names no object: '{}'", key, name),
+                     suggest_word(name, known));
+            }
+}
+
 void check_picture(const PictureDefaults& picture) {
     const auto check = [](const char* what, const std::optional<int>& value, int low, int high) {
         if (value && (*value < low || *value > high))
@@ -340,6 +362,7 @@ void validate_scene(const Scene& scene) {
         for (const Vec3f& position : scene.meshes[i].positions) mesh_boxes[i].extend(position);
     for (size_t i = 0; i < scene.objects.size(); ++i) check_object(scene, mesh_boxes, scene.objects[i], i);
     for (size_t i = 0; i < scene.lights.size(); ++i) check_light(scene.lights[i], i);
+    check_links(scene);
     if (scene.environment) {
         const Environment& environment = *scene.environment;
         check_range("environment", "color", environment.color, 0, kHuge);

@@ -69,20 +69,31 @@ std::vector<Vec2f> join_albedos(const MaterialLayers& layers) {
     return entries;
 }
 
-/// The sources, then the nodes of the tree from the next whole node on, which refer to themselves from there.
-std::vector<std::byte> join_sources(const LightTables& tables, uint32_t& first_node) {
-    const size_t source_bytes = tables.sources.size() * sizeof(scalar::LightSourceData);
-    const size_t node_bytes = tables.nodes.size() * sizeof(scalar::LightNodeData);
-    first_node = tables.nodes.empty() ? 0 : uint32_t(source_bytes / sizeof(scalar::LightNodeData)) + 1;
-    const size_t node_offset = first_node == 0 ? source_bytes : first_node * sizeof(scalar::LightNodeData);
-    std::vector<std::byte> bytes(node_offset + node_bytes);
-    if (source_bytes > 0) std::memcpy(bytes.data(), tables.sources.data(), source_bytes);
-    for (size_t k = 0; k < tables.nodes.size(); ++k) {
-        scalar::LightNodeData node = tables.nodes[k];
-        node.end += first_node;
-        std::memcpy(bytes.data() + node_offset + k * sizeof node, &node, sizeof node);
-    }
-    return bytes;
+template <class Item> void append_words(const std::vector<Item>& items, std::vector<uint32_t>& words) {
+    static_assert(sizeof(Item) % sizeof(uint32_t) == 0);
+    const size_t first = words.size();
+    words.resize(first + items.size() * sizeof(Item) / sizeof(uint32_t));
+    if (!items.empty()) std::memcpy(words.data() + first, items.data(), items.size() * sizeof(Item));
+}
+
+/// The sources, then the nodes of the tree from the next whole node on, then sets of instances; all refer to
+/// each other by their places in this buffer.
+std::vector<uint32_t> join_sources(LightTables tables, uint32_t& first_node) {
+    constexpr size_t source_words = sizeof(scalar::LightSourceData) / sizeof(uint32_t);
+    constexpr size_t node_words = sizeof(scalar::LightNodeData) / sizeof(uint32_t);
+    const size_t node_place = tables.sources.size() * source_words / node_words + 1;
+    const size_t first_link = node_place * node_words + tables.nodes.size() * node_words;
+    first_node = tables.nodes.empty() ? 0 : uint32_t(node_place);
+    for (scalar::LightNodeData& node : tables.nodes) node.end += first_node;
+    for (scalar::LightSourceData& source : tables.sources)
+        if (source.link != scalar::kNone) source.link += uint32_t(first_link);
+    std::vector<uint32_t> words;
+    append_words(tables.sources, words);
+    if (tables.nodes.empty() && tables.link_words.empty()) return words;
+    words.resize(node_place * node_words);
+    append_words(tables.nodes, words);
+    append_words(tables.link_words, words);
+    return words;
 }
 
 /// Emissive patches, followed by the ranges of their instances.
@@ -122,6 +133,7 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     description_.emitter_range_count = uint32_t(emitters.ranges.size());
     const LightTables tables = make_light_tables(scene, distribution.mean_luminance, emitters);
     description_.source_count = tables.listed_count;
+    has_links_ = !tables.link_words.empty();
     sources_ = make_table(device, "light_sources", TexelFormat::none,
                           join_sources(tables, description_.first_light_node));
     emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint,
@@ -138,10 +150,13 @@ void DeviceLights::bind(BindingTable& bindings) const {
     if (albedos_) bindings.bind(scalar::kBindAlbedos, *albedos_);
 }
 
-std::vector<uint32_t> DeviceLights::add_tree(std::vector<uint32_t> constants) const {
-    if (description_.first_light_node == 0) return constants;
-    constants.resize(std::max<size_t>(constants.size(), scalar::kLightTreeConstant + 1));
-    constants[scalar::kLightTreeConstant] = 1;
+std::vector<uint32_t> DeviceLights::add_choice(std::vector<uint32_t> constants) const {
+    const auto add = [&](uint32_t constant) {
+        constants.resize(std::max<size_t>(constants.size(), constant + 1));
+        constants[constant] = 1;
+    };
+    if (description_.first_light_node != 0) add(scalar::kLightTreeConstant);
+    if (has_links_) add(scalar::kLightLinksConstant);
     return constants;
 }
 

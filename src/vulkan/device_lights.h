@@ -19,8 +19,8 @@ class DeviceLights {
     DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene);
 
     void bind(BindingTable& bindings) const;
-    /// Constants of a kernel that draws lights or meets them.
-    std::vector<uint32_t> add_tree(std::vector<uint32_t> constants) const;
+    /// Constants of a kernel that draws lights or meets them, or of one that leads to such.
+    std::vector<uint32_t> add_choice(std::vector<uint32_t> constants) const;
     /// Fills in the light parameters of `push`; the rest is unchanged.
     void describe(scalar::PathPush& push) const;
 
@@ -28,6 +28,7 @@ class DeviceLights {
     Buffer materials_, sources_, environment_, emitters_;
     std::optional<Buffer> albedos_; ///< where materials have layers; else those of every table
     scalar::PathPush description_{};
+    bool has_links_ = false;
 };
 
 } // namespace relief::vulkan

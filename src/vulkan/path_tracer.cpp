@@ -22,7 +22,7 @@ constexpr uint32_t kGroupSize = 64;
 
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
-static_assert(sizeof(scalar::PathData) == 72 && sizeof(scalar::SurfacePointData) == 68);
+static_assert(sizeof(scalar::PathData) == 76 && sizeof(scalar::SurfacePointData) == 68);
 static_assert(sizeof(scalar::FilmSumsData) == 96);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
@@ -43,7 +43,7 @@ Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
 Kernel make_scattering_kernel(const Tracer& tracer, const DeviceLights& lights, const char* shader) {
     return Kernel(
         tracer.device(),
-        {.shader = shader, .constants = lights.add_tree(tracer.device_scene().add_layers({kGroupSize}))});
+        {.shader = shader, .constants = lights.add_choice(tracer.device_scene().add_layers({kGroupSize}))});
 }
 
 template <class T>
@@ -81,7 +81,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
-    background_ = Kernel(device, {.shader = "background", .constants = lights_.add_tree({kGroupSize})});
+    background_ = Kernel(device, {.shader = "background", .constants = lights_.add_choice({kGroupSize})});
     surface_point_ = make_reading_kernel(tracer, "surface_point");
     shading_normal_ = Kernel(device, {.shader = "shading_normal",
                                       .constants = tracer.device_scene().add_normal_maps({kGroupSize})});

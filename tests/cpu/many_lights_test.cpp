@@ -32,7 +32,7 @@ class ManyLights : public testing::Test {
         const float x = next(), y = next();
         const Vec3f direction = scalar::square_to_sphere({next(), next()});
         const Vec3f normals[] = {{0, 1, 0}, {0, 0, 1}, normalize(direction)};
-        return {{16 * x - 8, 3 * next() * next(), 16 * y - 8}, normals[++point_count_ % 3]};
+        return {{16 * x - 8, 3 * next() * next(), 16 * y - 8}, normals[++point_count_ % 3], 0};
     }
 
     std::shared_ptr<const PreparedScene> prepared_;

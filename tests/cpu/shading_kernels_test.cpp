@@ -316,7 +316,7 @@ TEST(Lights, are_drawn_for_many_points_as_for_each) {
     std::vector<cpu::LightSet::Receiver> at(kMany);
     std::vector<cpu::LightSet::RandomNumbers> random(kMany);
     for (size_t k = 0; k < kMany; ++k) {
-        at[k] = {numbers.direction(), 0, {0, 1, 0}};
+        at[k] = {numbers.direction(), 0, {0, 1, 0}, 0};
         random[k] = {numbers.next(), numbers.next(), numbers.pair()};
     }
     std::vector<cpu::LightSample> drawn(kMany);

@@ -15,9 +15,11 @@ class LightFiles : public FileTest {
 };
 
 TEST_F(LightFiles, lights_of_all_types_are_read_and_written) {
-    Scene scene = parse(R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}],
+    Scene scene = parse(R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"},
+        {"mesh": "plane", "name": "other"}],
       "lights": [{"type": "rectangle", "position": [1, 2, 3], "direction": [1, 0, 0], "up": [0, 0, 2],
-        "width": 4, "height": 0.5, "strength": 7, "color": [1, 0.5, 0], "visible_to_camera": true},
+        "width": 4, "height": 0.5, "strength": 7, "color": [1, 0.5, 0], "visible_to_camera": true,
+        "light_link_includes": ["plane", "other"], "light_link_excludes": ["other"]},
       {"type": "disk", "position": [3, 2, 1], "direction": [0, 1, 0], "radius": 0.25},
       {"type": "spot", "position": [0, 5, 0], "direction": [0, -1, 1], "angle_degrees": 30, "blend": 0.2,
         "radius": 0.1, "visible_to_camera": true},
@@ -46,6 +48,9 @@ TEST_F(LightFiles, lights_of_all_types_are_read_and_written) {
         EXPECT_EQ(spot.radius, 0.1f);
         for (size_t k = 0; k < 8; ++k)
             EXPECT_EQ(scene.lights[k].is_visible_to_camera, k == 0 || k == 2 || k == 3) << k;
+        EXPECT_EQ(rectangle.link_includes, (std::vector<std::string>{"plane", "other"}));
+        EXPECT_EQ(rectangle.link_excludes, std::vector<std::string>{"other"});
+        EXPECT_TRUE(disk.link_includes.empty() && disk.link_excludes.empty());
         EXPECT_EQ(scene.lights[4].width, 1);
         EXPECT_EQ(scene.lights[5].radius, 0.5f);
         EXPECT_EQ(scene.lights[6].cone_degrees, 45);
@@ -72,6 +77,11 @@ TEST_F(LightFiles, wrong_lights_are_refused_and_others_count_in_the_hash) {
     EXPECT_HAS(of_light(R"("type": "spot", "blend": 2)"), "lights[0].blend: must be in");
     EXPECT_HAS(of_light(R"("type": "sun", "visible_to_camera": 1)"), "lights[0].visible_to_camera");
     EXPECT_HAS(of_light(R"("type": "point", "visible_to_camera": true)"), "cannot be seen");
+    EXPECT_HAS(of_light(R"("type": "sun", "light_link_includes": [])"), "leave it out to light all objects");
+    EXPECT_HAS(of_light(R"("type": "sun", "light_link_includes": [1])"), "lights[0].light_link_includes[0]");
+    EXPECT_HAS(error_of(R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}],
+      "lights": [{"type": "disk", "light_link_excludes": ["plain"]}]})"),
+               "light_link_excludes names no object: 'plain'");
     const auto hash = [&](const std::string& keys) { return parse(R"({"lights": [{)" + keys + "}]}").hash; };
     EXPECT_NE(hash(R"("type": "disk")"), hash(R"("type": "disk", "visible_to_camera": true)"));
 }

@@ -94,7 +94,7 @@ TEST(LightTree, is_never_dark_where_a_light_below_shines) {
             const Vec3f at = source.center + numbers.next_direction() * distance;
             const Vec2f u{numbers.next(), numbers.next()};
             const scalar::LightDraw drawn = scalar::draw_listed_light(source, at, u);
-            const float estimate = scalar::estimate_node(node, {at, numbers.next_direction()});
+            const float estimate = scalar::estimate_node(node, {at, numbers.next_direction(), 0});
             dark += estimate == 0;
             if (!(drawn.pdf > 0) || drawn.weight == Vec3f{}) continue;
             ++lit;

@@ -83,6 +83,19 @@ void use_many_lights(Scene& scene, RenderSettings&) {
     }
 }
 
+void use_linked_lights(Scene& scene, RenderSettings&) {
+    for (size_t k = 0; k < scene.objects.size(); ++k) scene.objects[k].name = std::string(1, char('a' + k));
+    scene.lights[0].link_includes = {"a", "d"}, scene.lights[1].link_excludes = {"a"};
+    scene.lights[2].link_includes = {"c"};
+}
+
+void use_many_linked_lights(Scene& scene, RenderSettings& settings) {
+    use_many_lights(scene, settings);
+    use_linked_lights(scene, settings);
+    for (size_t k = 4; k < scene.lights.size(); k += 2)
+        (k % 4 == 0 ? scene.lights[k].link_includes : scene.lights[k].link_excludes) = {"c", "b"};
+}
+
 void use_cut_outs(Scene& scene, RenderSettings&) {
     float opacity = 0.3f;
     for (Material& material : scene.materials)
@@ -161,6 +174,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
                                          Variant{"in_the_dark", use_nothing_to_draw},
                                          Variant{"with_shaped_lights", use_shaped_lights},
                                          Variant{"with_many_lights", use_many_lights},
+                                         Variant{"with_linked_lights", use_linked_lights},
+                                         Variant{"with_many_linked_lights", use_many_linked_lights},
                                          Variant{"with_direct_light_alone", use_direct_light_alone},
                                          Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
                                          Variant{"with_cut_outs", use_cut_outs},

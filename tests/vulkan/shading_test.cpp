@@ -148,7 +148,7 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
             if (depth > 0)
                 expected = c.path.throughput *
                            lights.evaluate_mis(
-                               {{c.path.previous, {}}, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
+                               {{c.path.previous, {}, 0}, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
             else if (!c.hit.is_hit())
                 expected = behind.radiance;
             if (!(compare(paths[k].radiance, expected) < 2e-3f)) ++flips;
@@ -165,7 +165,8 @@ struct ExpectedLight {
 
 std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const ShadingCase& c, const CpuVertex& v,
                                           const cpu::LightSet::RandomNumbers& random) {
-    const cpu::LightSet::Receiver at{v.point.position, c.hit.lod_bias, v.point.geometric_normal};
+    const cpu::LightSet::Receiver at{v.point.position, c.hit.lod_bias, v.point.geometric_normal,
+                                     v.point.instance};
     cpu::LightSample light;
     const uint32_t first = 0;
     bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
@@ -234,7 +235,8 @@ TEST_F(ShadingKernels, weigh_the_emission_of_surfaces_that_were_met) {
         for (uint32_t k = 0; k < kCount; ++k) {
             const ShadingCase& c = cases_[k];
             const float light_pdf =
-                depth > 0 ? bench().cpu_lights.emitter_pdf({c.path.previous, {}}, vertices_[k].point) : 0.0f;
+                depth > 0 ? bench().cpu_lights.emitter_pdf({c.path.previous, {}, 0}, vertices_[k].point)
+                          : 0.0f;
             const float weight = depth > 0 ? scalar::power_heuristic(c.path.bsdf_pdf, light_pdf) : 1.0f;
             const Vec3f expected = c.path.throughput * vertices_[k].material.emission * weight;
             flips += !(compare(paths[k].radiance, expected) < 5e-3f);

@@ -3,7 +3,7 @@
 namespace relief::cpu {
 
 float LightChoice::estimate(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
-    return scalar::estimate_irradiance(source, at.position);
+    return is_lit(source, at) ? scalar::estimate_irradiance(source, at.position) : 0.0f;
 }
 
 float LightChoice::total_estimate(const scalar::LitPoint& at) const {
@@ -21,7 +21,8 @@ float LightChoice::estimate_child(uint32_t node_index, const scalar::LitPoint& a
 
 float LightChoice::estimate_alone(const scalar::LightNodeData& node, const scalar::LitPoint& at) const {
     if (node.source >= scalar::kEmitterLeaf) return scalar::estimate_node(node, at); // kNone too
-    return scalar::estimate_leaf(node, tables_.sources[node.source], at);
+    const scalar::LightSourceData& source = tables_.sources[node.source];
+    return is_lit(source, at) ? scalar::estimate_leaf(node, source, at) : 0.0f;
 }
 
 LightChoice::Shares LightChoice::find_shares(const scalar::LitPoint& at) const {
@@ -103,7 +104,7 @@ float LightChoice::find_emitter_probability(const scalar::LitPoint& at, uint32_t
 size_t LightChoice::byte_count() const {
     return tables_.sources.size() * sizeof(scalar::LightSourceData) +
            tables_.nodes.size() * sizeof(scalar::LightNodeData) +
-           tables_.leaf_of_emitter.size() * sizeof(uint32_t);
+           (tables_.leaf_of_emitter.size() + tables_.link_words.size()) * sizeof(uint32_t);
 }
 
 } // namespace relief::cpu

@@ -19,6 +19,11 @@ class LightChoice {
 
     /// Lights that may be drawn and are no emissive surface.
     std::span<const scalar::LightSourceData> sources() const { return tables_.sources; }
+    /// Whether a light of the scene's list lights the object that the point is on.
+    bool is_lit(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
+        return source.link == kNoIndex ||
+               scalar::is_in_set(tables_.link_words[source.link + at.instance / 32], at.instance);
+    }
     /// Of them, those that are chosen by their estimates.
     std::span<const scalar::LightSourceData> listed() const { return sources().first(tables_.listed_count); }
     bool has_tree() const { return !tables_.nodes.empty(); }
@@ -86,6 +91,7 @@ void LightChoice::visit_met(const scalar::LitPoint& at, const Shares& shares, co
                             float distance, const Visit& visit) const {
     visit_leaves(at.position, direction, distance, scalar::kCanBeMet, [&](uint32_t leaf) {
         const scalar::LightSourceData& source = tables_.sources[tables_.nodes[leaf].source];
+        if (!is_lit(source, at)) return;
         visit(source, [&] { return (1 - shares.list_share) * find_in_tree(at, leaf); });
     });
 }

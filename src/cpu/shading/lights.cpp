@@ -67,8 +67,8 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
     std::array<DirectionSample, kBlock> directions;
     size_t count = 0;
     for (size_t k = 0; k < at.size(); ++k) {
-        const LightChoice::Pick pick =
-            choice_.pick({at[k].position, at[k].normal}, random[k].u_light, random[k].u_emitter);
+        const LightChoice::Pick pick = choice_.pick({at[k].position, at[k].normal, at[k].instance},
+                                                    random[k].u_light, random[k].u_emitter);
         drawn[k].lacks_radiance = false;
         drawn[k].emitter.reset();
         if (!pick.source && pick.emitter == kNoIndex)
@@ -163,6 +163,7 @@ Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behi
         sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
     };
     for (const scalar::LightSourceData& source : choice_.listed()) {
+        if (!choice_.is_lit(source, ray.from)) continue;
         scalar::LightSeen seen = meet(source);
         if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
             seen = {behind.radiance, behind.pdf};

@@ -38,6 +38,7 @@ class LightSet {
         Vec3f position;
         uint32_t lod_bias; ///< emitters are sampled on surface M_bias
         Vec3f normal;      ///< geometric, on the viewer's side
+        uint32_t instance;
     };
 
     /// Draws one light by its estimated irradiance, then a direction towards it: `u_light` picks the light,

@@ -34,15 +34,17 @@ inline constexpr auto kObject =
     make_keys("name", "mesh", "displacement", "material", "transform", "instances");
 inline constexpr auto kInstances = make_keys("file", "materials");
 inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");
-inline constexpr auto kSun =
-    make_keys("type", "direction", "angle_degrees", "color", "strength", "visible_to_camera");
-inline constexpr auto kPoint =
-    make_keys("type", "position", "radius", "color", "strength", "visible_to_camera");
-inline constexpr auto kRectangle = make_keys("type", "position", "direction", "up", "width", "height",
-                                             "color", "strength", "visible_to_camera");
-inline constexpr auto kDisk =
-    make_keys("type", "position", "direction", "radius", "color", "strength", "visible_to_camera");
-inline constexpr auto kSpot = make_keys("type", "position", "direction", "angle_degrees", "blend", "radius",
-                                        "color", "strength", "visible_to_camera");
+inline constexpr auto kSun = make_keys("type", "direction", "angle_degrees", "color", "strength",
+                                       "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kPoint = make_keys("type", "position", "radius", "color", "strength",
+                                         "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kRectangle =
+    make_keys("type", "position", "direction", "up", "width", "height", "color", "strength",
+              "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kDisk = make_keys("type", "position", "direction", "radius", "color", "strength",
+                                        "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kSpot =
+    make_keys("type", "position", "direction", "angle_degrees", "blend", "radius", "color", "strength",
+              "visible_to_camera", "light_link_includes", "light_link_excludes");
 
 } // namespace relief::scene_keys

@@ -197,6 +197,14 @@ void read_spot(const JsonNode& node, Light& light) {
     read_float(node, "radius", light.radius, 0);
 }
 
+/// Of objects; whether there are such is checked with the whole scene.
+std::vector<std::string> read_names(const JsonNode& node) {
+    std::vector<std::string> names;
+    for (const JsonNode& name : node.elements()) names.push_back(name.as_string());
+    if (names.empty()) node.fail("names no object", "leave it out to light all objects");
+    return names;
+}
+
 struct LightReader {
     std::string_view name;
     LightType type;
@@ -227,6 +235,8 @@ Light read_light(const JsonNode& node) {
     read_float(node, "strength", light.strength, 0);
     read_optional(node, "visible_to_camera", light.is_visible_to_camera,
                   [](const JsonNode& n) { return n.as_bool(); });
+    read_optional(node, "light_link_includes", light.link_includes, read_names);
+    read_optional(node, "light_link_excludes", light.link_excludes, read_names);
     return light;
 }
 

@@ -85,6 +85,8 @@ Json write_light(const Light& light) {
     node["color"] = to_json(light.color);
     node["strength"] = to_json(light.strength);
     if (light.is_visible_to_camera) node["visible_to_camera"] = true;
+    if (!light.link_includes.empty()) node["light_link_includes"] = light.link_includes;
+    if (!light.link_excludes.empty()) node["light_link_excludes"] = light.link_excludes;
     return node;
 }
 

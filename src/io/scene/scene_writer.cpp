@@ -1,4 +1,5 @@
 // save_scene: scene.json with meshes as OBJ and maps as EXR beside it.
+#include <algorithm>
 #include <cctype>
 #include <map>
 #include <set>
@@ -14,6 +15,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "scene/displacement_conventions.h"
+#include "scene/object_names.h"
 #include "scene/words.h"
 
 namespace relief {
@@ -218,9 +220,11 @@ class SceneWriter {
 
     void add_objects() {
         root_["objects"] = Json::array();
+        const bool has_links = std::ranges::any_of(scene_.lights, is_linked);
         for (const Object& object : scene_.objects) {
             Json node;
-            if (!object.name.empty()) node["name"] = object.name;
+            // Meshes may get other names in the file than lights call their objects by.
+            if (!object.name.empty() || has_links) node["name"] = name_object(scene_, object);
             node["mesh"] = mesh_names_.at(object.mesh);
             if (object.displacement != kNoIndex)
                 node["displacement"] = displacement_names_.at(object.displacement);

@@ -10,7 +10,7 @@ const uint kBindSurfaces = 1u;      ///< SurfaceData
 const uint kBindMaps = 2u;          ///< MapData
 const uint kBindTextures = 3u;      ///< TextureData
 const uint kBindMaterials = 4u;     ///< MaterialData
-const uint kBindSources = 5u;       ///< LightSourceData; behind all of them LightNodeData
+const uint kBindSources = 5u;       ///< LightSourceData; behind all of them LightNodeData, then sets of bits
 const uint kBindTileRecords = 6u;   ///< TileRecord: tiles of patches above level 5
 const uint kBindRays = 7u;          ///< RayData
 const uint kBindHits = 8u;          ///< HitData
@@ -92,6 +92,8 @@ const uint kLayersConstant = 8u;
 const uint kNormalMapsConstant = 9u;
 // Likewise of kernels that draw lights or meet them: not 0 where there is a light tree.
 const uint kLightTreeConstant = 10u;
+// The same: not 0 where a light lights some objects only.
+const uint kLightLinksConstant = 11u;
 
 #include "formulas/end.h"
 #endif

@@ -18,6 +18,7 @@ struct PathData {
     float cost;        ///< rays so far
     Vec3 contribution; ///< of its shadow ray, if unoccluded
     Vec3 normal;       ///< at `previous`, of the side that the ray left to; where there is a light tree
+    uint instance;     ///< that `previous` is on; where lights are linked
 };
 
 /// A surface point for shading, world space; normals on the viewer's side.

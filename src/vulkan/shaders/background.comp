@@ -15,7 +15,9 @@ vec3 gather_in_tree(PathData path, LitPoint at, float tree_share, vec3 direction
     for (uint k = root; k < end; ++k) {
         k = find_leaf(k, end, at.position, direction, distance, kCanBeMet);
         if (k == end) break;
-        LightSeen seen = meet_light(sources[light_nodes[k].source], at.position, direction, distance);
+        LightSourceData source = sources[light_nodes[k].source];
+        if (!is_lit(source, at)) continue;
+        LightSeen seen = meet_light(source, at.position, direction, distance);
         if (seen.radiance == vec3(0.0)) continue;
         float share = tree_share * find_in_tree(root, at, k);
         sum += seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
@@ -26,11 +28,12 @@ vec3 gather_in_tree(PathData path, LitPoint at, float tree_share, vec3 direction
 /// Each light is MIS-weighted against next-event estimation at the previous vertex.
 vec3 gather_light(PathData path, vec3 direction, float distance) {
     vec3 sum = vec3(0.0);
-    LitPoint at = {path.previous, path.normal};
-    float total = total_irradiance(push.source_count, path.previous);
+    LitPoint at = {path.previous, path.normal, path.instance};
+    float total = total_irradiance(push.source_count, at);
     float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, total);
     for (uint k = 0u; k < push.source_count; ++k) {
         LightSourceData source = sources[k];
+        if (!is_lit(source, at)) continue;
         LightSeen seen = meet_light(source, path.previous, direction, distance);
         if (source.kind == kSourceEnvironment && distance == make_infinity()) {
             seen.radiance = environment_radiance(push.environment, direction);

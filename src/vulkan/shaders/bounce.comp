@@ -23,6 +23,7 @@ bool continue_path(uint path_index, HitData hit) {
     paths[path_index].throughput = throughput * (1.0 / probability);
     paths[path_index].previous = point.position;
     if (kHasLightTree != 0u) paths[path_index].normal = point.geometric_normal;
+    if (kHasLightLinks != 0u) paths[path_index].instance = hit.instance;
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);

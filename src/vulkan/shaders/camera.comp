@@ -19,6 +19,7 @@ void main() {
     path.cost = 1.0;
     path.contribution = vec3(0.0);
     path.normal = vec3(0.0);
+    path.instance = kNone;
     CameraRay start = start_camera_ray(push.camera, vec2(x, y), path.pixel_seed, push.sample_index);
     RayData ray = {start.origin, 0.0, start.direction, make_infinity(), 0u};
     paths[index] = path;

@@ -54,8 +54,8 @@ DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u
 }
 
 /// Selects a light in proportion to its estimated irradiance, then a direction; density 0: no sample.
-DrawnLight draw_light(SurfacePointData at, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
-    LitPoint lit = {at.position, at.geometric_normal};
+DrawnLight draw_light(SurfacePointData at, uint instance, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
+    LitPoint lit = {at.position, at.geometric_normal, instance};
     LightPick pick =
         pick_light(push.source_count, push.first_light_node, lit, pick_and_emitter.x, pick_and_emitter.y);
     DrawnLight drawn = {{vec3(0.0), 0.0, vec3(0.0), 0.0}, false, vec3(0.0)};
@@ -72,13 +72,13 @@ float find_emitter_probability(LitPoint at, uint emitter) {
     if (kHasLightTree != 0u) {
         uint leaf = texelFetch(emitter_table, int(emitter)).y;
         if (leaf == kNone) return 0.0;
-        float listed = total_irradiance(push.source_count, at.position);
+        float listed = total_irradiance(push.source_count, at);
         float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, listed);
         return (1.0 - list_share) * find_in_tree(push.first_light_node, at, leaf);
     }
     if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
     return estimate_irradiance(sources[push.source_count - 1u], at.position) /
-           total_irradiance(push.source_count, at.position);
+           total_irradiance(push.source_count, at);
 }
 
 /// Density with which draw_light at the previous vertex would have sampled this point.
@@ -86,7 +86,7 @@ float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
     if (push.emitter_range_count == 0u) return 0.0;
     uint emitter =
         find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
-    LitPoint previous = {path.previous, path.normal};
+    LitPoint previous = {path.previous, path.normal, path.instance};
     return find_emitter_probability(previous, emitter) *
            emitter_density(load_probability(emitter), point.area_per_uv, point.geometric_normal,
                            point.position - path.previous);
@@ -112,14 +112,14 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
 }
 
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
-bool sample_light(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+bool sample_light(uint path_index, PathData path, SurfacePointData point, uint instance) {
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    DrawnLight drawn = draw_light(point, ray.lod_bias, vec2(pick.x, last.y), u);
+    DrawnLight drawn = draw_light(point, instance, ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
-    Scattering scattering = make_scattering(point, material, -ray.direction);
+    Scattering scattering = make_scattering(point, materials[instances[instance].material], -ray.direction);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
     float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
@@ -137,7 +137,7 @@ bool light_vertex(uint path_index, HitData hit) {
     SurfacePointData point = points[path_index];
     MaterialData material = materials[instances[hit.instance].material];
     paths[path_index].radiance = path.radiance + find_emission(path, hit, point, material.emission);
-    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, material);
+    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit.instance);
 }
 
 void main() {

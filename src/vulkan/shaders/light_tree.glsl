@@ -6,7 +6,8 @@
 
 float estimate_alone(LightNodeData node, LitPoint at) {
     if (node.source >= kEmitterLeaf) return estimate_node(node, at); // kNone too
-    return estimate_leaf(node, sources[node.source], at);
+    LightSourceData source = sources[node.source];
+    return is_lit(source, at) ? estimate_leaf(node, source, at) : 0.0;
 }
 
 /// Of a node that is near, that of its children, which knows more.
@@ -69,7 +70,7 @@ float find_in_tree(uint root, LitPoint at, uint leaf) {
 
 /// One of all lights.
 LightPick pick_light(uint source_count, uint root, LitPoint at, float u, float u_further) {
-    float listed = total_irradiance(source_count, at.position);
+    float listed = total_irradiance(source_count, at);
     if (kHasLightTree == 0u) return pick_listed(source_count, at, u, listed);
     // As cpu/shading/light_choice.cpp, so that both round alike.
     float list_share = 1.0 - find_share_of_tree(root, at, listed);

@@ -12,6 +12,8 @@
 
 layout(scalar, set = 0, binding = kBindSources) readonly buffer Sources { LightSourceData sources[]; };
 layout(scalar, set = 0, binding = kBindSources) readonly buffer LightNodes { LightNodeData light_nodes[]; };
+/// Sets of instances, LightSourceData::link.
+layout(scalar, set = 0, binding = kBindSources) readonly buffer LinkWords { uint link_words[]; };
 /// EmitterData, then a range (first emitter, instance) for each emissive instance.
 layout(set = 0, binding = kBindEmitters) uniform usamplerBuffer emitter_table;
 
@@ -22,9 +24,19 @@ struct LightPick {
     float probability;
 };
 
-float total_irradiance(uint source_count, vec3 position) {
+/// Whether a light of the scene's list lights the object that the point is on.
+bool is_lit(LightSourceData source, LitPoint at) {
+    if (kHasLightLinks == 0u || source.link == kNone) return true;
+    return is_in_set(link_words[source.link + at.instance / 32u], at.instance);
+}
+
+float estimate_source(LightSourceData source, LitPoint at) {
+    return is_lit(source, at) ? estimate_irradiance(source, at.position) : 0.0;
+}
+
+float total_irradiance(uint source_count, LitPoint at) {
     float total = 0.0;
-    for (uint k = 0u; k < source_count; ++k) total += estimate_irradiance(sources[k], position);
+    for (uint k = 0u; k < source_count; ++k) total += estimate_source(sources[k], at);
     return total;
 }
 
@@ -33,9 +45,9 @@ LightPick pick_listed(uint source_count, LitPoint at, float u, float total) {
     if (!(total > 0.0)) return dark;
     float target = u * total;
     uint picked = 0u;
-    float estimate = estimate_irradiance(sources[0], at.position);
+    float estimate = estimate_source(sources[0], at);
     for (float running = estimate; running <= target && picked + 1u < source_count; running += estimate)
-        estimate = estimate_irradiance(sources[++picked], at.position);
+        estimate = estimate_source(sources[++picked], at);
     LightPick pick = {picked, kNone, estimate / total};
     return pick;
 }

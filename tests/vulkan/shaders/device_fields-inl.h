@@ -103,7 +103,7 @@ struct AllStructs {
     FIELD(s.builds_per_group[2])
 #define FIELDS_PATH(s) \
     FIELD3(s.throughput) FIELD(s.bsdf_pdf) FIELD3(s.previous) FIELD(s.pixel_seed) FIELD3(s.radiance) \
-    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal)
+    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal) FIELD(s.instance)
 #define FIELDS_POINT(s) \
     FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
     FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)
@@ -115,7 +115,7 @@ struct AllStructs {
 #define FIELDS_LIGHT(s) \
     FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
     FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone) \
-    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible)
+    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible) FIELD(s.link)
 #define FIELDS_LIGHT_NODE(s) \
     FIELD3(s.center) FIELD(s.radius) FIELD3(s.axis) FIELD(s.spread_cosine) FIELD(s.spread_sine) \
     FIELD(s.reach_cosine) FIELD(s.power) FIELD(s.source) FIELD(s.end) FIELD(s.flags)

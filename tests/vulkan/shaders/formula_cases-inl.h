@@ -257,6 +257,7 @@ FN LightSourceData make_test_source(FormulaInput from, uint kind) {
     source.half_width = 0.5f + from.u[1];
     source.half_height = 0.5f + from.u[2];
     source.is_visible = from.b & 1u;
+    source.link = kNone;
     return source;
 }
 
@@ -317,7 +318,7 @@ FN SourceResults run_source(FormulaInput from) {
     r.out_of = turn_out_of_environment(e, to);
     r.density = environment_cell_density(e, from.u[5], normalize(to));
     r.position = locate_in_interval(from.u[6], 0.0f, 1.0f);
-    LitPoint lit = {position, normalize(to)};
+    LitPoint lit = {position, normalize(to), 0u};
     LightNodeData node = make_test_node(from, spot);
     r.node = estimate_node(node, lit);
     r.leaf = estimate_leaf(node, spot, lit);
