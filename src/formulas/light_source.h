@@ -144,12 +144,13 @@ FN LightDraw draw_point_light(LightSourceData source, Vec3 position, Vec2 u) {
     if (!(distance > 0.0f)) return drawn;
     Vec3 axis = to / distance;
     drawn.direction = axis;
-    if (source.radius == 0.0f) {
+    float cone = sphere_cone_height(source.radius, distance);
+    // One so far away that its density is beyond all floats is a point too.
+    if (cone < 1e-37f) {
         drawn.weight = source.color * (source.strength / (distance * distance));
         drawn.pdf = make_infinity();
         return drawn;
     }
-    float cone = sphere_cone_height(source.radius, distance);
     drawn.pdf = cone_pdf(cone);
     drawn.direction = normalize(from_local(make_basis(axis), square_to_cone(u, cone)));
     // Rounding may miss the sphere at its rim; use the distance of the tangent point then.
@@ -165,6 +166,16 @@ FN LightDraw draw_spot_light(LightSourceData source, Vec3 position, Vec2 u) {
     return drawn;
 }
 
+/// Density per solid angle of a point on a flat light of that area, from which the one that is lit lies
+/// `facing` in front of its plane.
+FN float flat_density(float distance, float facing, float area) {
+    float cube = distance * distance * distance;
+    float divisor = facing * area;
+    // Either is beyond all floats before the density is, of lights far away.
+    bool is_plain = cube < 3.4e38f && divisor > 0.0f && divisor < 3.4e38f;
+    return is_plain ? cube / divisor : (distance / facing) * ((distance / area) * distance);
+}
+
 /// By area. Density 0 behind the light, which shines to one side.
 FN LightDraw draw_flat_light(LightSourceData source, Vec3 position, Vec2 u) {
     Vec2 round = square_to_disk(u);
@@ -177,7 +188,7 @@ FN LightDraw draw_flat_light(LightSourceData source, Vec3 position, Vec2 u) {
     float facing = -dot(to, source.basis.n);
     if (!(distance > 0.0f) || !(facing > 0.0f)) return drawn;
     drawn.direction = to / distance;
-    drawn.pdf = distance * distance * distance / (facing * shape_area(source));
+    drawn.pdf = flat_density(distance, facing, shape_area(source));
     drawn.weight = shape_radiance(source) * (1.0f / drawn.pdf);
     return drawn;
 }

@@ -95,6 +95,36 @@ TEST(FlatLight, is_drawn_with_the_density_that_it_is_met_with) {
     }
 }
 
+TEST(FlatLight, keeps_its_brightness_as_far_away_as_places_go) {
+    for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk, scalar::kSourcePoint})
+        for (const float distance : {1e3f, 5e12f, 1e13f, 1e15f, 1e17f}) {
+            scalar::LightSourceData source = make_flat(kind);
+            source.basis.n = {0, 0, -1};
+            source.center = {0, 0, distance};
+            source.strength = distance;
+            const scalar::LightDraw drawn = scalar::draw_listed_light(source, {}, {0.4f, 0.6f});
+            EXPECT_GT(drawn.pdf, 0) << kind << ' ' << distance;
+            EXPECT_NEAR(drawn.weight.x * distance, 1, 1e-3f) << kind << ' ' << distance;
+        }
+}
+
+TEST(FlatLight, has_the_density_of_its_plain_form_where_that_is_finite) {
+    Random random(7);
+    for (int k = 0; k < 20000; ++k) {
+        const float distance = std::exp2(80 * random.next() - 40), area = std::exp2(40 * random.next() - 20);
+        const float facing = distance * (0.01f + 0.99f * random.next());
+        const float plain = distance * distance * distance / (facing * area);
+        const float found = scalar::flat_density(distance, facing, area);
+        if (distance < 1e12f) {
+            ASSERT_EQ(found, plain);
+        } else {
+            ASSERT_NEAR(found / (distance / facing * distance / area * distance), 1, 1e-5f);
+        }
+    }
+    EXPECT_GT(scalar::flat_density(1e17f, 1e17f, 1e-2f), 9e35f);
+    EXPECT_LT(scalar::flat_density(1e17f, 1e17f, 1e-2f), 1.1e36f);
+}
+
 TEST(FlatLight, shines_to_one_side) {
     for (uint32_t kind : {scalar::kSourceRectangle, scalar::kSourceDisk}) {
         scalar::LightSourceData source = make_flat(kind);
