@@ -78,8 +78,9 @@ struct ImageSettings {
     /// no more than this to any component. Less noise, and less light; 0: all of it.
     float clamp_indirect = 0;
     uint32_t seed = 0;
-    /// Linear colour that camera rays see where they leave the scene; nullopt: the environment. Black makes
-    /// films transparent: colours are then premultiplied by A. Bounces see the environment in any case.
+    /// Linear colour that camera rays see where they leave the scene and meet no visible light; nullopt: the
+    /// environment. Black makes films transparent: colours are then premultiplied by A. Bounces see the
+    /// environment in any case.
     std::optional<Vec3f> background;
     Window crop;          ///< part of the picture to render
     int first_sample = 0; ///< samples [first_sample, first_sample + spp) of each pixel, [0, 2^30]

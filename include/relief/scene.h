@@ -230,8 +230,8 @@ struct Light {
     float width = 1, height = 1; ///< rectangle: > 0
     float cone_degrees = 45;     ///< spot: whole angle of its cone, (0, 180]
     float blend = 0; ///< spot: part of the angle from the edge inwards over which it fades, [0, 1]
-    /// Whether camera rays see the light itself; only of one with extent. It never hides what is behind it,
-    /// and stays out of the alpha channel.
+    /// Whether camera rays see the light itself; only of one with extent. It never hides what is behind it
+    /// in the scene, but covers ImageSettings::background: alpha is 1 there.
     bool is_visible_to_camera = false;
     /// Light linking, by the names of objects, or of their meshes where they have none: those that the light
     /// lights (none named: all), but for those that it does not. Shadows fall from all objects.

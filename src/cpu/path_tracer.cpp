@@ -81,6 +81,7 @@ class TileTracer {
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
     void add_backgrounds();
+    void see_lights();
     void gather_lights();
     void drop_misses();
     void draw_random();
@@ -241,19 +242,28 @@ void TileTracer::add_backgrounds() {
         count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
-    if (depth_ == 0 && lights_.has_visible_lights())
-        for (size_t k = 0; k < active_.size(); ++k)
-            paths_[active_[k]].result.radiance +=
-                lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
+    if (depth_ == 0 && lights_.has_visible_lights()) see_lights();
     if (depth_ == 0 && settings_.image.background) {
-        for (size_t n = 0; n < count; ++n)
-            paths_[active_[missed_[n]]].result.radiance += *settings_.image.background;
+        for (size_t n = 0; n < count; ++n) {
+            FilmSample& result = paths_[active_[missed_[n]]].result;
+            if (result.alpha == 0) result.radiance += *settings_.image.background;
+        }
         return;
     }
     lights_.look_up_environment(directions_, backgrounds_);
     if (depth_ > 0) return gather_lights();
     for (size_t n = 0; n < count; ++n)
         paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
+}
+
+/// Lights cover the background of the picture, which is none of the scene.
+void TileTracer::see_lights() {
+    for (size_t k = 0; k < active_.size(); ++k) {
+        FilmSample& result = paths_[active_[k]].result;
+        const Vec3f seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
+        result.radiance += seen;
+        if (!(seen == Vec3f{})) result.alpha = 1;
+    }
 }
 
 /// Misses look up the image at places far apart, hits do not; both meet analytic lights, which are rare.

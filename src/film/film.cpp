@@ -219,7 +219,9 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     add(x, y, sums, sample.alpha);
 }
 
-void Film::add_sums(int x, int y, const FilmSums& added) { add(x, y, added, float(added.hit_count)); }
+void Film::add_sums(int x, int y, const FilmSums& added) {
+    add(x, y, added, float(added.hit_count + added.light_count));
+}
 
 void Film::add(int x, int y, const FilmSums& added, float alpha) {
     const size_t index = pixel_index(x, y);

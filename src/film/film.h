@@ -20,7 +20,7 @@ namespace relief {
 /// What one camera sample saw. Layers other than radiance describe the first hit.
 struct FilmSample {
     Vec3f radiance{};
-    float alpha = 0; ///< 1 where the camera ray hit a surface
+    float alpha = 0; ///< 1 where the camera ray hit a surface, or met a light that it sees
     float depth = std::numeric_limits<float>::infinity();
     Vec3f shading_normal{}, geometric_normal{}, position{}, albedo{};
     Vec2f uv{};
@@ -30,8 +30,9 @@ struct FilmSample {
 
 /// The same, summed over several samples of one pixel.
 struct FilmSums {
-    uint32_t count = 0;     ///< samples
-    uint32_t hit_count = 0; ///< of them, those whose camera ray hit a surface
+    uint32_t count = 0;       ///< samples
+    uint32_t hit_count = 0;   ///< of them, those whose camera ray hit a surface
+    uint32_t light_count = 0; ///< of them, those that hit none, but met a light that they see
     Vec3f radiance{};
     Vec3<double> squares{}; ///< of radiance
     float cost = 0;

@@ -23,7 +23,7 @@ constexpr uint32_t kGroupSize = 64;
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathData) == 76 && sizeof(scalar::SurfacePointData) == 68);
-static_assert(sizeof(scalar::FilmSumsData) == 96);
+static_assert(sizeof(scalar::FilmSumsData) == 100);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
 
@@ -57,7 +57,7 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
 FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count, std::span<const uint32_t> hit_ids) {
     FilmSums sums;
     sums.count = uint32_t(sample_count);
-    sums.hit_count = uint32_t(data.hit_count);
+    sums.hit_count = uint32_t(data.hit_count), sums.light_count = uint32_t(data.light_count);
     sums.radiance = data.radiance;
     sums.squares = {data.squares.x, data.squares.y, data.squares.z};
     sums.cost = data.cost;

@@ -100,13 +100,27 @@ void use_polygons_alone(Scene&, RenderSettings& settings) {
     settings.surface.level = 2;
 }
 
+/// Before and behind the body, seen by cameras over a background.
+void use_visible_lights(Scene& scene, RenderSettings& settings) {
+    settings.image.background = Vec3f{0.1f, 0.1f, 0.1f};
+    for (const LightType type : {LightType::point, LightType::rectangle, LightType::disk, LightType::spot}) {
+        Light light;
+        light.type = type, light.radius = 0.4f, light.strength = 3, light.is_visible_to_camera = true;
+        const float place = float(scene.lights.size());
+        light.position = {1.5f - place, 1.2f - 0.5f * place, place < 2 ? 2.0f : -2.0f};
+        light.direction = scene.camera.from - light.position;
+        scene.lights.push_back(light);
+    }
+}
+
 class Methods : public testing::TestWithParam<Case> {};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Methods,
                          testing::Values(Case{"as_it_is", [](Scene&, RenderSettings&) {}},
                                          Case{"many_levels", use_many_levels}, Case{"tiles", use_tiles},
                                          Case{"surroundings", use_surroundings},
-                                         Case{"polygons_alone", use_polygons_alone}),
+                                         Case{"polygons_alone", use_polygons_alone},
+                                         Case{"visible_lights", use_visible_lights}),
                          [](const auto& info) { return info.param.name; });
 
 TEST_P(Methods, find_the_same_bits) {

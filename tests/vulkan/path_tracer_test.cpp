@@ -73,6 +73,13 @@ void use_shaped_lights(Scene& scene, RenderSettings& settings) {
     scene.lights.push_back(spot);
 }
 
+void use_shaped_lights_over_a_background(Scene& scene, RenderSettings& settings) {
+    use_shaped_lights(scene, settings);
+    settings.image.background = Vec3f{0.1f, 0.2f, 0.3f};
+    scene.materials[2].opacity = 0.4f; // the floor lets lights through that are below it
+    scene.lights[0].position.y = -2.5f, scene.lights[0].direction = {0, 0.2f, 1};
+}
+
 /// More than are listed: they come into the light tree, and emissive surfaces with them.
 void use_many_lights(Scene& scene, RenderSettings&) {
     const std::vector<Light> lamps = make_many_lights(60, 4, 5);
@@ -167,20 +174,21 @@ class PathTracerVariants : public PathTracerTest, public testing::WithParamInter
     PathTracerVariants() : PathTracerTest(GetParam()) {}
 };
 
-INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerVariants,
-                         testing::Values(Variant{"with_everything", [](Scene&, RenderSettings&) {}},
-                                         Variant{"in_a_constant_environment", use_constant_environment},
-                                         Variant{"with_emitters_alone", use_emitters_alone},
-                                         Variant{"in_the_dark", use_nothing_to_draw},
-                                         Variant{"with_shaped_lights", use_shaped_lights},
-                                         Variant{"with_many_lights", use_many_lights},
-                                         Variant{"with_linked_lights", use_linked_lights},
-                                         Variant{"with_many_linked_lights", use_many_linked_lights},
-                                         Variant{"with_direct_light_alone", use_direct_light_alone},
-                                         Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
-                                         Variant{"with_cut_outs", use_cut_outs},
-                                         Variant{"with_long_paths", use_long_paths}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, PathTracerVariants,
+    testing::Values(Variant{"with_everything", [](Scene&, RenderSettings&) {}},
+                    Variant{"in_a_constant_environment", use_constant_environment},
+                    Variant{"with_emitters_alone", use_emitters_alone},
+                    Variant{"in_the_dark", use_nothing_to_draw},
+                    Variant{"with_shaped_lights", use_shaped_lights},
+                    Variant{"with_shaped_lights_over_a_background", use_shaped_lights_over_a_background},
+                    Variant{"with_many_lights", use_many_lights},
+                    Variant{"with_linked_lights", use_linked_lights},
+                    Variant{"with_many_linked_lights", use_many_linked_lights},
+                    Variant{"with_direct_light_alone", use_direct_light_alone},
+                    Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
+                    Variant{"with_cut_outs", use_cut_outs}, Variant{"with_long_paths", use_long_paths}),
+    [](const auto& info) { return info.param.name; });
 
 TEST_P(PathTracerVariants, takes_the_samples_of_the_cpu_engine) {
     const Picture device = trace_on_device(4096, 4), cpu = trace_on_cpu();

@@ -40,6 +40,7 @@ struct FilmSumsData {
     Vec3 squares; ///< of radiance
     float cost;
     float hit_count;
+    float light_count; ///< of samples that hit nothing, but met a light that they see
     Vec3 shading_normal, geometric_normal, position, albedo;
     Vec2 uv;
     float depth; ///< minimum

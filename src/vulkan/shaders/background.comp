@@ -75,8 +75,13 @@ void main() {
         paths[path_index].radiance = path.radiance + clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
         return;
     }
-    paths[path_index].radiance += see_lights(rays[path_index], distance);
+    vec3 seen = see_lights(rays[path_index], distance);
+    paths[path_index].radiance += seen;
     if (!is_hit(hit)) {
+        // Lights cover the background of the picture, which is none of the scene.
+        bool is_light = seen != vec3(0.0);
+        if (is_light) film[path_index].light_count += 1.0;
+        if (is_light && push.has_background != 0u) return;
         if (push.has_background != 0u)
             paths[path_index].radiance += push.background;
         else if (push.has_environment != 0u)
