@@ -1,6 +1,8 @@
 // Rectangles, disks and spots against closed forms, and which lights cameras see.
 #include <gtest/gtest.h>
 
+#include "formulas/basis.h"
+#include "formulas/bsdf.h"
 #include "support/lit_floor.h"
 
 namespace relief {
@@ -137,6 +139,55 @@ TEST(ShapedLights, surfaces_hide_visible_lights) {
     scene.lights = {make_shaped(LightType::disk, {0, -1, 0}, {0, 1, 0})};
     scene.lights[0].radius = 3, scene.lights[0].is_visible_to_camera = true;
     expect_irradiance(std::move(scene), 0, 8);
+}
+
+/// Light that a metal floor sends to the camera of make_floor_scene from a light on a face, by a fine grid.
+double integrate_reflection(const Light& light, float roughness, const Vec3f& from) {
+    const scalar::Basis up = scalar::make_basis({0, 1, 0});
+    const Vec3f wo = scalar::to_local(up, normalize(from));
+    const scalar::Bsdf bsdf = scalar::make_bsdf({{0.9f, 0.9f, 0.9f}, roughness, 1, 1.5f}, wo.z);
+    const bool is_disk = light.type == LightType::disk;
+    const Vec3f facing = normalize(light.direction), width = normalize(cross(Vec3f{0, 1, 0}, facing));
+    const Vec3f height = cross(facing, width);
+    const float half_width = is_disk ? light.radius : light.width / 2;
+    const float half_height = is_disk ? light.radius : light.height / 2;
+    constexpr int fine = 500;
+    double sum = 0, area = 0;
+    for (int j = 0; j < fine; ++j)
+        for (int i = 0; i < fine; ++i) {
+            const float x = 2 * (float(i) + 0.5f) / fine - 1, y = 2 * (float(j) + 0.5f) / fine - 1;
+            if (is_disk && x * x + y * y > 1) continue;
+            area += 4.0 * double(half_width * half_height) / (fine * fine);
+            const Vec3f at = light.position + width * (x * half_width) + height * (y * half_height);
+            const float distance = length(at), cosine = -dot(at / distance, facing);
+            if (cosine <= 0 || at.y <= 0) continue;
+            const Vec3f wi = scalar::to_local(up, at / distance);
+            sum += double(scalar::evaluate_bsdf(bsdf, wo, wi).value.y * cosine / (distance * distance));
+        }
+    return sum * 4 * double(half_width * half_height) / (fine * fine) * double(light.strength) / area;
+}
+
+/// Of a nearly smooth surface most of the light is found by its own rays, of a rough one by those to lights.
+TEST(ShapedLights, are_weighed_rightly_at_every_roughness) {
+    for (const float roughness : {0.05f, 0.1f, 0.2f, 0.5f})
+        for (LightType type : {LightType::rectangle, LightType::disk}) {
+            Scene scene = make_floor_scene();
+            scene.materials[0].metallic = 1, scene.materials[0].roughness = roughness;
+            scene.materials[0].base_color = {0.9f, 0.9f, 0.9f}, scene.materials[0].ior = 1.5f;
+            // Its edge lies in the mirror image of the camera.
+            Light light = make_shaped(type, {-0.5f, 3, -4}, {0.1f, -0.8f, 1});
+            light.radius = 0.5f, light.width = 1, light.height = 0.6f;
+            // Another one that is drawn as often and lights nothing here.
+            Light other = make_point({0, 1, 0}, 0);
+            other.color = {0.5f, 0, 0.5f};
+            scene.lights = {light, other};
+            const double expected = integrate_reflection(light, roughness, scene.camera.from);
+            const RenderResult result = render(std::move(scene), make_small_settings(8, 1024, 1));
+            const Mean mean = compute_covered_mean(result.image);
+            EXPECT_NEAR(mean.value, expected, 0.01 * expected + 4 * mean.standard_error)
+                << roughness << ' ' << int(type);
+            EXPECT_LT(mean.standard_error, 0.02 * expected) << roughness << ' ' << int(type);
+        }
 }
 
 /// One light beside another, so that it is drawn seldom: found by chance or drawn, it must give the same.
