@@ -19,6 +19,7 @@ std::vector<std::string> list_files(const Scene& scene) {
     for (const Material& material : scene.materials)
         visit_textures(material, [&](const char*, const auto& texture, MapFilter) { add(texture); });
     if (scene.environment) add(scene.environment->texture);
+    for (const Light& light : scene.lights) add(light.color_texture);
     return files;
 }
 

@@ -226,7 +226,8 @@ struct Light {
     /// Sun: irradiance at normal incidence. Others: radiant intensity, of rectangles, disks and spots along
     /// `direction`; that of the former is their radiance times their area, whatever their size.
     float strength = 1;
-    Vec3f up{0, 1, 0};           ///< rectangle: along its height; where parallel to `direction`, -z
+    /// Rectangle: along its height; of disks with a texture the same. Where parallel to `direction`, -z.
+    Vec3f up{0, 1, 0};
     float width = 1, height = 1; ///< rectangle: > 0
     float cone_degrees = 45;     ///< spot: whole angle of its cone, (0, 180]
     float blend = 0; ///< spot: part of the angle from the edge inwards over which it fades, [0, 1]
@@ -236,6 +237,9 @@ struct Light {
     /// Light linking, by the names of objects, or of their meshes where they have none: those that the light
     /// lights (none named: all), but for those that it does not. Shadows fall from all objects.
     std::vector<std::string> link_includes, link_excludes;
+    /// Rectangle and disk: linear values that multiply `color`, upright as seen from where the light shines;
+    /// a disk shows the circle in the middle. `strength` is that of a white one.
+    std::shared_ptr<const Texture> color_texture;
 };
 
 /// Image settings stored in a scene file; the command line overrides them.

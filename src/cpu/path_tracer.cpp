@@ -260,9 +260,9 @@ void TileTracer::add_backgrounds() {
 void TileTracer::see_lights() {
     for (size_t k = 0; k < active_.size(); ++k) {
         FilmSample& result = paths_[active_[k]].result;
-        const Vec3f seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
-        result.radiance += seen;
-        if (!(seen == Vec3f{})) result.alpha = 1;
+        const LightSet::Sight seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
+        result.radiance += seen.radiance;
+        if (seen.is_met) result.alpha = 1;
     }
 }
 

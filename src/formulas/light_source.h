@@ -32,6 +32,7 @@ struct LightSourceData {
     float edge;    ///< of the spot: 1 - cos of the half angle from which on it fades, at most `cone`
     float half_width, half_height; ///< of the rectangle, along basis.t and basis.b
     uint is_visible;               ///< to camera rays
+    uint texture;                  ///< of flat lights; kNone: none
     uint link;                     ///< first word of the set of instances that it lights; kNone: all
 };
 
@@ -219,6 +220,19 @@ FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
     drawn.weight = emission * (1.0f / pdf);
     drawn.pdf = pdf;
     return drawn;
+}
+
+/// Place in the texture of a flat light of `size` texels, in which a ray from `origin` meets its plane; no
+/// texel beyond the edge takes part.
+FN Vec2 find_face_uv(LightSourceData source, Vec3 origin, Vec3 direction, Vec2 size) {
+    Vec3 to = source.center - origin;
+    float t = -dot(to, source.basis.n) / max(-dot(direction, source.basis.n), 1e-30f);
+    Vec3 place = to_local(source.basis, direction * t - to);
+    bool is_disk = source.kind == kSourceDisk;
+    float u = 0.5f + 0.5f * place.x / (is_disk ? source.radius : source.half_width);
+    float v = 0.5f + 0.5f * place.y / (is_disk ? source.radius : source.half_height);
+    Vec2 uv = {clamp(u, 0.5f / size.x, 1.0f - 0.5f / size.x), clamp(v, 0.5f / size.y, 1.0f - 0.5f / size.y)};
+    return uv;
 }
 
 /// Flat light that a ray hits within `distance`.

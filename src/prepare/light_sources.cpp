@@ -1,6 +1,7 @@
 #include "prepare/light_sources.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -8,9 +9,11 @@
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
 #include "formulas/light_source.h"
+#include "formulas/texture.h"
 #include "math/affine.h"
 #include "prepare/light_tree.h"
 #include "surface/map/displacement_map.h"
+#include "surface/map/texels.h"
 
 namespace relief {
 
@@ -27,7 +30,7 @@ scalar::LightSourceData make_source(uint32_t kind, float power) {
     scalar::LightSourceData source{};
     source.kind = kind;
     source.power = power;
-    source.link = kNoIndex;
+    source.texture = source.link = kNoIndex;
     return source;
 }
 
@@ -58,7 +61,7 @@ float make_cone_height(double angle_degrees) {
 /// straight down, -z is up.
 scalar::Basis make_face(const Light& light) {
     const Vec3f facing = normalize(light.direction);
-    if (light.type != LightType::rectangle) return scalar::make_basis(facing);
+    if (light.type != LightType::rectangle && !light.color_texture) return scalar::make_basis(facing);
     Vec3f width = cross(normalize(light.up), facing);
     if (length(width) < 1e-4f) width = cross({0, 0, -1}, facing);
     if (length(width) < 1e-4f) return scalar::make_basis(facing);
@@ -94,6 +97,24 @@ scalar::LightSourceData make_light_source(const Light& light, float power) {
     source.basis = scalar::make_basis(normalize(-light.direction));
     source.cone = make_cone_height(light.angle_degrees);
     return source;
+}
+
+/// Of its texture, times its colour over that of the colour alone; of a disk within the circle.
+float find_mean_luminance(const Light& light) {
+    const Texture& texture = *light.color_texture;
+    double sum = 0, count = 0;
+    for (uint32_t y = 0; y < texture.height; ++y)
+        for (uint32_t x = 0; x < texture.width; ++x) {
+            const double along = (2 * x + 1.0) / texture.width - 1,
+                         across = (2 * y + 1.0) / texture.height - 1;
+            if (light.type == LightType::disk && along * along + across * across > 1) continue;
+            const std::array<float, 4> texel = read_channels(texture, x, y);
+            const Vec3f color =
+                scalar::make_texture_color(texture.channel_count, {texel[0], texel[1], texel[2]});
+            sum += double(scalar::luminance(light.color * max(color, Vec3f{})));
+            count += 1;
+        }
+    return count > 0 ? float(sum / count / double(scalar::luminance(light.color))) : 0;
 }
 
 bool has_place(const scalar::LightSourceData& source) {
@@ -202,9 +223,14 @@ LightTables make_light_tables(const PreparedScene& scene, float environment_lumi
             make_source(scalar::kSourceEnvironment, std::numbers::pi_v<float> * environment_luminance));
     for (size_t k = 0; k < scene.lights.size(); ++k) {
         const Light& light = scene.lights[k];
-        const float power = scalar::luminance(light.color) * light.strength;
+        float power = scalar::luminance(light.color) * light.strength;
+        if (power > 0 && light.color_texture) power *= find_mean_luminance(light);
         if (!(power > 0)) continue;
         sources.push_back(make_light_source(light, power));
+        if (light.color_texture) {
+            sources.back().texture = uint32_t(tables.textures.size());
+            tables.textures.push_back(light.color_texture);
+        }
         if (!scene.links.first_word.empty()) sources.back().link = scene.links.first_word[k];
     }
     tables.link_words = scene.links.words;

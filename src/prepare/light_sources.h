@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "formulas/light_source.h"
@@ -42,7 +43,8 @@ struct LightTables {
     uint32_t listed_count = 0; ///< first sources, which are chosen by their estimates; all without a tree
     std::vector<scalar::LightNodeData> nodes; ///< of the tree; empty: there are few lights
     std::vector<uint32_t> leaf_of_emitter;    ///< of the tree: one an emissive patch; kNoIndex: none
-    std::vector<uint32_t> link_words;         ///< as LightLinks::words; empty: all lights light all
+    std::vector<std::shared_ptr<const Texture>> textures; ///< that sources refer to
+    std::vector<uint32_t> link_words; ///< as LightLinks::words; empty: all lights light all
 };
 
 /// `environment_luminance`: its mean.

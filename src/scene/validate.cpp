@@ -288,9 +288,10 @@ void check_placed_light(const std::string& where, const Light& light) {
         check_face(where, "radius", light.radius);
     else if (light.type != LightType::rectangle)
         check_range(where, "radius", light.radius, 0, kHuge);
-    if (light.type == LightType::rectangle) {
+    if (light.type == LightType::rectangle || light.color_texture)
         if (!is_finite(light.up) || length(normalize(light.up)) == 0)
             fail(where, "up has no length or is not finite");
+    if (light.type == LightType::rectangle) {
         check_face(where, "width", light.width);
         check_face(where, "height", light.height);
     }
@@ -319,6 +320,10 @@ void check_light(const Light& light, size_t index) {
         check_range(where, "angle_degrees", light.angle_degrees, 0, 90);
     else
         check_placed_light(where, light);
+    const bool is_flat = light.type == LightType::rectangle || light.type == LightType::disk;
+    if (light.color_texture && !is_flat)
+        fail(where, "has a texture, which only rectangles and disks show", "leave color_texture out");
+    if (light.color_texture) check_texture(where + ", color_texture", *light.color_texture);
     if (light.is_visible_to_camera && !has_extent(light))
         fail(where, "visible_to_camera is true, but a light without extent cannot be seen",
              light.type == LightType::sun ? "give it angle_degrees above 0" : "give it a radius");

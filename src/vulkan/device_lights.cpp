@@ -131,9 +131,12 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     const EmitterTable emitters = make_emitter_table(scene);
     description_.emitter_count = emitters.size();
     description_.emitter_range_count = uint32_t(emitters.ranges.size());
-    const LightTables tables = make_light_tables(scene, distribution.mean_luminance, emitters);
+    LightTables tables = make_light_tables(scene, distribution.mean_luminance, emitters);
+    for (scalar::LightSourceData& source : tables.sources)
+        if (source.texture != scalar::kNone)
+            source.texture = device_scene.texture_index(tables.textures[source.texture].get());
     description_.source_count = tables.listed_count;
-    has_links_ = !tables.link_words.empty();
+    has_links_ = !tables.link_words.empty(), has_textures_ = !tables.textures.empty();
     sources_ = make_table(device, "light_sources", TexelFormat::none,
                           join_sources(tables, description_.first_light_node));
     emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint,
@@ -157,6 +160,7 @@ std::vector<uint32_t> DeviceLights::add_choice(std::vector<uint32_t> constants) 
     };
     if (description_.first_light_node != 0) add(scalar::kLightTreeConstant);
     if (has_links_) add(scalar::kLightLinksConstant);
+    if (has_textures_) add(scalar::kLightTexturesConstant);
     return constants;
 }
 

@@ -28,7 +28,7 @@ class DeviceLights {
     Buffer materials_, sources_, environment_, emitters_;
     std::optional<Buffer> albedos_; ///< where materials have layers; else those of every table
     scalar::PathPush description_{};
-    bool has_links_ = false;
+    bool has_links_ = false, has_textures_ = false;
 };
 
 } // namespace relief::vulkan

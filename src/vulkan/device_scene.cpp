@@ -125,6 +125,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
             has_smooth_ |= is_smooth(filter);
         });
     if (scene.environment) add(scene.environment->texture);
+    for (const Light& light : scene.lights) add(light.color_texture);
     has_layers_ = !scene.layers.empty();
     has_normal_maps_ = scene.has_normal_maps;
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});

@@ -156,6 +156,12 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     missed.count = 1;
     missed.radiance = miss.radiance, missed.squares = square(miss.radiance), missed.cost = miss.cost;
     summed.add_sums(1, 0, missed);
+    miss.alpha = 1; // a light that the camera sees
+    one_by_one.add_sample(1, 0, miss);
+    missed.light_count = 1;
+    summed.add_sums(1, 0, missed);
+    const Image image = summed.resolve();
+    EXPECT_FLOAT_EQ(image.at(1, 0, image.find_channel("A").value()), 4 / 5.0f);
     EXPECT_EQ(summed.resolve().pixels, one_by_one.resolve().pixels);
 }
 

@@ -1,13 +1,17 @@
 // Lights of scene files: read, refused, written.
 #include "io/scene/scene_reader.h"
 #include "io/test_files.h"
+#include "math/half.h"
 #include "relief/io.h"
 
 namespace relief {
 
 class LightFiles : public FileTest {
   protected:
-    LightFiles() { write("plane.obj", kQuadObj); }
+    LightFiles() {
+        write("plane.obj", kQuadObj);
+        write_pixels<uint8_t>("shown.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {128, 128, 128});
+    }
     Scene parse(const std::string& text) const { return parse_scene(text, folder_, "s.json"); }
     std::string error_of(const std::string& text) const {
         return message_of([&] { parse(text); });
@@ -24,9 +28,15 @@ TEST_F(LightFiles, lights_of_all_types_are_read_and_written) {
       {"type": "spot", "position": [0, 5, 0], "direction": [0, -1, 1], "angle_degrees": 30, "blend": 0.2,
         "radius": 0.1, "visible_to_camera": true},
       {"type": "sun", "visible_to_camera": true}, {"type": "rectangle"}, {"type": "disk"},
-      {"type": "spot"}, {"type": "point"}]})");
+      {"type": "spot"}, {"type": "point"},
+      {"type": "disk", "up": [0, 0, 1], "color_texture": "shown.png"}]})");
     for (int round = 0; round < 3; ++round) {
-        ASSERT_EQ(scene.lights.size(), 8u);
+        ASSERT_EQ(scene.lights.size(), 9u);
+        ASSERT_TRUE(scene.lights[8].color_texture);
+        EXPECT_EQ(scene.lights[8].up, (Vec3f{0, 0, 1}));
+        const Texture& shown = *scene.lights[8].color_texture;
+        EXPECT_NEAR(shown.halves.empty() ? shown.floats[0] : half_to_float(shown.halves[0]), 0.2158f, 1e-3f)
+            << "decoded from sRGB";
         const Light &rectangle = scene.lights[0], &disk = scene.lights[1], &spot = scene.lights[2];
         EXPECT_EQ(rectangle.type, LightType::rectangle);
         EXPECT_EQ(rectangle.position, (Vec3f{1, 2, 3}));
@@ -82,8 +92,14 @@ TEST_F(LightFiles, wrong_lights_are_refused_and_others_count_in_the_hash) {
     EXPECT_HAS(error_of(R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}],
       "lights": [{"type": "disk", "light_link_excludes": ["plain"]}]})"),
                "light_link_excludes names no object: 'plain'");
+    EXPECT_HAS(of_light(R"("type": "disk", "up": [0, 0, 1])"), "turns the texture of a disk");
+    EXPECT_HAS(of_light(R"("type": "spot", "color_texture": "shown.png")"), "unknown key 'color_texture'");
+    EXPECT_HAS(of_light(R"("type": "disk", "color_texture": "absent.png")"), "absent.png");
     const auto hash = [&](const std::string& keys) { return parse(R"({"lights": [{)" + keys + "}]}").hash; };
     EXPECT_NE(hash(R"("type": "disk")"), hash(R"("type": "disk", "visible_to_camera": true)"));
+    const uint64_t with_texture = hash(R"("type": "disk", "color_texture": "shown.png")");
+    write_pixels<uint8_t>("shown.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {128, 127, 128});
+    EXPECT_NE(hash(R"("type": "disk", "color_texture": "shown.png")"), with_texture);
 }
 
 } // namespace relief

@@ -80,6 +80,12 @@ void use_shaped_lights_over_a_background(Scene& scene, RenderSettings& settings)
     scene.lights[0].position.y = -2.5f, scene.lights[0].direction = {0, 0.2f, 1};
 }
 
+void use_textured_lights(Scene& scene, RenderSettings& settings) {
+    use_shaped_lights(scene, settings);
+    scene.lights[0].color_texture = make_colors(5, 3, 2, 6);
+    scene.lights[1].color_texture = make_half_greys(4, 4), scene.lights[1].up = {1, 0.5f, 0};
+}
+
 /// More than are listed: they come into the light tree, and emissive surfaces with them.
 void use_many_lights(Scene& scene, RenderSettings&) {
     const std::vector<Light> lamps = make_many_lights(60, 4, 5);
@@ -183,6 +189,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"with_shaped_lights", use_shaped_lights},
                     Variant{"with_shaped_lights_over_a_background", use_shaped_lights_over_a_background},
                     Variant{"with_many_lights", use_many_lights},
+                    Variant{"with_textured_lights", use_textured_lights},
                     Variant{"with_linked_lights", use_linked_lights},
                     Variant{"with_many_linked_lights", use_many_linked_lights},
                     Variant{"with_direct_light_alone", use_direct_light_alone},

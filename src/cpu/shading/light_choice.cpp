@@ -1,6 +1,15 @@
 #include "cpu/shading/light_choice.h"
 
+#include "cpu/shading/textures.h"
+
 namespace relief::cpu {
+
+Vec3f LightChoice::fetch_color(const scalar::LightSourceData& source, const Vec3f& origin,
+                               const Vec3f& direction) const {
+    const Texture& texture = *tables_.textures[source.texture];
+    const Vec2f size{float(texture.width), float(texture.height)};
+    return max(fetch_texture(texture, scalar::find_face_uv(source, origin, direction, size)), Vec3f{});
+}
 
 float LightChoice::estimate(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
     return is_lit(source, at) ? scalar::estimate_irradiance(source, at.position) : 0.0f;

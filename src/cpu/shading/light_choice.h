@@ -24,6 +24,9 @@ class LightChoice {
         return source.link == kNoIndex ||
                scalar::is_in_set(tables_.link_words[source.link + at.instance / 32], at.instance);
     }
+    /// What the texture of a light that has one adds to its colour where a ray meets it.
+    Vec3f fetch_color(const scalar::LightSourceData& source, const Vec3f& origin,
+                      const Vec3f& direction) const;
     /// Of them, those that are chosen by their estimates.
     std::span<const scalar::LightSourceData> listed() const { return sources().first(tables_.listed_count); }
     bool has_tree() const { return !tables_.nodes.empty(); }

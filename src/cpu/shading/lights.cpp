@@ -37,6 +37,13 @@ void LightSet::find_sources() {
         choice_.sources(), [](const scalar::LightSourceData& source) { return source.is_visible != 0; });
 }
 
+void LightSet::draw_listed(const scalar::LightSourceData& source, const Receiver& at, const Vec2f& u,
+                           LightSample& drawn) const {
+    static_cast<scalar::LightDraw&>(drawn) = scalar::draw_listed_light(source, at.position, u);
+    if (source.texture != kNoIndex && drawn.pdf > 0)
+        drawn.weight = drawn.weight * choice_.fetch_color(source, at.position, drawn.direction);
+}
+
 /// Not from the environment.
 void LightSet::draw_from(const LightChoice::Pick& pick, const Receiver& at, const RandomNumbers& random,
                          LightSample& drawn) const {
@@ -45,8 +52,7 @@ void LightSet::draw_from(const LightChoice::Pick& pick, const Receiver& at, cons
     else if (pick.source->kind == scalar::kSourceEmitters)
         draw_emitter(at, find_emitter(random.u_emitter), random.u, drawn);
     else
-        static_cast<scalar::LightDraw&>(drawn) =
-            scalar::draw_listed_light(*pick.source, at.position, random.u);
+        draw_listed(*pick.source, at, random.u, drawn);
     drawn.pdf *= pick.probability;
     drawn.weight *= 1 / pick.probability;
 }
@@ -157,7 +163,10 @@ Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behi
     Vec3f sum{};
     const LightChoice::Shares shares = choice_.find_shares(ray.from);
     const auto meet = [&](const scalar::LightSourceData& source) {
-        return scalar::meet_light(source, ray.from.position, ray.direction, ray.distance);
+        scalar::LightSeen seen = scalar::meet_light(source, ray.from.position, ray.direction, ray.distance);
+        if (source.texture != kNoIndex && seen.pdf > 0)
+            seen.radiance = seen.radiance * choice_.fetch_color(source, ray.from.position, ray.direction);
+        return seen;
     };
     const auto add = [&](const scalar::LightSeen& seen, float share) {
         sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
@@ -177,12 +186,16 @@ Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behi
     return sum;
 }
 
-Vec3f LightSet::see(const Vec3f& origin, const Vec3f& direction, float distance) const {
-    Vec3f sum{};
+LightSet::Sight LightSet::see(const Vec3f& origin, const Vec3f& direction, float distance) const {
+    Sight sight;
     choice_.visit_seen(origin, direction, distance, [&](const scalar::LightSourceData& source) {
-        sum += scalar::see_light(source, origin, direction, distance);
+        const Vec3f seen = scalar::see_light(source, origin, direction, distance);
+        if (seen == Vec3f{}) return;
+        sight.is_met = true;
+        sight.radiance +=
+            source.texture == kNoIndex ? seen : seen * choice_.fetch_color(source, origin, direction);
     });
-    return sum;
+    return sight;
 }
 
 size_t LightSet::byte_count() const {

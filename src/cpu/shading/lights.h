@@ -77,10 +77,14 @@ class LightSet {
     /// density of drawing it. `behind`: the environment along the ray, where the distance is infinite.
     Vec3f evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const;
 
-    /// False: see() is zero for all rays.
+    /// False: see() is nothing for all rays.
     bool has_visible_lights() const { return has_visible_lights_; }
     /// The lights themselves that a camera ray meets within `distance`.
-    Vec3f see(const Vec3f& origin, const Vec3f& direction, float distance) const;
+    struct Sight {
+        Vec3f radiance{};
+        bool is_met = false; ///< though its texture may be black there
+    };
+    Sight see(const Vec3f& origin, const Vec3f& direction, float distance) const;
 
     /// Density with which draw() would have found a point of an emissive surface.
     float emitter_pdf(const scalar::LitPoint& at, const SurfacePoint& point) const;
@@ -89,6 +93,8 @@ class LightSet {
 
   private:
     void find_sources();
+    void draw_listed(const scalar::LightSourceData& source, const Receiver& at, const Vec2f& u,
+                     LightSample& drawn) const;
     void draw_from(const LightChoice::Pick& pick, const Receiver& at, const RandomNumbers& random,
                    LightSample& drawn) const;
     void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,

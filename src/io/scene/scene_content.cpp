@@ -30,6 +30,7 @@ void add_scene_content(ContentHash& hash, const Scene& scene) {
     for (const Material& material : scene.materials)
         visit_textures(material, [&](const char*, const auto& texture, MapFilter) { add_texture(texture); });
     if (scene.environment) add_texture(scene.environment->texture);
+    for (const Light& light : scene.lights) add_texture(light.color_texture);
 }
 
 } // namespace relief

@@ -125,8 +125,17 @@ void update_values(const Scene& scene, Json& root) {
     if (Json node = write_picture(scene.picture); !node.empty()) root["render"] = std::move(node);
     root["camera"] = write_camera(scene.camera);
     if (scene.environment) write_environment(*scene.environment, root["environment"]);
-    root["lights"] = Json::array();
-    for (const Light& light : scene.lights) root["lights"].push_back(write_light(light));
+    const Json lights = std::exchange(root["lights"], Json::array());
+    // Options exchange suns, which have no textures: those of the others come in their order.
+    std::vector<Json> textures;
+    for (const Json& light : lights)
+        if (light.contains("color_texture")) textures.push_back(light["color_texture"]);
+    auto next = textures.begin();
+    for (const Light& light : scene.lights) {
+        Json node = write_light(light);
+        if (light.color_texture && next != textures.end()) node["color_texture"] = *next++;
+        root["lights"].push_back(std::move(node));
+    }
 }
 
 /// Vectors on one line.
@@ -203,7 +212,8 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
         root = write_mesh_scene(scene, options, folder);
     } else {
         root = parse_json(read_file_bytes(input), input.string());
-        for (const char* section : {"environment", "materials", "displacements", "meshes", "objects"})
+        for (const char* section :
+             {"environment", "materials", "displacements", "meshes", "objects", "lights"})
             if (root.contains(section))
                 move_paths(root[section], input.has_parent_path() ? input.parent_path() : ".", folder);
     }

@@ -39,10 +39,11 @@ inline constexpr auto kSun = make_keys("type", "direction", "angle_degrees", "co
 inline constexpr auto kPoint = make_keys("type", "position", "radius", "color", "strength",
                                          "visible_to_camera", "light_link_includes", "light_link_excludes");
 inline constexpr auto kRectangle =
-    make_keys("type", "position", "direction", "up", "width", "height", "color", "strength",
+    make_keys("type", "position", "direction", "up", "width", "height", "color", "color_texture", "strength",
               "visible_to_camera", "light_link_includes", "light_link_excludes");
-inline constexpr auto kDisk = make_keys("type", "position", "direction", "radius", "color", "strength",
-                                        "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kDisk =
+    make_keys("type", "position", "direction", "up", "radius", "color", "color_texture", "strength",
+              "visible_to_camera", "light_link_includes", "light_link_excludes");
 inline constexpr auto kSpot =
     make_keys("type", "position", "direction", "angle_degrees", "blend", "radius", "color", "strength",
               "visible_to_camera", "light_link_includes", "light_link_excludes");

@@ -154,7 +154,7 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     read_list(root, "objects", errors,
               [&](const JsonNode& node) { read_objects(node, names, assets, scene, hash); });
     read_list(root, "lights", errors,
-              [&](const JsonNode& node) { scene.lights.push_back(read_light(node)); });
+              [&](const JsonNode& node) { scene.lights.push_back(read_light(node, assets)); });
     errors.throw_if_any();
 }
 

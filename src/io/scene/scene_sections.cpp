@@ -184,6 +184,7 @@ void read_disk(const JsonNode& node, Light& light) {
     node.check_keys(scene_keys::kDisk);
     read_vec3(node, "position", light.position);
     read_direction(node, "direction", light.direction);
+    read_direction(node, "up", light.up);
     light.radius = 0.5f;
     read_float(node, "radius", light.radius, kSmallestFace, kLargestFace);
 }
@@ -219,7 +220,7 @@ constexpr LightReader kLightReaders[] = {{"sun", LightType::sun, read_sun},
 
 } // namespace
 
-Light read_light(const JsonNode& node) {
+Light read_light(const JsonNode& node, AssetCache& assets) {
     Light light;
     const JsonNode type = node.get("type");
     const std::string name = type.as_string();
@@ -232,6 +233,9 @@ Light read_light(const JsonNode& node) {
     light.type = found->type;
     found->read(node, light);
     read_vec3(node, "color", light.color, 0);
+    light.color_texture = read_texture_key(node, "color_texture", TextureUse::colour, assets);
+    if (const auto up = node.find("up"); up && light.type == LightType::disk && !light.color_texture)
+        up->fail("turns the texture of a disk, and there is none", "leave it out, or add color_texture");
     read_float(node, "strength", light.strength, 0);
     read_optional(node, "visible_to_camera", light.is_visible_to_camera,
                   [](const JsonNode& n) { return n.as_bool(); });

@@ -10,7 +10,7 @@ namespace relief {
 PictureDefaults read_picture(const JsonNode& node);
 Camera read_camera(const JsonNode& node);
 Affine read_transform(const JsonNode& node);
-Light read_light(const JsonNode& node);
+Light read_light(const JsonNode& node, AssetCache& assets);
 Environment read_environment(const JsonNode& node, AssetCache& assets);
 Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets);
 Displacement read_displacement(const JsonNode& node, const std::string& name, AssetCache& assets);

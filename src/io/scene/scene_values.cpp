@@ -73,6 +73,7 @@ Json write_light(const Light& light) {
         if (light.type != LightType::point) node["direction"] = to_json(light.direction);
         if (light.type != LightType::rectangle) node["radius"] = to_json(light.radius);
     }
+    if (light.type == LightType::disk && light.color_texture) node["up"] = to_json(light.up);
     if (light.type == LightType::rectangle) {
         node["up"] = to_json(light.up);
         node["width"] = to_json(light.width);

@@ -102,6 +102,7 @@ class SceneWriter {
     static uint64_t count_work(const Scene& scene) {
         std::set<const Texture*> textures;
         if (scene.environment) textures.insert(scene.environment->texture.get());
+        for (const Light& light : scene.lights) textures.insert(light.color_texture.get());
         for (const Material& material : scene.materials)
             visit_textures(material, [&](const char*, const auto& texture, MapFilter) {
                 textures.insert(texture.get());
@@ -246,7 +247,11 @@ class SceneWriter {
     void add_lights() {
         if (scene_.lights.empty()) return;
         root_["lights"] = Json::array();
-        for (const Light& light : scene_.lights) root_["lights"].push_back(write_light(light));
+        for (const Light& light : scene_.lights) {
+            Json node = write_light(light);
+            if (light.color_texture) node["color_texture"] = add_map(light.color_texture, "light");
+            root_["lights"].push_back(std::move(node));
+        }
     }
 
     const Scene& scene_;

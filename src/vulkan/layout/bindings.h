@@ -94,6 +94,8 @@ const uint kNormalMapsConstant = 9u;
 const uint kLightTreeConstant = 10u;
 // The same: not 0 where a light lights some objects only.
 const uint kLightLinksConstant = 11u;
+// The same: not 0 where a light has a texture.
+const uint kLightTexturesConstant = 12u;
 
 #include "formulas/end.h"
 #endif

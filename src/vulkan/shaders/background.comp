@@ -17,7 +17,7 @@ vec3 gather_in_tree(PathData path, LitPoint at, float tree_share, vec3 direction
         if (k == end) break;
         LightSourceData source = sources[light_nodes[k].source];
         if (!is_lit(source, at)) continue;
-        LightSeen seen = meet_light(source, at.position, direction, distance);
+        LightSeen seen = meet_source(source, at.position, direction, distance);
         if (seen.radiance == vec3(0.0)) continue;
         float share = tree_share * find_in_tree(root, at, k);
         sum += seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
@@ -34,7 +34,7 @@ vec3 gather_light(PathData path, vec3 direction, float distance) {
     for (uint k = 0u; k < push.source_count; ++k) {
         LightSourceData source = sources[k];
         if (!is_lit(source, at)) continue;
-        LightSeen seen = meet_light(source, path.previous, direction, distance);
+        LightSeen seen = meet_source(source, path.previous, direction, distance);
         if (source.kind == kSourceEnvironment && distance == make_infinity()) {
             seen.radiance = environment_radiance(push.environment, direction);
             seen.pdf = environment_pdf(push.environment, direction);
@@ -47,19 +47,31 @@ vec3 gather_light(PathData path, vec3 direction, float distance) {
     return sum;
 }
 
-/// The lights that a camera ray is to see.
-vec3 see_lights(RayData ray, float distance) {
-    vec3 sum = vec3(0.0);
+/// What a camera ray is to see of lights.
+struct Sight {
+    vec3 radiance;
+    bool is_met; ///< though its texture may be black there
+};
+
+void add_sight(inout Sight sight, LightSourceData source, RayData ray, float distance) {
+    vec3 seen = see_light(source, ray.origin, ray.direction, distance);
+    if (seen == vec3(0.0)) return;
+    sight.is_met = true;
+    sight.radiance += has_texture(source) ? seen * find_light_color(source, ray.origin, ray.direction) : seen;
+}
+
+Sight see_lights(RayData ray, float distance) {
+    Sight sight = {vec3(0.0), false};
     for (uint k = 0u; k < push.source_count; ++k)
-        if (sources[k].is_visible != 0u) sum += see_light(sources[k], ray.origin, ray.direction, distance);
-    if (kHasLightTree == 0u) return sum;
+        if (sources[k].is_visible != 0u) add_sight(sight, sources[k], ray, distance);
+    if (kHasLightTree == 0u) return sight;
     uint end = light_nodes[push.first_light_node].end;
     for (uint k = push.first_light_node; k < end; ++k) {
         k = find_leaf(k, end, ray.origin, ray.direction, distance, kCanBeSeen);
         if (k == end) break;
-        sum += see_light(sources[light_nodes[k].source], ray.origin, ray.direction, distance);
+        add_sight(sight, sources[light_nodes[k].source], ray, distance);
     }
-    return sum;
+    return sight;
 }
 
 void main() {
@@ -75,13 +87,12 @@ void main() {
         paths[path_index].radiance = path.radiance + clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
         return;
     }
-    vec3 seen = see_lights(rays[path_index], distance);
-    paths[path_index].radiance += seen;
+    Sight seen = see_lights(rays[path_index], distance);
+    paths[path_index].radiance += seen.radiance;
     if (!is_hit(hit)) {
         // Lights cover the background of the picture, which is none of the scene.
-        bool is_light = seen != vec3(0.0);
-        if (is_light) film[path_index].light_count += 1.0;
-        if (is_light && push.has_background != 0u) return;
+        if (seen.is_met) film[path_index].light_count += 1.0;
+        if (seen.is_met && push.has_background != 0u) return;
         if (push.has_background != 0u)
             paths[path_index].radiance += push.background;
         else if (push.has_environment != 0u)

@@ -50,6 +50,8 @@ DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u
     if (source.kind == kSourceEmitters)
         return draw_from_emitter(at.position, lod_bias, find_emitter(push.emitter_count, u_emitter), u);
     DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0)};
+    if (has_texture(source) && result.light.pdf > 0.0)
+        result.light.weight *= find_light_color(source, at.position, result.light.direction);
     return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "vulkan/shaders/scene.glsl"
 #include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/textures.glsl"
 #include "formulas/warp.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
@@ -28,6 +29,22 @@ struct LightPick {
 bool is_lit(LightSourceData source, LitPoint at) {
     if (kHasLightLinks == 0u || source.link == kNone) return true;
     return is_in_set(link_words[source.link + at.instance / 32u], at.instance);
+}
+
+bool has_texture(LightSourceData source) { return kHasLightTextures != 0u && source.texture != kNone; }
+
+/// What the texture of a light adds to its colour where a ray meets it.
+vec3 find_light_color(LightSourceData source, vec3 origin, vec3 direction) {
+    TextureData data = textures[source.texture];
+    vec2 uv = find_face_uv(source, origin, direction, vec2(data.width, data.height));
+    return max(fetch_bilinear(data, locate_texture_uv(uv, vec2(data.width, data.height)), kWrapRepeat), vec3(0.0));
+}
+
+/// Light of the scene's list that a ray meets, with its texture.
+LightSeen meet_source(LightSourceData source, vec3 origin, vec3 direction, float distance) {
+    LightSeen seen = meet_light(source, origin, direction, distance);
+    if (has_texture(source) && seen.pdf > 0.0) seen.radiance *= find_light_color(source, origin, direction);
+    return seen;
 }
 
 float estimate_source(LightSourceData source, LitPoint at) {

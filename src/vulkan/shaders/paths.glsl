@@ -36,6 +36,7 @@ bool is_hit(HitData hit) { return hit.instance != kNone; }
 layout(constant_id = kLayersConstant) const uint kHasLayers = 0;
 layout(constant_id = kLightTreeConstant) const uint kHasLightTree = 0;
 layout(constant_id = kLightLinksConstant) const uint kHasLightLinks = 0;
+layout(constant_id = kLightTexturesConstant) const uint kHasLightTextures = 0;
 
 /// The BSDF for one outgoing direction, in a local frame: one of the two.
 struct Scattering {

@@ -115,7 +115,7 @@ struct AllStructs {
 #define FIELDS_LIGHT(s) \
     FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
     FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone) \
-    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible) FIELD(s.link)
+    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible) FIELD(s.texture) FIELD(s.link)
 #define FIELDS_LIGHT_NODE(s) \
     FIELD3(s.center) FIELD(s.radius) FIELD3(s.axis) FIELD(s.spread_cosine) FIELD(s.spread_sine) \
     FIELD(s.reach_cosine) FIELD(s.power) FIELD(s.source) FIELD(s.end) FIELD(s.flags)

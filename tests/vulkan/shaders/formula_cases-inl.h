@@ -67,6 +67,7 @@ struct SourceResults {
     Vec3 into, out_of;
     float density, position;
     float node, leaf, tree_share, left; ///< of a light tree
+    Vec2 face_uv;
 };
 
 struct SurfaceResults {
@@ -257,6 +258,7 @@ FN LightSourceData make_test_source(FormulaInput from, uint kind) {
     source.half_width = 0.5f + from.u[1];
     source.half_height = 0.5f + from.u[2];
     source.is_visible = from.b & 1u;
+    source.texture = kNone;
     source.link = kNone;
     return source;
 }
@@ -314,6 +316,7 @@ FN SourceResults run_source(FormulaInput from) {
     r.disk_seen = meet_light(disk, position, towards, 100.0f);
     r.spot_seen = meet_light(spot, position, towards, 100.0f);
     r.visible = see_light(spot, position, towards, 100.0f);
+    r.face_uv = find_face_uv(rectangle, position, towards, make_pair(4.0f, 8.0f));
     r.into = turn_into_environment(e, to);
     r.out_of = turn_out_of_environment(e, to);
     r.density = environment_cell_density(e, from.u[5], normalize(to));
