@@ -23,9 +23,41 @@ const char* const kMeshGroup = "With a mesh in place of a scene";
 
 template <class T> using Word = std::pair<std::string_view, T>;
 
-constexpr std::string_view kLayers[] = {"depth",    "N",    "Ng",           "P",
-                                        "albedo",   "uv",   "id",           "samples",
-                                        "variance", "cost", "CryptoObject", "CryptoMaterial"};
+constexpr std::string_view kLayers[] = {"depth",
+                                        "N",
+                                        "N_camera",
+                                        "Ng",
+                                        "P",
+                                        "albedo",
+                                        "uv",
+                                        "id",
+                                        "samples",
+                                        "variance",
+                                        "cost",
+                                        "diffuse_direct",
+                                        "diffuse_indirect",
+                                        "specular_direct",
+                                        "specular_indirect",
+                                        "emission",
+                                        "background",
+                                        "light_GROUP",
+                                        "CryptoObject",
+                                        "CryptoMaterial"};
+constexpr std::string_view kLightGroupPrefix = "light_";
+
+/// Which groups of lights there are, the scene says.
+void check_layer(const std::string& layer) {
+    if (layer.starts_with(kLightGroupPrefix)) {
+        const std::string group = layer.substr(kLightGroupPrefix.size());
+        if (is_light_group_name(group)) return;
+        throw Error(ErrorKind::usage,
+                    {fmt::format("'{}' is no name of a light group", group), "--layers",
+                     fmt::format("1 to {} letters, digits, '_' and '-'", kMaxLightGroupName)});
+    }
+    if (std::find(std::begin(kLayers), std::end(kLayers), layer) == std::end(kLayers))
+        throw Error(ErrorKind::usage,
+                    {fmt::format("unknown layer '{}'", layer), "--layers", suggest_word(layer, kLayers)});
+}
 
 /// Adds an option parsed by `parse`; its value is called `value` in the help.
 template <class Parse>
@@ -68,9 +100,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
     add(verb, "--layers", "LIST", fmt::format("of {}", fmt::join(kLayers, ",")),
         [&o](const std::string& text) {
             for (const std::string& layer : split(text, ',')) {
-                if (std::find(std::begin(kLayers), std::end(kLayers), layer) == std::end(kLayers))
-                    throw Error(ErrorKind::usage, {fmt::format("unknown layer '{}'", layer), "--layers",
-                                                   suggest_word(layer, kLayers)});
+                check_layer(layer);
                 o.settings.image.layers.push_back(layer);
             }
         });

@@ -190,6 +190,8 @@ constexpr Synonym kSynonyms[] = {
     {"continue", "--resume", "--resume FILE"},
     {"autosave", "--checkpoint", "--checkpoint MIN"},
     {"passes", "--layers", "--layers LIST"},
+    {"light-groups", "--layers", "--layers light_default,light_NAME"},
+    {"light-group", "--layers", "--layers light_NAME"},
     {"cryptomatte", "--layers", "--layers CryptoObject,CryptoMaterial"},
     {"export-scene", "--save-scene", "--save-scene FILE.json"},
     {"warnings-as-errors", "--strict", "--strict"},

@@ -67,15 +67,15 @@ struct ImageDifference {
 ImageDifference compare_images(const Image& a, const Image& b, const std::string& layer, double threshold);
 
 /// Merges tiles and sample ranges of one picture; the result equals one render of all samples, up to
-/// rounding. Colour, alpha, albedo and cost are means weighted by the parts' "samples.Y"; P and uv are
+/// rounding. Colour, alpha, light, albedo and cost are means weighted by the parts' "samples.Y"; P and uv are
 /// weighted by the samples that hit, which are A times samples; depth is the minimum, id that of the nearest
 /// hit (without a depth layer: of the lowest sample range that hit); variance is that of the combined mean;
-/// ranks of Cryptomatte are made anew from the shares of all parts. N and Ng are approximate: parts hold unit
-/// vectors, so their renormalised mean weighted by hits differs from that of all samples where the normals
-/// within a pixel vary. Pixels that no part covers are 0, their depth infinity. Parts carry "relief:samples"
-/// = "A:B" and, unless one sample range covers each whole part, the layer "samples". Throws Error{bad_input}
-/// for parts of different pictures (scene hash, seed, size, channels, "relief:settings") or overlapping
-/// sample ranges of a pixel.
+/// ranks of Cryptomatte are made anew from the shares of all parts. N, N_camera and Ng are approximate: parts
+/// hold unit vectors, so their renormalised mean weighted by hits differs from that of all samples where the
+/// normals within a pixel vary. Pixels that no part covers are 0, their depth infinity. Parts carry
+/// "relief:samples" = "A:B" and, unless one sample range covers each whole part, the layer "samples". Throws
+/// Error{bad_input} for parts of different pictures (scene hash, seed, size, channels, "relief:settings") or
+/// overlapping sample ranges of a pixel.
 Image merge_images(std::span<const Image> parts);
 
 /// Samples [first_sample, last_sample) that pixels [x0, x1) x [y0, y1) of the display window lack.

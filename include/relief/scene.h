@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "relief/image.h"
@@ -22,6 +23,13 @@ inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
 inline constexpr float kMaxNormalScale = 1000;
 inline constexpr float kInfiniteSharpness = 10; ///< of a crease
+inline constexpr size_t kMaxLightGroupName = 64;
+
+/// Lights, emissive materials and the environment may be in a group, whose light is the layer "light_NAME" of
+/// a picture (ImageSettings::layers). Its name has letters of ASCII, digits, `_` and `-`, 1 to
+/// kMaxLightGroupName of them. What names none, an empty one, is in the group `default`.
+bool is_light_group_name(std::string_view name);
+inline constexpr const char* kDefaultLightGroup = "default";
 
 /// Semi-sharp crease of a subdivided mesh (DeRose, Kass and Truong 1998) between two positions, given by
 /// index; a sharp vertex where `first` equals `second`.
@@ -169,6 +177,7 @@ struct Material {
     MapFilter normal_filter = MapFilter::none; ///< not mip
     float normal_scale = 1;                    ///< [0, kMaxNormalScale], of x and y of the direction
     bool normal_flip_y = false;                ///< +Y of the map points against v, as in DirectX
+    std::string light_group;                   ///< of what the surface emits; see is_light_group_name()
 };
 
 /// Calls visit(name, texture, filter) for each texture that a material may have, also where it has none.
@@ -210,6 +219,7 @@ struct Environment {
     Vec3f color{1, 1, 1};                   ///< multiplies the texture
     float strength = 1;
     float rotate_degrees = 0;
+    std::string light_group; ///< see is_light_group_name()
 };
 
 enum class LightType { sun, point, rectangle, disk, spot };
@@ -240,6 +250,7 @@ struct Light {
     /// Rectangle and disk: linear values that multiply `color`, upright as seen from where the light shines;
     /// a disk shows the circle in the middle. `strength` is that of a white one.
     std::shared_ptr<const Texture> color_texture;
+    std::string light_group; ///< see is_light_group_name()
 };
 
 /// Image settings stored in a scene file; the command line overrides them.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "prepare/camera_frame.h"
 #include "relief/version.h"
 
 namespace relief {
@@ -97,6 +98,11 @@ Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes>
               image.noise > 0 ? ErrorEstimate::on : ErrorEstimate::off);
     film.name_instances(std::move(mattes));
     return film;
+}
+
+PictureSpace make_picture_space(const PreparedScene& scene) {
+    const scalar::CameraFrame camera = make_camera_frame(scene);
+    return {scene.origin, camera.right, camera.up, -camera.forward};
 }
 
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {

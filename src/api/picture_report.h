@@ -20,6 +20,8 @@ void collect_statistics(const Engine& engine, const Film& film, const PreparedSc
 /// An empty film for a picture. `mattes`: null without Cryptomatte layers.
 Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes> mattes);
 
+PictureSpace make_picture_space(const PreparedScene& scene);
+
 /// All that the samples of a picture depend on, as text: films of another are not to be gone on with.
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash);
 

@@ -53,11 +53,11 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
         if (control.save) control.save();
 
         collect_statistics(*engine, film, *prepared, statistics);
-        const Vec3f origin = prepared->origin;
+        const PictureSpace space = make_picture_space(*prepared);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();
         result.whole_samples = int(film.least_samples());
-        result.image = film.resolve(origin);
+        result.image = film.resolve(space);
         add_metadata(settings, scene_hash, result.is_complete, film, result.image);
     });
     statistics.total_s = total.seconds();

@@ -89,7 +89,7 @@ RenderResult Session::render(RenderObserver* observer) {
         statistics.prepare_s = std::exchange(self.prepare_s, 0);
         collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics);
         result.whole_samples = int(self.film->least_samples());
-        result.image = self.film->resolve(self.editor->scene()->origin);
+        result.image = self.film->resolve(make_picture_space(*self.editor->scene()));
         add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, *self.film, result.image);
     });
     statistics.total_s = statistics.prepare_s + total.seconds();

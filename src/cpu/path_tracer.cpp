@@ -9,9 +9,10 @@
 #include "base/timer.h"
 #include "cpu/bounce_rays.h"
 #include "cpu/cut_outs.h"
+#include "cpu/path_lights.h"
 #include "cpu/shading/normal_maps.h"
+#include "cpu/shading/point_material.h"
 #include "cpu/shading/shading_kernels.h"
-#include "cpu/shading/textures.h"
 #include "formulas/camera.h"
 #include "formulas/light.h"
 #include "formulas/light_tree.h"
@@ -35,21 +36,6 @@ struct Path {
     int x = 0, y = 0;
     FilmSample result;
 };
-
-/// A material at one point, textures looked up.
-struct PointMaterial {
-    Vec3f base_color, emission;
-    float roughness, metallic, ior;
-    uint32_t layers; ///< record of PreparedScene::layers; kNoIndex: none
-};
-
-Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
-    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
-}
-
-void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
-    vectors[0][lane] = v.x, vectors[1][lane] = v.y, vectors[2][lane] = v.z;
-}
 
 void add_layers(uint32_t record, size_t lane, VertexLanes& lanes) {
     lanes.has_layers |= 1u << lane;
@@ -89,9 +75,8 @@ class TileTracer {
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     void reflect(size_t first, size_t count);
-    PointMaterial make_material(uint32_t instance, const Vec2f& uv) const;
     void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
-    void add_found_light(Path& path, const Vec3f& light);
+    Vec3f add_found_light(uint32_t path, const Vec3f& light);
     void add_emission(size_t k, const Vec3f& emission);
     void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
     bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
@@ -133,6 +118,7 @@ class TileTracer {
     std::vector<TraceRay> shadow_rays_;
     std::vector<ShadowRay> shadows_; ///< what each shadow ray brings if nothing is in its way
     std::vector<uint8_t> occluded_;
+    PathLights path_lights_;
     PointScratch scratch_;
     BounceScratch bounce_scratch_;
     CutOutScratch cut_out_scratch_;
@@ -149,7 +135,8 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       counters_(report.counters),
       footprints_(report.footprints),
       camera_(make_camera_frame(scene.tracer.scene())),
-      bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)) {
+      bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)),
+      path_lights_(film.light_layers(), scene.tracer.scene().light_groups, scene.settings.image) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
             for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
@@ -171,6 +158,9 @@ void TileTracer::trace_sample(int index) {
     }
     const Timer timer;
     for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
+    if (path_lights_.is_on())
+        for (uint32_t i = 0; i < paths_.size(); ++i)
+            film_.add_lights(paths_[i].x, paths_[i].y, path_lights_.at(i));
     counters_.film_s += timer.seconds();
 }
 
@@ -185,6 +175,7 @@ void TileTracer::start_paths() {
         path.result.cost = 1;
         active_[i] = i;
     }
+    if (path_lights_.is_on()) path_lights_.start(paths_.size());
     rays_.resize(paths_.size());
     if (!is_pinhole())
         for (size_t i = 0; i < paths_.size(); ++i) {
@@ -218,8 +209,11 @@ void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
 
 void TileTracer::shade_paths() {
     const Timer timer;
-    shadow_rays_.clear(), shadows_.clear();
+    shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
     add_backgrounds();
+    if (depth_ == 0 && path_lights_.is_on())
+        path_lights_.add_camera_light(lights_, settings_.image.background,
+                                      {active_, rays_, hits_, missed_, backgrounds_});
     drop_misses();
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
@@ -269,9 +263,12 @@ void TileTracer::see_lights() {
 /// Misses look up the image at places far apart, hits do not; both meet analytic lights, which are rare.
 void TileTracer::gather_lights() {
     const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
-        Path& path = paths_[active_[k]];
+        const Path& path = paths_[active_[k]];
         const LightSet::BounceRay ray{path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf};
-        add_found_light(path, path.throughput * lights_.evaluate_mis(ray, behind));
+        const Vec3f light = path.throughput * lights_.evaluate_mis(ray, behind);
+        add_found_light(active_[k], light);
+        if (path_lights_.has_groups())
+            path_lights_.add_met_lights(active_[k], {lights_, ray, behind, path.throughput, light}, depth_);
     };
     for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
     if (!lights_.has_analytic_lights()) return;
@@ -347,7 +344,8 @@ void TileTracer::draw_lights(size_t first, size_t count) {
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
-        const PointMaterial m = make_material(hits_[first + n].instance, points_[first + n].uv);
+        const PointMaterial m =
+            make_point_material(tracer_.scene(), hits_[first + n].instance, points_[first + n].uv);
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
         set_lane(m.base_color, lane, lanes.base_color);
@@ -371,30 +369,10 @@ void TileTracer::reflect(size_t first, size_t count) {
              .rays = &rays_[k],
              .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
              .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr,
-             .layers = layers},
+             .layers = layers,
+             .wants_diffuse_shares = depth_ == 0 && path_lights_.has_kinds()},
             lanes_[n / 16]);
     }
-}
-
-PointMaterial TileTracer::make_material(uint32_t instance, const Vec2f& uv) const {
-    const PreparedScene& scene = tracer_.scene();
-    const uint32_t index = scene.instances[instance].material;
-    const Material& material = scene.materials[index];
-    PointMaterial m{
-        material.base_color, material.emission,
-        material.roughness,  material.metallic,
-        material.ior,        scene.layers.empty() ? kNoIndex : scene.layers.record_of_material[index]};
-    if (material.base_color_texture)
-        m.base_color =
-            m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);
-    if (material.roughness_texture)
-        m.roughness *= fetch_texture(*material.roughness_texture, material.roughness_filter, uv).x;
-    if (material.metallic_texture)
-        m.metallic *= fetch_texture(*material.metallic_texture, material.metallic_filter, uv).x;
-    m.base_color = scalar::limit_color(m.base_color);
-    m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
-    m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
-    return m;
 }
 
 void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
@@ -410,16 +388,22 @@ void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lan
 }
 
 /// What a ray of the path met by chance: at the first vertex after a bounce it is direct light.
-void TileTracer::add_found_light(Path& path, const Vec3f& light) {
-    path.result.radiance +=
-        scalar::clamp_indirect(light, settings_.image.clamp_indirect, uint32_t(std::max(depth_ - 1, 0)));
+Vec3f TileTracer::add_found_light(uint32_t path, const Vec3f& light) {
+    const uint32_t bounces = uint32_t(std::max(depth_ - 1, 0));
+    const Vec3f found = scalar::clamp_indirect(light, settings_.image.clamp_indirect, bounces);
+    paths_[path].result.radiance += found;
+    if (depth_ > 0) path_lights_.add_scattered(path, found, bounces);
+    return found;
 }
 
 void TileTracer::add_emission(size_t k, const Vec3f& emission) {
-    Path& path = paths_[active_[k]];
+    const Path& path = paths_[active_[k]];
     const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, points_[k]) : 0.0f;
     const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
-    add_found_light(path, path.throughput * emission * weight);
+    const Vec3f found = add_found_light(active_[k], path.throughput * emission * weight);
+    if (path_lights_.is_on())
+        path_lights_.add_emission(active_[k], tracer_.scene().instances[hits_[k].instance].material, found,
+                                  depth_);
 }
 
 /// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
@@ -439,6 +423,7 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     shadow_rays_.push_back(ray);
     shadows_.push_back(
         {active_[k], scalar::clamp_indirect(contribution, settings_.image.clamp_indirect, uint32_t(depth_))});
+    if (path_lights_.is_on()) path_lights_.add_shadow_ray({get_lane(lanes.light_diffuse, lane), light.group});
     path.result.cost += 1;
 }
 
@@ -451,6 +436,7 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane), points_[k].instance};
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
+    if (depth_ == 0) path_lights_.set_diffuse_shares(active_[k], get_lane(lanes.bounce_diffuse, lane));
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
                    uint32_t(hits_[k].lod_bias)};
@@ -482,6 +468,9 @@ void TileTracer::trace_shadow_rays() {
             note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
+    for (size_t k = 0; path_lights_.is_on() && k < shadows_.size(); ++k)
+        if (!occluded_[k])
+            path_lights_.add_shadow_light(k, shadows_[k].path, shadows_[k].contribution, uint32_t(depth_));
     counters_.shadow_rays += shadow_rays_.size();
 }
 

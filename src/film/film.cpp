@@ -20,6 +20,7 @@ namespace {
 enum class Source {
     depth,
     shading_normal,
+    camera_normal,
     geometric_normal,
     position,
     albedo,
@@ -28,6 +29,8 @@ enum class Source {
     samples,
     variance,
     cost,
+    light_kind,
+    light_group,
     objects,
     materials
 };
@@ -40,10 +43,15 @@ struct LayerKind {
     size_t sum_count; ///< sums a pixel that it needs
 };
 
+constexpr LayerKind make_light_kind(size_t kind) {
+    return {kLightKinds[kind], Source::light_kind, {"R", "G", "B"}, 3};
+}
+
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 12> kLayerKinds{{
+constexpr std::array<LayerKind, 20> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
+    {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
     {"Ng", Source::geometric_normal, {"X", "Y", "Z"}, 3},
     {"P", Source::position, {"X", "Y", "Z"}, 3},
     {"albedo", Source::albedo, {"R", "G", "B"}, 3},
@@ -52,9 +60,18 @@ constexpr std::array<LayerKind, 12> kLayerKinds{{
     {"samples", Source::samples, {"Y", "", ""}, 0},
     {"variance", Source::variance, {"R", "G", "B"}, 3},
     {"cost", Source::cost, {"Y", "", ""}, 1},
+    make_light_kind(0),
+    make_light_kind(1),
+    make_light_kind(2),
+    make_light_kind(3),
+    make_light_kind(4),
+    make_light_kind(5),
+    {"light_GROUP", Source::light_group, {"R", "G", "B"}, 3}, // one for each group
     {kObjectMattes, Source::objects, {"", "", ""}, 0},
     {kMaterialMattes, Source::materials, {"", "", ""}, 0},
 }};
+
+static_assert(kLightKinds.size() == 6);
 
 constexpr size_t kRadianceSums = 4;
 /// Radiance whose noise counts half: in the dark no relative error is ever small.
@@ -63,27 +80,23 @@ constexpr double kDarkest = 0.01;
 /// Of the samples that hit; other means are of all samples.
 bool is_mean_of_hits(Source source) { return source == Source::position || source == Source::uv; }
 
-const LayerKind& find_kind(const std::string& name) {
-    for (const LayerKind& kind : kLayerKinds)
-        if (name == kind.name) return kind;
+void check_layer(const std::string& name) {
+    const auto is_named = [&](const LayerKind& kind) {
+        return kind.source == Source::light_group ? !find_group_of_layer(name).empty() : name == kind.name;
+    };
+    if (std::ranges::any_of(kLayerKinds, is_named)) return;
     std::string known;
     for (const LayerKind& kind : kLayerKinds) known += std::string(known.empty() ? "" : ", ") + kind.name;
     throw Error(ErrorKind::usage, {"there is no layer \"" + name + "\"", "", "layers are " + known});
 }
+
+bool is_light(Source source) { return source == Source::light_kind || source == Source::light_group; }
 
 bool is_matte(Source source) { return source == Source::objects || source == Source::materials; }
 
 size_t channel_count(const LayerKind& kind) {
     if (is_matte(kind.source)) return 2 * kMatteRanks;
     return size_t(std::ranges::count_if(kind.suffixes, [](const char* s) { return *s != 0; }));
-}
-
-std::vector<std::string> name_channels(const LayerKind& kind) {
-    if (is_matte(kind.source)) return name_matte_channels(kind.name);
-    std::vector<std::string> names;
-    for (size_t k = 0; k < channel_count(kind); ++k)
-        names.push_back(std::string(kind.name) + "." + kind.suffixes[k]);
-    return names;
 }
 
 template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
@@ -95,6 +108,7 @@ template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
 void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     switch (source) {
     case Source::shading_normal:
+    case Source::camera_normal:
         return add_to(sums, added.shading_normal);
     case Source::geometric_normal:
         return add_to(sums, added.geometric_normal);
@@ -113,6 +127,8 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::depth:
     case Source::id:
     case Source::samples:
+    case Source::light_kind: // Film::add_lights
+    case Source::light_group:
     case Source::objects:
     case Source::materials:
         return;
@@ -127,7 +143,8 @@ double variance_of_mean(double sum, double sum_of_squares, uint32_t n) {
 }
 
 bool is_direction(Source source) {
-    return source == Source::shading_normal || source == Source::geometric_normal;
+    return source == Source::shading_normal || source == Source::camera_normal ||
+           source == Source::geometric_normal;
 }
 
 /// Writes the sums of a layer, divided by n and made unit vectors where they are directions.
@@ -135,6 +152,18 @@ void write_means(const double* sums, size_t count, uint32_t n, Source source, fl
     double divisor = n;
     if (is_direction(source)) divisor = std::sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2]);
     for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
+}
+
+/// Turns what was summed in the world into what the layer is said to hold.
+void place_in_space(const PictureSpace& space, Source source, float* target) {
+    const bool is_moved = source == Source::position && space.origin != Vec3f{};
+    if (!is_moved && source != Source::camera_normal) return;
+    Vec3f v{target[0], target[1], target[2]};
+    if (is_moved)
+        v += space.origin;
+    else
+        v = {dot(space.right, v), dot(space.up, v), dot(space.back, v)};
+    target[0] = v.x, target[1] = v.y, target[2] = v.z;
 }
 
 /// Checked beforehand, since the system grants more memory than it has and ends the process later.
@@ -156,19 +185,42 @@ bool needs_mattes(const std::vector<std::string>& layers) {
 
 Film::Film(int full_width, int full_height, const Window& window, const std::vector<std::string>& layers,
            ErrorEstimate error)
-    : full_width_(full_width), full_height_(full_height), window_(window), stride_(kRadianceSums) {
-    for (const std::string& name : layers) find_kind(name);
+    : full_width_(full_width),
+      full_height_(full_height),
+      window_(window),
+      light_layers_(find_light_layers(layers)),
+      stride_(kRadianceSums) {
+    for (const std::string& name : layers) check_layer(name);
     if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
-    bool needs_hit_counts = false, needs_nearest = false;
-    size_t channels = kRadianceSums, matte_layers = 0;
-    for (const LayerKind& kind : kLayerKinds) {
+    for (size_t k = 0; k < kLayerKinds.size(); ++k) {
+        const LayerKind& kind = kLayerKinds[k];
+        if (kind.source == Source::light_group) {
+            for (size_t group = 0; group < light_layers_.groups.size(); ++group)
+                add_layer({k, stride_, false, light_layers_.kind_count() + group});
+            continue;
+        }
         const bool is_requested = std::find(layers.begin(), layers.end(), kind.name) != layers.end();
         const bool is_needed = error == ErrorEstimate::on && kind.source == Source::variance;
         if (!is_requested && !is_needed) continue;
-        layers_.push_back({size_t(&kind - kLayerKinds.data()), stride_, !is_requested});
         if (is_needed) squares_offset_ = stride_;
-        stride_ += kind.sum_count;
-        if (is_requested) channels += channel_count(kind);
+        const auto light = std::ranges::find(kLightKinds, std::string_view(kind.name));
+        add_layer({k, stride_, !is_requested, size_t(light - kLightKinds.begin())});
+    }
+    allocate_sums();
+}
+
+void Film::add_layer(const Layer& layer) {
+    layers_.push_back(layer);
+    stride_ += kLayerKinds[layer.kind].sum_count;
+}
+
+/// Of all layers, which are there.
+void Film::allocate_sums() {
+    bool needs_hit_counts = false, needs_nearest = false;
+    size_t channels = kRadianceSums, matte_layers = 0;
+    for (const Layer& layer : layers_) {
+        const LayerKind& kind = kLayerKinds[layer.kind];
+        if (!layer.is_hidden) channels += channel_count(kind);
         needs_hit_counts |= is_mean_of_hits(kind.source);
         needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
         matte_layers += is_matte(kind.source) ? 1 : 0;
@@ -236,6 +288,13 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
 }
 
+void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
+    DCHECK(lights.size() == light_layers_.count());
+    double* sums = sums_.data() + pixel_index(x, y) * stride_;
+    for (const Layer& layer : layers_)
+        if (is_light(kLayerKinds[layer.kind].source)) add_to(sums + layer.sum_offset, lights[layer.light]);
+}
+
 void Film::clear(const Window& window) {
     const size_t width = size_t(window.x1 - window.x0);
     const auto fill = [&](auto& values, size_t first, size_t stride, auto value) {
@@ -269,7 +328,19 @@ void Film::add_mattes(size_t pixel, std::span<const uint32_t> hit_ids) {
     }
 }
 
-void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
+std::vector<std::string> Film::name_channels(const Layer& layer) const {
+    const LayerKind& kind = kLayerKinds[layer.kind];
+    if (is_matte(kind.source)) return name_matte_channels(kind.name);
+    std::string name = kind.name;
+    if (kind.source == Source::light_group)
+        name =
+            std::string(kLightGroupPrefix) + light_layers_.groups[layer.light - light_layers_.kind_count()];
+    std::vector<std::string> names;
+    for (size_t k = 0; k < channel_count(kind); ++k) names.push_back(name + "." + kind.suffixes[k]);
+    return names;
+}
+
+void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& space, float* target) const {
     const LayerKind& kind = kLayerKinds[layer.kind];
     const double* radiance_sums = sums_.data() + pixel * stride_;
     const double* sums = radiance_sums + layer.sum_offset;
@@ -294,15 +365,19 @@ void Film::write_layer(size_t pixel, const Layer& layer, float* target) const {
     case Source::position:
     case Source::uv:
     case Source::shading_normal:
+    case Source::camera_normal:
     case Source::geometric_normal:
     case Source::albedo:
     case Source::cost:
+    case Source::light_kind:
+    case Source::light_group:
         const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];
-        return write_means(sums, kind.sum_count, n, kind.source, target);
+        write_means(sums, kind.sum_count, n, kind.source, target);
+        if (n > 0) place_in_space(space, kind.source, target);
     }
 }
 
-Image Film::resolve(const Vec3f& origin) const {
+Image Film::resolve(const PictureSpace& space) const {
     Image image;
     image.width = window_.x1 - window_.x0;
     image.height = window_.y1 - window_.y0;
@@ -313,8 +388,7 @@ Image Film::resolve(const Vec3f& origin) const {
     image.channels = {"R", "G", "B", "A"};
     for (const Layer& layer : layers_) {
         if (layer.is_hidden) continue;
-        for (std::string& name : name_channels(kLayerKinds[layer.kind]))
-            image.channels.push_back(std::move(name));
+        for (std::string& name : name_channels(layer)) image.channels.push_back(std::move(name));
     }
     if (mattes_) image.metadata = mattes_->entries;
     image.pixels.resize(counts_.size() * image.channels.size());
@@ -326,10 +400,7 @@ Image Film::resolve(const Vec3f& origin) const {
             target += kRadianceSums;
             for (const Layer& layer : layers_) {
                 if (layer.is_hidden) continue;
-                write_layer(p, layer, target);
-                if (origin != Vec3f{} && kLayerKinds[layer.kind].source == Source::position &&
-                    hit_counts_[p] > 0)
-                    target[0] += origin.x, target[1] += origin.y, target[2] += origin.z;
+                write_layer(p, layer, space, target);
                 target += channel_count(kLayerKinds[layer.kind]);
             }
         }

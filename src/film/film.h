@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "film/matte_counts.h"
+#include "image/light_layers.h"
 #include "relief/image.h"
 #include "relief/render.h"
 
@@ -42,6 +43,13 @@ struct FilmSums {
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
     /// Of each sample that hit, in their order; only a film that needs_hit_ids() asks for them.
     std::span<const uint32_t> hit_ids{};
+};
+
+/// Where the picture's camera is in the world: what layers are measured from or along.
+struct PictureSpace {
+    Vec3f origin{}; ///< what positions were measured from
+    Vec3f right{1, 0, 0}, up{0, 1, 0},
+        back{0, 0, 1}; ///< the camera's axes, orthonormal; `back` is to the viewer
 };
 
 /// What the instances of a scene are in the Cryptomatte layers of a picture.
@@ -78,16 +86,18 @@ class Film {
     void add_sample(int x, int y, const FilmSample& sample);
     /// As many samples at once as `sums` holds.
     void add_sums(int x, int y, const FilmSums& sums);
+    /// Of as many samples as were added, once for each: a colour for each kind and group of light_layers().
+    void add_lights(int x, int y, std::span<const Vec3f> lights);
+    const LightLayers& light_layers() const { return light_layers_; }
 
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 
-    /// R G B A and the layers. Colour, alpha, N, Ng, P, albedo, uv and cost are means over the samples
+    /// R G B A and the layers. Colour, alpha, light, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
     /// hit; variance is that of the mean; mattes are shares of the samples. Pixels without samples are 0,
     /// depth infinity.
-    /// `origin`: what P was measured from.
-    Image resolve(const Vec3f& origin = {}) const;
+    Image resolve(const PictureSpace& space = {}) const;
 
     /// The least and the greatest number of samples that a pixel has.
     uint32_t least_samples() const;
@@ -122,10 +132,15 @@ class Film {
         size_t kind;       ///< index into the table of layers
         size_t sum_offset; ///< of its first sum within a pixel's stride
         bool is_hidden;    ///< kept for estimate_error() alone
+        size_t light = 0;  ///< of a layer of light: which colour of add_lights()
     };
 
-    void write_layer(size_t pixel, const Layer& layer, float* target) const;
+    void add_layer(const Layer& layer);
+    void allocate_sums();
+    std::vector<std::string> name_channels(const Layer& layer) const;
+    void write_layer(size_t pixel, const Layer& layer, const PictureSpace& space, float* target) const;
 
+    LightLayers light_layers_;
     std::vector<Layer> layers_;            ///< requested or needed, in the order of that table
     std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
     size_t stride_ = 0;

@@ -34,6 +34,7 @@ struct LightSourceData {
     uint is_visible;               ///< to camera rays
     uint texture;                  ///< of flat lights; kNone: none
     uint link;                     ///< first word of the set of instances that it lights; kNone: all
+    uint group; ///< among those that a picture has layers of; else, and of emissive surfaces, none
 };
 
 /// A sampled direction towards a light with density `pdf` per solid angle; 0: no sample.

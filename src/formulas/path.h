@@ -59,6 +59,12 @@ FN Vec3 clamp_indirect(Vec3 light, float limit, uint bounces) {
     return limit > 0.0f && bounces > 0u && brightest > limit ? light * (limit / brightest) : light;
 }
 
+/// What clamp_indirect multiplies light by.
+FN float find_clamp_scale(Vec3 light, float limit, uint bounces) {
+    float brightest = max(max(light.x, light.y), light.z);
+    return limit > 0.0f && bounces > 0u && brightest > limit ? limit / brightest : 1.0f;
+}
+
 /// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr et al. 2023, section 13.4).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);

@@ -87,7 +87,7 @@ Rule find_rule(const std::string& channel) {
     if (layer == "depth") return Rule::depth;
     if (layer == "id") return Rule::id;
     if (layer == "P" || layer == "uv") return Rule::mean_of_hits;
-    if (layer == "N" || layer == "Ng") return Rule::direction;
+    if (layer == "N" || layer == "N_camera" || layer == "Ng") return Rule::direction;
     return Rule::mean;
 }
 

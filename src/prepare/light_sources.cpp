@@ -31,6 +31,7 @@ scalar::LightSourceData make_source(uint32_t kind, float power) {
     source.kind = kind;
     source.power = power;
     source.texture = source.link = kNoIndex;
+    source.group = kNoIndex;
     return source;
 }
 
@@ -218,15 +219,18 @@ LightTables make_light_tables(const PreparedScene& scene, float environment_lumi
                               const EmitterTable& emitters) {
     LightTables tables;
     std::vector<scalar::LightSourceData>& sources = tables.sources;
-    if (environment_luminance > 0)
+    if (environment_luminance > 0) {
         sources.push_back(
             make_source(scalar::kSourceEnvironment, std::numbers::pi_v<float> * environment_luminance));
+        sources.back().group = scene.light_groups.of_environment;
+    }
     for (size_t k = 0; k < scene.lights.size(); ++k) {
         const Light& light = scene.lights[k];
         float power = scalar::luminance(light.color) * light.strength;
         if (power > 0 && light.color_texture) power *= find_mean_luminance(light);
         if (!(power > 0)) continue;
         sources.push_back(make_light_source(light, power));
+        sources.back().group = scene.light_groups.find(light.light_group);
         if (light.color_texture) {
             sources.back().texture = uint32_t(tables.textures.size());
             tables.textures.push_back(light.color_texture);

@@ -35,7 +35,7 @@ EmitterTable make_emitter_table(const PreparedScene& scene);
 /// Up to so many lights are listed: each draw estimates all of them. Emissive objects count as lights.
 inline constexpr size_t kMostListedLights = 32;
 
-/// What may be drawn. Lights without power are left out.
+/// What may be drawn. Lights without power are left out. Groups are those of PreparedScene::light_groups.
 struct LightTables {
     /// The environment, the scene's lights, the emissive surfaces as one. Of many lights those that have a
     /// place come behind the others, and emissive surfaces are left out: the tree has them.

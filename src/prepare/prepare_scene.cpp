@@ -232,6 +232,9 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->links = make_light_links(scene);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);
+    prepared->light_groups = make_light_groups(
+        {prepared->materials, prepared->lights, prepared->environment ? &*prepared->environment : nullptr},
+        settings.image.layers);
     prepared->camera = scene.camera;
     prepared->mesh_count = uint32_t(scene.meshes.size());
     prepared->width = settings.image.width, prepared->height = settings.image.height;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/affine.h"
+#include "prepare/light_groups.h"
 #include "prepare/light_links.h"
 #include "prepare/material_layers.h"
 #include "relief/render.h"
@@ -66,6 +67,7 @@ struct PreparedScene {
     std::vector<Light> lights;
     LightLinks links; ///< of the lights
     std::optional<Environment> environment;
+    LightGroups light_groups; ///< of layers that the picture has
     Camera camera;
     uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture

@@ -40,6 +40,12 @@ void check_range(const std::string& where, const char* what, const Vec3f& value,
     check_range(where, what, value.z, low, high);
 }
 
+void check_light_group(const std::string& where, const std::string& name) {
+    if (!name.empty() && !is_light_group_name(name))
+        fail(where, fmt::format("'{}' is no name of a light group", name),
+             fmt::format("1 to {} letters, digits, '_' and '-'", kMaxLightGroupName));
+}
+
 constexpr float kHuge = 3e38f;
 /// Squares of distances between points up to here are still floats.
 constexpr float kFarthest = 1e18f;
@@ -186,6 +192,7 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "metallic", material.metallic, 0, 1);
     check_range(where, "ior", material.ior, 1, kHuge);
     check_range(where, "emission", material.emission, 0, kHuge);
+    check_light_group(where, material.light_group);
     check_range(where, "opacity", material.opacity, 0, 1);
     if (is_cut_out(material) && !(material.emission == Vec3f{}))
         fail(where,
@@ -313,6 +320,7 @@ void check_light(const Light& light, size_t index) {
         fail(where, fmt::format("type {} is none of LightType", int(light.type)));
     check_range(where, "color", light.color, 0, kHuge);
     check_range(where, "strength", light.strength, 0, kHuge);
+    check_light_group(where, light.light_group);
     if (light.type != LightType::point &&
         (!is_finite(light.direction) || length(normalize(light.direction)) == 0))
         fail(where, "direction has no length or is not finite");
@@ -373,6 +381,7 @@ void validate_scene(const Scene& scene) {
         check_range("environment", "color", environment.color, 0, kHuge);
         check_range("environment", "strength", environment.strength, 0, kHuge);
         check_range("environment", "rotate_degrees", environment.rotate_degrees, -kHuge, kHuge);
+        check_light_group("environment", environment.light_group);
         if (environment.texture) check_texture("environment", *environment.texture);
     }
     check_camera(scene.camera);

@@ -36,6 +36,7 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
         const uint32_t index = device_scene.texture_index(texture.get());
         return texture && is_smooth(filter) ? index | scalar::kSplineTexture : index;
     };
+    const std::vector<uint32_t>& groups = scene.light_groups.of_material;
     for (const Material& material : scene.materials)
         result.push_back({material.base_color,
                           material.roughness,
@@ -49,6 +50,7 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           material.opacity,
                           find_index(material.normal_texture, material.normal_filter),
                           {material.normal_scale, material.normal_scale * (material.normal_flip_y ? -1 : 1)},
+                          groups.empty() ? kNoIndex : groups[result.size()],
                           0,
                           {}});
     if (scene.layers.empty()) return result;

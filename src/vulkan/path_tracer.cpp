@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/timer.h"
 #include "engine/stop_request.h"
+#include "formulas/light_layers.h"
 #include "formulas/pixel_order.h"
 #include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
@@ -23,7 +24,8 @@ constexpr uint32_t kGroupSize = 64;
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathData) == 76 && sizeof(scalar::SurfacePointData) == 68);
-static_assert(sizeof(scalar::FilmSumsData) == 100);
+static_assert(sizeof(scalar::FilmSumsData) == scalar::kFilmSumsWords * sizeof(uint32_t));
+static_assert(kLightKinds.size() == scalar::kKindCount);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
 
@@ -40,10 +42,16 @@ Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
                   {.shader = shader, .constants = tracer.device_scene().add_filter({kGroupSize})});
 }
 
-Kernel make_scattering_kernel(const Tracer& tracer, const DeviceLights& lights, const char* shader) {
-    return Kernel(
-        tracer.device(),
-        {.shader = shader, .constants = lights.add_choice(tracer.device_scene().add_layers({kGroupSize}))});
+/// Those of light_sums.glsl; none where the picture has no layers of light.
+std::vector<uint32_t> add_light_layers(std::vector<uint32_t> constants, const LightLayers& layers,
+                                       const LightGroups& groups) {
+    if (layers.count() == 0) return constants;
+    constants.resize(scalar::kEnvironmentGroupConstant + 1);
+    constants[scalar::kLightKindsConstant] = uint32_t(layers.kind_count());
+    constants[scalar::kLightGroupsConstant] = uint32_t(layers.groups.size());
+    constants[scalar::kDefaultGroupConstant] = groups.of_default;
+    constants[scalar::kEnvironmentGroupConstant] = groups.of_environment;
+    return constants;
 }
 
 template <class T>
@@ -76,20 +84,21 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       settings_(settings),
       camera_(make_camera_frame(tracer.scene())),
       capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
+      light_layers_(find_light_layers(settings.image.layers)),
       notes_first_hits_(needs_mattes(settings.image.layers)),
       lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
-    background_ = Kernel(device, {.shader = "background", .constants = lights_.add_choice({kGroupSize})});
+    background_ = make_lighting_kernel("background");
     surface_point_ = make_reading_kernel(tracer, "surface_point");
     shading_normal_ = Kernel(device, {.shader = "shading_normal",
                                       .constants = tracer.device_scene().add_normal_maps({kGroupSize})});
-    light_sample_ = make_scattering_kernel(tracer, lights_, "light_sample");
-    bounce_ = make_scattering_kernel(tracer, lights_, "bounce");
+    light_sample_ = make_scattering_kernel("light_sample");
+    bounce_ = make_scattering_kernel("bounce");
     far_rays_ = make_kernel(device, "far_rays");
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
-    shadow_light_ = make_kernel(device, "shadow_light");
+    shadow_light_ = make_lighting_kernel("shadow_light");
     film_ = make_kernel(device, "film");
     if (tracer.scene().has_cut_outs) {
         cut_outs_.emplace(make_reading_kernel(tracer, "cut_outs"));
@@ -99,6 +108,20 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     if (settings.experiment.method == RenderMethod::hybrid)
         rasteriser_ =
             std::make_unique<Rasteriser>(tracer, RasterBuffers{.vertices = &points_, .items = &shadow_list_});
+}
+
+Kernel PathTracer::make_lighting_kernel(const char* shader) const {
+    return Kernel(tracer_.device(),
+                  {.shader = shader,
+                   .constants = add_light_layers(lights_.add_choice({kGroupSize}), light_layers_,
+                                                 tracer_.scene().light_groups)});
+}
+
+Kernel PathTracer::make_scattering_kernel(const char* shader) const {
+    return Kernel(tracer_.device(), {.shader = shader,
+                                     .constants = add_light_layers(
+                                         lights_.add_choice(tracer_.device_scene().add_layers({kGroupSize})),
+                                         light_layers_, tracer_.scene().light_groups)});
 }
 
 void PathTracer::make_buffers() {
@@ -111,7 +134,8 @@ void PathTracer::make_buffers() {
     film_sums_ = make_buffer<std::byte>(
         device, "film_sums", find_first_hits(0) + (notes_first_hits_ ? kFirstHitBytes : 0) * capacity_);
     if (device.is_cpu())
-        whole_sums_ = make_buffer<scalar::FilmSumsData>(device, "whole_film_sums", capacity_);
+        whole_sums_ = make_buffer<std::byte>(
+            device, "whole_film_sums", find_light_sums() + capacity_ * light_layers_.count() * sizeof(Vec3f));
     path_list_ = make_buffer<uint32_t>(device, "path_list", capacity_);
     next_path_list_ = make_buffer<uint32_t>(device, "next_path_list", capacity_,
                                             is_lent ? capacity_ * RasterBuffers::kNearestBytes : 0);
@@ -152,18 +176,17 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
                              const std::function<void(uint64_t)>& on_samples) {
     Commands& commands = tracer_.commands();
     const uint64_t sum_bytes = pixels_.size() * sizeof(scalar::FilmSumsData);
+    const uint64_t light_bytes = pixels_.size() * light_layers_.count() * sizeof(Vec3f);
     batch_casts_.clear();
     int done = 0;
     try {
-        commands.begin_stage(Stage::film);
-        commands.fill(film_sums_, 0, sum_bytes, 0);
-        if (notes_first_hits_)
-            commands.fill(film_sums_, find_first_hits(0), find_first_hits(samples.count) - find_first_hits(0),
-                          0);
+        clear_sums(samples.count);
         for (; done < samples.count; ++done) {
             trace_sample(uint32_t(samples.first + done), done);
             // A sample takes a CPU device seconds, and begins to add to the sums before it is whole.
             if (whole_sums_) commands.copy(film_sums_, 0, whole_sums_, 0, sum_bytes);
+            if (whole_sums_ && light_bytes > 0)
+                commands.copy(film_sums_, find_light_sums(), whole_sums_, find_light_sums(), light_bytes);
             if (whole_sums_ || done + 1 == samples.count) commands.run();
             if (whole_sums_) on_samples(pixels_.size());
         }
@@ -191,9 +214,27 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     return push;
 }
 
+/// Byte of the film's buffer, as light_sums.glsl has it.
+uint64_t PathTracer::find_light_sums() const { return capacity_ * sizeof(scalar::FilmSumsData); }
+
 /// Byte of the film's buffer; those of all paths of a sample lie together.
 uint64_t PathTracer::find_first_hits(int place) const {
-    return capacity_ * sizeof(scalar::FilmSumsData) + uint64_t(place) * pixels_.size() * sizeof(uint32_t);
+    const uint64_t path_bytes = light_layers_.count() > 0 ? light_layers_.count() * sizeof(Vec3f) +
+                                                                scalar::kPathLightWords * sizeof(uint32_t)
+                                                          : 0;
+    return find_light_sums() + capacity_ * path_bytes + uint64_t(place) * pixels_.size() * sizeof(uint32_t);
+}
+
+/// Of the pixels of a batch.
+void PathTracer::clear_sums(int sample_count) {
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::film);
+    commands.fill(film_sums_, 0, pixels_.size() * sizeof(scalar::FilmSumsData), 0);
+    if (light_layers_.count() > 0)
+        commands.fill(film_sums_, find_light_sums(), pixels_.size() * light_layers_.count() * sizeof(Vec3f),
+                      0);
+    if (notes_first_hits_)
+        commands.fill(film_sums_, find_first_hits(0), find_first_hits(sample_count) - find_first_hits(0), 0);
 }
 
 void PathTracer::trace_sample(uint32_t sample_index, int place) {
@@ -325,15 +366,21 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
 void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_count) {
     const Timer timer;
     DCHECK(notes_first_hits_ || !film.needs_hit_ids());
+    const size_t light_count = light_layers_.count();
+    DCHECK(light_count == film.light_layers().count());
     const std::vector<scalar::FilmSumsData> sums = device_sums.download<scalar::FilmSumsData>(pixels_.size());
     const std::vector<uint32_t> first_hits = download_first_hits(sample_count);
+    const std::vector<Vec3f> lights =
+        light_count == 0 ? std::vector<Vec3f>()
+                         : device_sums.download<Vec3f>(pixels_.size() * light_count, find_light_sums());
     std::vector<uint32_t> hit_ids;
     for (size_t k = 0; k < sums.size(); ++k) {
         hit_ids.clear();
         for (size_t n = k; n < first_hits.size(); n += sums.size())
             if (first_hits[n] != 0) hit_ids.push_back(first_hits[n]);
-        film.add_sums(int(pixels_[k] & 0xffff), int(pixels_[k] >> 16),
-                      make_sums(sums[k], sample_count, hit_ids));
+        const int x = int(pixels_[k] & 0xffff), y = int(pixels_[k] >> 16);
+        film.add_sums(x, y, make_sums(sums[k], sample_count, hit_ids));
+        if (light_count > 0) film.add_lights(x, y, {lights.data() + k * light_count, light_count});
     }
     film_s_ += timer.seconds();
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);

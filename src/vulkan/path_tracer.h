@@ -58,10 +58,14 @@ class PathTracer {
         uint32_t path_count, shadow_count;
     };
     void trace_batch(Film& film, SampleRange samples, const std::function<void(uint64_t)>& on_samples);
+    Kernel make_lighting_kernel(const char* shader) const;
+    Kernel make_scattering_kernel(const char* shader) const;
     void make_buffers();
     /// `place`: of the sample in its launch.
     void trace_sample(uint32_t sample_index, int place);
+    uint64_t find_light_sums() const;
     uint64_t find_first_hits(int place) const;
+    void clear_sums(int sample_count);
     CastStatistics trace_bounces(scalar::PathPush push);
     void pass_cut_outs(scalar::PathPush push, bool is_shadow, CastStatistics& cast);
     NextRays shade_depth(const scalar::PathPush& push);
@@ -77,7 +81,8 @@ class PathTracer {
     RenderSettings settings_;
     scalar::CameraFrame camera_;
     uint32_t capacity_;
-    bool notes_first_hits_; ///< of every sample, behind the film's sums
+    LightLayers light_layers_;
+    bool notes_first_hits_; ///< of every sample, behind the film's other sums
     DeviceLights lights_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;

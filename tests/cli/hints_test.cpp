@@ -38,6 +38,7 @@ constexpr Slip kOptionSlips[] = {
     {"render plane.obj --scale 2", "--vdm-scale 2"},
     {"render plane.obj --subdiv", "--subdivision catmark"},
     {"render plane.obj --region 0,0,8,8", "--crop x0,y0,x1,y1"},
+    {"render plane.obj --light-groups key", "--layers light_default,light_NAME"},
     {"render plane.obj --aov N", "--layers LIST"},
     {"render plane.obj --camera 0,0,5", "--from"},
     {"render plane.obj --look-at 0,0,0", "--from"},

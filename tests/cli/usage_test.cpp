@@ -100,6 +100,10 @@ TEST_F(Usage, only_what_exists_can_be_chosen) {
     EXPECT_FALSE(contains(run({"render", "--help"}).output, "--frames "));
     expect_refused({"render", "plane.obj", "--surface", "tesselated"}, "'tessellated'");
     expect_refused({"render", "plane.obj", "--layers", "depth,Normal"}, "unknown layer 'Normal'");
+    expect_refused({"render", "plane.obj", "--layers", "diffuse-direct"}, "did you mean 'diffuse_direct'");
+    expect_refused({"render", "plane.obj", "--layers", "light_a.b"}, "'a.b' is no name of a light group");
+    expect_refused({"render", "plane.obj", "--layers", "light_key"},
+                   "no light of the scene is in the group 'key'");
     expect_refused({"render", "plane.obj", "-o", "a.png", "--layers", "depth"}, ".exr");
 }
 

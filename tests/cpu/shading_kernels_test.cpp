@@ -14,6 +14,7 @@
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
 #include "formulas/layered_bsdf.h"
+#include "formulas/lobe_shares.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"
@@ -167,9 +168,7 @@ std::vector<Case> make_cases() {
     return cases;
 }
 
-Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
-    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
-}
+using cpu::get_lane;
 
 void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -201,6 +200,10 @@ struct CaseBsdf {
         return has_layers ? scalar::evaluate_layered_bsdf(layered, table, wo, wi)
                           : scalar::evaluate_bsdf(plain, wo, wi);
     }
+    Vec3f evaluate_diffuse(const Vec3f& wi) const {
+        return has_layers ? scalar::evaluate_layered_diffuse(layered, table, wo, wi)
+                          : scalar::evaluate_diffuse(plain, wo, wi);
+    }
     scalar::BsdfSample sample(float lobe, const Vec2f& u) const {
         return has_layers ? scalar::sample_layered_bsdf(layered, table, wo, lobe, u)
                           : scalar::sample_bsdf(plain, wo, lobe, u);
@@ -230,6 +233,9 @@ void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexL
     ASSERT_EQ(lanes.needs_shadow_ray >> lane & 1, needs_shadow_ray);
     EXPECT_EQ(get_lane(lanes.light_reflected, lane), value.value);
     EXPECT_EQ(lanes.light_bsdf_pdf[lane], value.pdf);
+    const Vec3f to_light = scalar::to_local(basis, c.light);
+    EXPECT_EQ(get_lane(lanes.light_diffuse, lane),
+              scalar::find_shares(bsdf.evaluate_diffuse(to_light), value.value));
     const auto offset = [&](const Vec3f& direction) {
         return scalar::offset_origin(c.point.position, geometric, c.point.position_error, direction);
     };
@@ -244,6 +250,9 @@ void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexL
     EXPECT_EQ(get_lane(lanes.bounce_weight, lane), drawn.weight);
     EXPECT_EQ(lanes.bounce_pdf[lane], drawn.pdf);
     EXPECT_EQ(get_lane(lanes.bounce_origin, lane), offset(direction));
+    EXPECT_EQ(get_lane(lanes.bounce_diffuse, lane),
+              scalar::find_shares(bsdf.evaluate_diffuse(scalar::to_local(basis, direction)),
+                                  drawn.weight * drawn.pdf));
 }
 
 TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_one) {
@@ -264,7 +273,7 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
                 set_lane(c, lane, lanes);
             }
             cpu::find_shading_kernels(isa.c_str())
-                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data(), view(layers)},
+                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data(), view(layers), true},
                          lanes);
             EXPECT_EQ((lanes.needs_shadow_ray | lanes.has_bounce) >> count, 0);
             for (size_t lane = 0; lane < count; ++lane) {

@@ -14,9 +14,26 @@
 namespace relief {
 namespace {
 
-const std::vector<std::string> kAllLayers{"depth",    "N",    "Ng",           "P",
-                                          "albedo",   "uv",   "id",           "samples",
-                                          "variance", "cost", "CryptoObject", "CryptoMaterial"};
+const std::vector<std::string> kAllLayers{"depth",
+                                          "N",
+                                          "N_camera",
+                                          "Ng",
+                                          "P",
+                                          "albedo",
+                                          "uv",
+                                          "id",
+                                          "samples",
+                                          "variance",
+                                          "cost",
+                                          "diffuse_direct",
+                                          "emission",
+                                          "background",
+                                          "diffuse_indirect",
+                                          "specular_direct",
+                                          "specular_indirect",
+                                          "light_key",
+                                          "CryptoObject",
+                                          "CryptoMaterial"};
 
 /// Instance k is object 101 + k, of one of three materials.
 std::shared_ptr<const InstanceMattes> make_mattes() {
@@ -64,7 +81,7 @@ TEST(Film, refuses_an_unknown_layer_and_lists_the_known_ones) {
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("depth, N, Ng"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("depth, N, N_camera, Ng"), std::string::npos);
     }
 }
 
@@ -231,6 +248,51 @@ TEST(Film, goes_on_with_mattes_from_its_bytes) {
     std::stringstream again(bytes.str());
     Film other(1, 1, {}, {"CryptoObject"});
     EXPECT_THROW(other.read(again, "a picture"), Error);
+}
+
+TEST(Film, has_a_layer_for_each_kind_and_group_of_light_that_is_asked_for) {
+    Film film(2, 1, {}, {"light_rim", "emission", "light_key", "diffuse_indirect", "depth"});
+    EXPECT_EQ(film.light_layers().count(), 8u);
+    for (int k = 1; k <= 2; ++k) {
+        film.add_sample(1, 0, make_hit(1, 1, 1));
+        std::vector<Vec3f> lights; // six kinds, key, rim
+        for (int n = 0; n < 8; ++n) lights.push_back({float(k), float(n), 0.5f});
+        film.add_lights(1, 0, lights);
+    }
+    const Image image = film.resolve();
+    const std::vector<std::string> expected{"R",
+                                            "G",
+                                            "B",
+                                            "A",
+                                            "depth.Z",
+                                            "diffuse_indirect.R",
+                                            "diffuse_indirect.G",
+                                            "diffuse_indirect.B",
+                                            "emission.R",
+                                            "emission.G",
+                                            "emission.B",
+                                            "light_key.R",
+                                            "light_key.G",
+                                            "light_key.B",
+                                            "light_rim.R",
+                                            "light_rim.G",
+                                            "light_rim.B"};
+    EXPECT_EQ(image.channels, expected);
+    for (const auto& [layer, n] :
+         {std::pair{"diffuse_indirect", 1}, {"emission", 4}, {"light_key", 6}, {"light_rim", 7}}) {
+        EXPECT_EQ(value(image, 1, 0, (layer + std::string(".R")).c_str()), 1.5f) << layer;
+        EXPECT_EQ(value(image, 1, 0, (layer + std::string(".G")).c_str()), float(n)) << layer;
+        EXPECT_EQ(value(image, 0, 0, (layer + std::string(".B")).c_str()), 0) << layer;
+    }
+}
+
+TEST(Film, turns_normals_into_the_space_of_the_camera) {
+    Film film(1, 1, {}, {"N", "N_camera"});
+    film.add_sample(0, 0, make_hit(1, 1, 1)); // along z
+    const Image image = film.resolve({{}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}});
+    EXPECT_EQ(value(image, 0, 0, "N.Z"), 1);
+    EXPECT_EQ(value(image, 0, 0, "N_camera.X"), 1);
+    EXPECT_EQ(value(image, 0, 0, "N_camera.Z"), 0);
 }
 
 TEST(Film, counts_its_bytes) {

@@ -30,8 +30,9 @@ Image make_part(std::array<int, 4> window, int first, int last) {
     image.x0 = window[0], image.y0 = window[1];
     image.width = window[2] - window[0], image.height = window[3] - window[1];
     image.full_width = kWidth, image.full_height = kHeight;
-    image.channels = {"R",   "G",   "B",   "A",         "depth.Z",    "id.I",  "N.X",
-                      "N.Y", "N.Z", "P.X", "samples.Y", "variance.R", "cost.Y"};
+    image.channels = {"R",      "G",           "B",          "A",          "depth.Z",   "id.I",
+                      "N.X",    "N.Y",         "N.Z",        "P.X",        "samples.Y", "variance.R",
+                      "cost.Y", "light_key.R", "N_camera.X", "N_camera.Y", "N_camera.Z"};
     image.metadata = {{"relief:samples", std::to_string(first) + ":" + std::to_string(last)},
                       {"relief:seed", "1"},
                       {"relief:scene_hash", "abcd"}};
@@ -53,7 +54,8 @@ Image make_part(std::array<int, 4> window, int first, int last) {
             const double mean = sums[0] / n, side = hits > 0 ? 0.6 : 0;
             const double variance = n > 1 ? (squares / n - mean * mean) / (n - 1) : 0;
             for (double value : {mean, sums[1] / n, sums[2] / n, hits / n, double(depth), double(id), side,
-                                 0.0, side / 0.75, hits > 0 ? place / hits : 0.0, n, variance, cost / n})
+                                 0.0, side / 0.75, hits > 0 ? place / hits : 0.0, n, variance, cost / n,
+                                 sums[2] / n / 4, side, 0.0, side / 0.75})
                 image.pixels.push_back(float(value));
         }
     return image;

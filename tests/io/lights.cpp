@@ -72,6 +72,30 @@ TEST_F(LightFiles, lights_of_all_types_are_read_and_written) {
     }
 }
 
+TEST_F(LightFiles, groups_of_all_that_shines_are_read_and_written) {
+    Scene scene = parse(R"({"meshes": {"plane": {"file": "plane.obj"}},
+      "materials": {"lamp": {"emission": [1, 1, 1], "light_group": "practical"}, "wall": {}},
+      "objects": [{"mesh": "plane", "material": "lamp"}], "environment": {"light_group": "sky"},
+      "lights": [{"type": "sun", "light_group": "key"}, {"type": "point", "light_group": "rim-2"},
+        {"type": "rectangle", "light_group": "a"}, {"type": "disk", "light_group": "b"},
+        {"type": "spot", "light_group": "c"}, {"type": "point"}]})");
+    for (int round = 0; round < 2; ++round) {
+        EXPECT_EQ(scene.environment->light_group, "sky");
+        EXPECT_EQ(scene.materials.at(0).light_group, "practical");
+        EXPECT_EQ(scene.materials.at(1).light_group, "");
+        std::string groups;
+        for (const Light& light : scene.lights) groups += light.light_group + ";";
+        EXPECT_EQ(groups, "key;rim-2;a;b;c;;");
+        save_scene(scene, folder_ / "lit");
+        scene = load_scene(folder_ / "lit" / "scene.json");
+    }
+    EXPECT_HAS(error_of(R"({"lights": [{"type": "sun", "light_group": "a b"}]})"),
+               "lights[0].light_group: 'a b' is no name of a light group");
+    EXPECT_HAS(error_of(R"({"materials": {"m": {"light_group": ""}}})"), "1 to 64 letters");
+    EXPECT_HAS(error_of(R"({"environment": {"light_group": 3}})"), "environment.light_group");
+    EXPECT_HAS(error_of(R"({"environment": {"lightgroup": "a"}})"), "did you mean 'light_group'?");
+}
+
 TEST_F(LightFiles, wrong_lights_are_refused_and_others_count_in_the_hash) {
     const auto of_light = [&](const std::string& keys) {
         return error_of(R"({"lights": [{)" + keys + "}]}");

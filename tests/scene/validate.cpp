@@ -183,6 +183,9 @@ TEST(ValidateScene, refuses_values_out_of_range) {
                "opacity and emission exclude each other");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].direction = {}; }), "light 0: direction");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].strength = -1; }), "light 0: strength");
+    EXPECT_HAS(complaint([](Scene& s) { s.lights[0].light_group = "a b"; }), "no name of a light group");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].light_group = "a.b"; }), "no name of a light group");
+    EXPECT_HAS(complaint([](Scene& s) { s.environment->light_group = ","; }), "no name of a light group");
     EXPECT_HAS(complaint([](Scene& s) { s.environment->strength = kNan; }), "environment");
     EXPECT_HAS(complaint([](Scene& s) { s.camera.to = s.camera.from; }), "same point");
     EXPECT_HAS(complaint([](Scene& s) { s.camera.up = {0, 0, 1}; }), "'up'");

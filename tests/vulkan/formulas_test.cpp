@@ -22,6 +22,7 @@
 #include "formulas/light.h"
 #include "formulas/light_source.h"
 #include "formulas/light_tree.h"
+#include "formulas/lobe_shares.h"
 #include "formulas/local_start.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"

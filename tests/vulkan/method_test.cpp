@@ -10,7 +10,9 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers{"depth", "N", "Ng", "P", "albedo", "uv", "id", "cost", "CryptoObject"};
+const std::vector<std::string> kLayers{
+    "depth",         "N",           "Ng", "P", "albedo", "uv", "id", "cost", "specular_direct",
+    "light_default", "CryptoObject"};
 
 RenderSettings make_settings() {
     RenderSettings settings;

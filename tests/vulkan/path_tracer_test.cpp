@@ -9,9 +9,39 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers{"depth",    "N",    "Ng",           "P",
-                                       "albedo",   "uv",   "id",           "samples",
-                                       "variance", "cost", "CryptoObject", "CryptoMaterial"};
+const std::vector<std::string> kLayers{"depth",
+                                       "N",
+                                       "N_camera",
+                                       "Ng",
+                                       "P",
+                                       "albedo",
+                                       "uv",
+                                       "id",
+                                       "samples",
+                                       "variance",
+                                       "cost",
+                                       "diffuse_direct",
+                                       "emission",
+                                       "background",
+                                       "diffuse_indirect",
+                                       "specular_direct",
+                                       "specular_indirect",
+                                       "light_default",
+                                       "CryptoObject",
+                                       "CryptoMaterial"};
+
+/// Lights in groups by turns, each with a layer.
+void add_light_groups(Scene& scene, std::vector<std::string>& layers) {
+    const auto add = [&](std::string& group, const char* name) {
+        group = name;
+        layers.push_back(std::string("light_") + name);
+    };
+    if (scene.environment) add(scene.environment->light_group, "sky");
+    for (size_t k = 0; k < scene.lights.size(); ++k)
+        if (k % 3 != 0) add(scene.lights[k].light_group, k % 3 == 1 ? "one" : "two");
+    for (size_t k = 0; k < scene.materials.size(); k += 3)
+        if (!(scene.materials[k].emission == Vec3f{})) add(scene.materials[k].light_group, "lamp");
+}
 
 RenderSettings make_settings() {
     RenderSettings settings;
@@ -122,6 +152,7 @@ class PathTracerTest : public GpuTest {
     explicit PathTracerTest(const Variant& variant = {"", [](Scene&, RenderSettings&) {}}) {
         Scene scene = make_shading_scene();
         variant.change(scene, settings_);
+        add_light_groups(scene, settings_.image.layers);
         prepared_ = prepare_scene(std::move(scene), settings_);
     }
 
@@ -131,7 +162,8 @@ class PathTracerTest : public GpuTest {
     };
 
     Film make_film() const {
-        Film film(settings_.image.width, settings_.image.height, settings_.image.crop, kLayers);
+        Film film(settings_.image.width, settings_.image.height, settings_.image.crop,
+                  settings_.image.layers);
         auto mattes = std::make_shared<InstanceMattes>();
         for (const Instance& instance : prepared_->instances) {
             mattes->objects.push_back(0x3f800000u + (uint32_t(mattes->objects.size()) << 20));

@@ -35,6 +35,7 @@ using scalar::kLayerColumns;
 #include "formulas/layer_parameters.h"
 #include "formulas/layer_albedo.h"
 #include "formulas/layered_bsdf.h"
+#include "formulas/lobe_shares.h"
 // clang-format on
 #undef RELIEF_LANES
 
@@ -102,9 +103,8 @@ HWY_INLINE void reflect_path(const PointLanes& point, const LayeredLanes& layere
                select(layered.has_layers, drawn.pdf, Float::load(v.bounce_pdf)), v);
 }
 
-/// Out of line: vertices without layers keep their registers.
-HWY_NOINLINE void reflect_layers(const cpu::VertexBatch& batch, const PointLanes& point, const Basis& basis,
-                                 const Vec3& wo_local, cpu::VertexLanes& v) {
+HWY_INLINE LayeredLanes make_layered_lanes(const cpu::VertexBatch& batch, const Basis& basis,
+                                           const Vec3& wo_local, const cpu::VertexLanes& v) {
     const LaneMask lanes = v.has_layers & first_lanes(batch.count);
     alignas(64) uint32_t index[16];
     alignas(64) float marks[16];
@@ -120,6 +120,13 @@ HWY_NOINLINE void reflect_layers(const cpu::VertexBatch& batch, const PointLanes
                            gather_layers(batch.layers.records, Uint::load(index))};
     surface.layers.metallic = Float::load(v.layered_metallic);
     layered.bsdf = make_layered_bsdf(surface, layered.table, wo_local.z);
+    return layered;
+}
+
+/// Out of line: vertices without layers keep their registers.
+HWY_NOINLINE void reflect_layers(const cpu::VertexBatch& batch, const PointLanes& point, const Basis& basis,
+                                 const Vec3& wo_local, cpu::VertexLanes& v) {
+    const LayeredLanes layered = make_layered_lanes(batch, basis, wo_local, v);
     reflect_light(point, layered, v);
     if (batch.pick_pairs)
         reflect_path(point, layered, load_pairs(batch.pick_pairs, batch.count).y,

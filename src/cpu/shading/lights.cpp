@@ -77,6 +77,7 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
                                                     random[k].u_light, random[k].u_emitter);
         drawn[k].lacks_radiance = false;
         drawn[k].emitter.reset();
+        drawn[k].group = pick.source ? pick.source->group : kNoIndex;
         if (!pick.source && pick.emitter == kNoIndex)
             drawn[k].pdf = 0, drawn[k].direction = {};
         else if (pick.source && pick.source->kind == scalar::kSourceEnvironment)
@@ -135,6 +136,8 @@ void LightSet::draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u
     static_cast<scalar::LightDraw&>(drawn) =
         scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf);
     drawn.emitter = point;
+    const std::vector<uint32_t>& groups = scene.light_groups.of_material;
+    if (!groups.empty()) drawn.group = groups[instance.material];
 }
 
 float LightSet::emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const {
@@ -161,39 +164,15 @@ void LightSet::look_up_environment(std::span<const Vec3f> directions,
 
 Vec3f LightSet::evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const {
     Vec3f sum{};
-    const LightChoice::Shares shares = choice_.find_shares(ray.from);
-    const auto meet = [&](const scalar::LightSourceData& source) {
-        scalar::LightSeen seen = scalar::meet_light(source, ray.from.position, ray.direction, ray.distance);
-        if (source.texture != kNoIndex && seen.pdf > 0)
-            seen.radiance = seen.radiance * choice_.fetch_color(source, ray.from.position, ray.direction);
-        return seen;
-    };
-    const auto add = [&](const scalar::LightSeen& seen, float share) {
-        sum += seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
-    };
-    for (const scalar::LightSourceData& source : choice_.listed()) {
-        if (!choice_.is_lit(source, ray.from)) continue;
-        scalar::LightSeen seen = meet(source);
-        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
-            seen = {behind.radiance, behind.pdf};
-        if (!(seen.radiance == Vec3f{})) add(seen, choice_.find_probability(shares, source, ray.from));
-    }
-    const auto add_of_tree = [&](const scalar::LightSourceData& source, const auto& find_share) {
-        const scalar::LightSeen seen = meet(source);
-        if (!(seen.radiance == Vec3f{})) add(seen, find_share());
-    };
-    choice_.visit_met(ray.from, shares, ray.direction, ray.distance, add_of_tree);
+    meet_each(ray, behind, [&](const scalar::LightSourceData&, const Vec3f& light) { sum += light; });
     return sum;
 }
 
 LightSet::Sight LightSet::see(const Vec3f& origin, const Vec3f& direction, float distance) const {
     Sight sight;
-    choice_.visit_seen(origin, direction, distance, [&](const scalar::LightSourceData& source) {
-        const Vec3f seen = scalar::see_light(source, origin, direction, distance);
-        if (seen == Vec3f{}) return;
+    see_each(origin, direction, distance, [&](const scalar::LightSourceData&, const Vec3f& light) {
         sight.is_met = true;
-        sight.radiance +=
-            source.texture == kNoIndex ? seen : seen * choice_.fetch_color(source, origin, direction);
+        sight.radiance += light;
     });
     return sight;
 }

@@ -8,6 +8,8 @@
 #include "cpu/shading/environment_light.h"
 #include "cpu/shading/light_choice.h"
 #include "cpu/tracer.h"
+#include "formulas/constants.h"
+#include "formulas/light.h"
 #include "formulas/light_source.h"
 #include "formulas/light_tree.h"
 #include "prepare/light_sources.h"
@@ -19,6 +21,7 @@ struct LightSample : scalar::LightDraw {
     Vec2f place{}; ///< in the environment's image, where the light is from there
     /// The radiance of `place` is not in `weight` yet: LightSet::complete_weight().
     bool lacks_radiance = false;
+    uint32_t group = kNoIndex; ///< as LightSourceData::group
     /// Set when the light is a surface that the shadow ray must stop short of.
     std::optional<SurfacePoint> emitter;
 };
@@ -77,6 +80,10 @@ class LightSet {
     /// density of drawing it. `behind`: the environment along the ray, where the distance is infinite.
     Vec3f evaluate_mis(const BounceRay& ray, const EnvironmentLookup& behind) const;
 
+    /// Calls visit(source, light) for each light that evaluate_mis() adds up.
+    template <class Visit>
+    void meet_each(const BounceRay& ray, const EnvironmentLookup& behind, const Visit& visit) const;
+
     /// False: see() is nothing for all rays.
     bool has_visible_lights() const { return has_visible_lights_; }
     /// The lights themselves that a camera ray meets within `distance`.
@@ -85,6 +92,9 @@ class LightSet {
         bool is_met = false; ///< though its texture may be black there
     };
     Sight see(const Vec3f& origin, const Vec3f& direction, float distance) const;
+    /// Calls visit(source, light) for each of them that it meets.
+    template <class Visit>
+    void see_each(const Vec3f& origin, const Vec3f& direction, float distance, const Visit& visit) const;
 
     /// Density with which draw() would have found a point of an emissive surface.
     float emitter_pdf(const scalar::LitPoint& at, const SurfacePoint& point) const;
@@ -109,5 +119,43 @@ class LightSet {
     LightChoice choice_;
     bool has_analytic_lights_ = false, has_visible_lights_ = false;
 };
+
+template <class Visit>
+void LightSet::meet_each(const BounceRay& ray, const EnvironmentLookup& behind, const Visit& visit) const {
+    const LightChoice::Shares shares = choice_.find_shares(ray.from);
+    const auto meet = [&](const scalar::LightSourceData& source) {
+        scalar::LightSeen seen = scalar::meet_light(source, ray.from.position, ray.direction, ray.distance);
+        if (source.texture != kNoIndex && seen.pdf > 0)
+            seen.radiance = seen.radiance * choice_.fetch_color(source, ray.from.position, ray.direction);
+        return seen;
+    };
+    const auto add = [&](const scalar::LightSourceData& source, const scalar::LightSeen& seen, float share) {
+        visit(source, seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share));
+    };
+    for (const scalar::LightSourceData& source : choice_.listed()) {
+        if (!choice_.is_lit(source, ray.from)) continue;
+        scalar::LightSeen seen = meet(source);
+        if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
+            seen = {behind.radiance, behind.pdf};
+        if (!(seen.radiance == Vec3f{}))
+            add(source, seen, choice_.find_probability(shares, source, ray.from));
+    }
+    const auto add_of_tree = [&](const scalar::LightSourceData& source, const auto& find_share) {
+        const scalar::LightSeen seen = meet(source);
+        if (!(seen.radiance == Vec3f{})) add(source, seen, find_share());
+    };
+    choice_.visit_met(ray.from, shares, ray.direction, ray.distance, add_of_tree);
+}
+
+template <class Visit>
+void LightSet::see_each(const Vec3f& origin, const Vec3f& direction, float distance,
+                        const Visit& visit) const {
+    choice_.visit_seen(origin, direction, distance, [&](const scalar::LightSourceData& source) {
+        const Vec3f seen = scalar::see_light(source, origin, direction, distance);
+        if (seen == Vec3f{}) return;
+        visit(source,
+              source.texture == kNoIndex ? seen : seen * choice_.fetch_color(source, origin, direction));
+    });
+}
 
 } // namespace relief::cpu

@@ -1,6 +1,7 @@
 // Sixteen vertices of paths at once: what they reflect of the light that was drawn, and the rays that go on.
 #pragma once
 
+#include "cpu/shading/diffuse_shares-inl.h"
 #include "cpu/shading/layers-inl.h"
 #include "cpu/shading/vertex_lanes-inl.h"
 
@@ -51,6 +52,7 @@ inline void reflect(const cpu::VertexBatch& batch, cpu::VertexLanes& v) {
         reflect_path(point, scattering, load_pairs(batch.pick_pairs, count).y,
                      load_pairs(batch.bsdf_pairs, count), v);
     if (v.has_layers & lanes) reflect_layers(batch, point, scattering.basis, scattering.wo_local, v);
+    if (batch.wants_diffuse_shares) find_diffuse_shares(batch, v);
     v.needs_shadow_ray &= lanes, v.has_bounce &= lanes;
 }
 

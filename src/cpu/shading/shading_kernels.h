@@ -36,6 +36,7 @@ struct VertexBatch {
     const Vec2f* pick_pairs; ///< random numbers, y picks the lobe; null: no path goes on
     const Vec2f* bsdf_pairs;
     LayerView layers; ///< read where VertexLanes::has_layers says so
+    bool wants_diffuse_shares = false;
 };
 
 /// Sixteen vertices, a lane each. Masks have a bit a lane.
@@ -55,7 +56,17 @@ struct VertexLanes {
     alignas(64) float bounce_weight[3][16], bounce_pdf[16];
     uint32_t needs_shadow_ray; ///< some of the light could arrive
     uint32_t has_bounce;       ///< a ray leaves the surface
+    /// Where they are asked for: of the light reflected and of the bounce weight, the part that is diffuse.
+    alignas(64) float light_diffuse[3][16], bounce_diffuse[3][16];
 };
+
+inline Vec3f get_lane(const float (&vectors)[3][16], size_t lane) {
+    return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
+}
+
+inline void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
+    vectors[0][lane] = v.x, vectors[1][lane] = v.y, vectors[2][lane] = v.z;
+}
 
 struct ShadingKernels {
     const char* name;                               ///< as that of the Kernels for the same instruction set

@@ -15,13 +15,14 @@ inline constexpr auto kRoot = make_keys("version", "render", "camera", "environm
 inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed");
 inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance");
-inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees");
-inline constexpr auto kMaterial = make_keys(
-    "base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "metallic_texture",
-    "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
-    "specular_color", "specular_roughness", "specular_ior", "coat_weight", "coat_color", "coat_roughness",
-    "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_color", "fuzz_roughness", "emission_luminance",
-    "emission_color", "opacity", "geometry_opacity", "opacity_texture", "normal_texture", "geometry_normal");
+inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees", "light_group");
+inline constexpr auto kMaterial =
+    make_keys("base_color", "base_color_texture", "roughness", "roughness_texture", "metallic",
+              "metallic_texture", "ior", "emission", "base_weight", "base_diffuse_roughness",
+              "base_metalness", "specular_weight", "specular_color", "specular_roughness", "specular_ior",
+              "coat_weight", "coat_color", "coat_roughness", "coat_ior", "coat_darkening", "fuzz_weight",
+              "fuzz_color", "fuzz_roughness", "emission_luminance", "emission_color", "opacity",
+              "geometry_opacity", "opacity_texture", "normal_texture", "geometry_normal", "light_group");
 inline constexpr auto kColourTexture = make_keys("file", "filter");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
 inline constexpr auto kNormalTexture = make_keys("file", "filter", "scale", "flip_y");
@@ -34,18 +35,20 @@ inline constexpr auto kObject =
     make_keys("name", "mesh", "displacement", "material", "transform", "instances");
 inline constexpr auto kInstances = make_keys("file", "materials");
 inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");
-inline constexpr auto kSun = make_keys("type", "direction", "angle_degrees", "color", "strength",
-                                       "visible_to_camera", "light_link_includes", "light_link_excludes");
-inline constexpr auto kPoint = make_keys("type", "position", "radius", "color", "strength",
-                                         "visible_to_camera", "light_link_includes", "light_link_excludes");
+inline constexpr auto kSun =
+    make_keys("type", "direction", "angle_degrees", "color", "strength", "visible_to_camera", "light_group",
+              "light_link_includes", "light_link_excludes");
+inline constexpr auto kPoint =
+    make_keys("type", "position", "radius", "color", "strength", "visible_to_camera", "light_group",
+              "light_link_includes", "light_link_excludes");
 inline constexpr auto kRectangle =
     make_keys("type", "position", "direction", "up", "width", "height", "color", "color_texture", "strength",
-              "visible_to_camera", "light_link_includes", "light_link_excludes");
+              "visible_to_camera", "light_group", "light_link_includes", "light_link_excludes");
 inline constexpr auto kDisk =
     make_keys("type", "position", "direction", "up", "radius", "color", "color_texture", "strength",
-              "visible_to_camera", "light_link_includes", "light_link_excludes");
+              "visible_to_camera", "light_group", "light_link_includes", "light_link_excludes");
 inline constexpr auto kSpot =
     make_keys("type", "position", "direction", "angle_degrees", "blend", "radius", "color", "strength",
-              "visible_to_camera", "light_link_includes", "light_link_excludes");
+              "visible_to_camera", "light_group", "light_link_includes", "light_link_excludes");
 
 } // namespace relief::scene_keys

@@ -35,6 +35,15 @@ std::optional<int> read_int(const JsonNode& node, std::string_view key, int64_t 
     return found ? std::optional<int>(int(found->as_integer(low, high))) : std::nullopt;
 }
 
+void read_light_group(const JsonNode& node, std::string& group) {
+    const auto found = node.find("light_group");
+    if (!found) return;
+    group = found->as_string();
+    if (!is_light_group_name(group))
+        found->fail(fmt::format("'{}' is no name of a light group", group),
+                    fmt::format("1 to {} letters, digits, '_' and '-'", kMaxLightGroupName));
+}
+
 std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::string_view key, TextureUse use,
                                                 AssetCache& assets, uint32_t channel = 0) {
     const auto found = node.find(key);
@@ -239,6 +248,7 @@ Light read_light(const JsonNode& node, AssetCache& assets) {
     read_float(node, "strength", light.strength, 0);
     read_optional(node, "visible_to_camera", light.is_visible_to_camera,
                   [](const JsonNode& n) { return n.as_bool(); });
+    read_light_group(node, light.light_group);
     read_optional(node, "light_link_includes", light.link_includes, read_names);
     read_optional(node, "light_link_excludes", light.link_excludes, read_names);
     return light;
@@ -251,6 +261,7 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
     read_vec3(node, "color", environment.color, 0);
     read_float(node, "strength", environment.strength, 0);
     read_float(node, "rotate_degrees", environment.rotate_degrees);
+    read_light_group(node, environment.light_group);
     return environment;
 }
 
@@ -317,6 +328,7 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
     read_float(node, choose_key(node, "ior", "specular_ior"), material.ior, 1);
     read_float(node, choose_key(node, "opacity", "geometry_opacity"), material.opacity, 0, 1);
     read_emission(node, material.emission);
+    read_light_group(node, material.light_group);
     read_layers(node, material);
     visit_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
         if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);

@@ -59,6 +59,7 @@ void write_environment(const Environment& environment, Json& node) {
     node["color"] = to_json(environment.color);
     node["strength"] = to_json(environment.strength);
     node["rotate_degrees"] = to_json(environment.rotate_degrees);
+    if (!environment.light_group.empty()) node["light_group"] = environment.light_group;
 }
 
 Json write_light(const Light& light) {
@@ -86,6 +87,7 @@ Json write_light(const Light& light) {
     node["color"] = to_json(light.color);
     node["strength"] = to_json(light.strength);
     if (light.is_visible_to_camera) node["visible_to_camera"] = true;
+    if (!light.light_group.empty()) node["light_group"] = light.light_group;
     if (!light.link_includes.empty()) node["light_link_includes"] = light.link_includes;
     if (!light.link_excludes.empty()) node["light_link_excludes"] = light.link_excludes;
     return node;

@@ -162,6 +162,7 @@ class SceneWriter {
             node["metallic"] = to_json(material.metallic);
             node["ior"] = to_json(material.ior);
             node["emission"] = to_json(material.emission);
+            if (!material.light_group.empty()) node["light_group"] = material.light_group;
             if (material.opacity != 1) node["opacity"] = to_json(material.opacity);
             write_layers(material, node);
             visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {

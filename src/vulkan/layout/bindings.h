@@ -31,7 +31,7 @@ const uint kBindArguments = 22u;    ///< uint: sizes of indirect launches, kArgu
 const uint kBindRequests = 23u;     ///< RequestData: patches whose tiles are requested
 const uint kBindPaths = 24u;        ///< PathData
 const uint kBindPoints = 25u;       ///< SurfacePointData
-const uint kBindFilm = 26u;         ///< FilmSumsData; behind all of them uint: PathPush::first_hit_offset
+const uint kBindFilm = 26u;         ///< FilmSumsData; then uint: light_sums.glsl, first hits
 const uint kBindPathList = 27u;     ///< uint: active paths
 const uint kBindNextPathList = 28u; ///< uint: paths active at the next depth
 const uint kBindShadowList = 29u;   ///< uint: rays towards lights
@@ -96,6 +96,13 @@ const uint kLightTreeConstant = 10u;
 const uint kLightLinksConstant = 11u;
 // The same: not 0 where a light has a texture.
 const uint kLightTexturesConstant = 12u;
+// Of kernels that add light to paths (light_sums.glsl): kKindCount where the picture has layers of kinds of
+// light, else 0; the number of groups of lights that it has layers of.
+const uint kLightKindsConstant = 13u;
+const uint kLightGroupsConstant = 14u;
+// Of the latter, that of lights without one, and that of the environment; kNone: not asked for.
+const uint kDefaultGroupConstant = 15u;
+const uint kEnvironmentGroupConstant = 16u;
 
 #include "formulas/end.h"
 #endif

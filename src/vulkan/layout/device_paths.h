@@ -47,6 +47,11 @@ struct FilmSumsData {
     uint id;     ///< of the nearest hit: 1 + instance, the lowest among ties; 0: no hit
 };
 
+const uint kFilmSumsWords = 25u; ///< of FilmSumsData
+/// Of a path, in the film's buffer behind all sums of light: what it scattered diffusely, as shares, of light
+/// that was drawn at its first vertex and of what comes there; the group of the light that was drawn last.
+const uint kPathLightWords = 7u;
+
 /// Emissive patch `index`: cumulative probability in units of 2^-24, as fine as random numbers.
 struct EmitterData {
     uint end;
@@ -93,7 +98,7 @@ struct PathPush {
     Vec3 background;
     EnvironmentData environment;
     BounceLod bounce_lod;
-    /// Word of the film's buffer, behind the sums, from which on a sample notes its first hits: one a path,
+    /// Word of the film's buffer, behind all else, from which on a sample notes its first hits: one a path,
     /// 1 + instance. 0: they are not asked for.
     uint first_hit_offset;
 };

@@ -75,6 +75,7 @@ struct MaterialData {
     float opacity;
     uint normal_texture;
     Vec2 normal_scale; ///< of x and y; negative y: flipped
+    uint light_group;  ///< of what it emits, as LightSourceData::group
     uint has_layers;
     LayerParameters layers;
 };

@@ -1,6 +1,7 @@
 // Samples the next ray of each path, up to where it sees a coarser surface, or terminates it.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/light_sums.glsl"
 #include "vulkan/shaders/surface_point.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
@@ -26,6 +27,10 @@ bool continue_path(uint path_index, HitData hit) {
     if (kHasLightLinks != 0u) paths[path_index].instance = hit.instance;
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
+    if (kLightKinds != 0u && push.depth == 0u)
+        store_bounce_shares(push.capacity, path_index,
+                            find_shares(evaluate_diffuse_scattering(scattering, drawn.direction),
+                                        drawn.weight * drawn.pdf));
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
     float near_end = find_coarse_distance(push.bounce_lod, origin, ray.lod_bias, drawn.pdf);
     RayData next = {origin, 0.0, direction, near_end, ray.lod_bias};

@@ -5,6 +5,7 @@
 #include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/surface_point.glsl"
+#include "vulkan/shaders/light_sums.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -13,11 +14,12 @@ struct DrawnLight {
     LightDraw light;
     bool is_surface;
     vec3 end; ///< of the shadow ray, just short of an emissive surface
+    uint group;
 };
 
 DrawnLight draw_from_environment(vec3 normal, vec2 u) {
     EnvironmentDraw drawn = draw_environment_direction(push.environment, u);
-    DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0)};
+    DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0), kNone};
     // Early out without reading the image: half of the directions point into the surface.
     if (!(drawn.pdf > 0.0) || dot(drawn.direction, normal) <= 0.0) return result;
     result.light.weight = environment_radiance_at(push.environment, drawn.position) * (1.0 / drawn.pdf);
@@ -37,9 +39,10 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     vec3 to = point.triangle.position - position;
     float pdf =
         emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
-    DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0)};
+    DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0), kNone};
     result.end =
         offset_origin(point.triangle.position, point.triangle.normal, point.position_error, -result.light.direction);
+    result.group = materials[instance.material].light_group;
     return result;
 }
 
@@ -49,7 +52,7 @@ DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u
     if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, u);
     if (source.kind == kSourceEmitters)
         return draw_from_emitter(at.position, lod_bias, find_emitter(push.emitter_count, u_emitter), u);
-    DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0)};
+    DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0), kNone};
     if (has_texture(source) && result.light.pdf > 0.0)
         result.light.weight *= find_light_color(source, at.position, result.light.direction);
     return result;
@@ -60,9 +63,10 @@ DrawnLight draw_light(SurfacePointData at, uint instance, uint lod_bias, vec2 pi
     LitPoint lit = {at.position, at.geometric_normal, instance};
     LightPick pick =
         pick_light(push.source_count, push.first_light_node, lit, pick_and_emitter.x, pick_and_emitter.y);
-    DrawnLight drawn = {{vec3(0.0), 0.0, vec3(0.0), 0.0}, false, vec3(0.0)};
+    DrawnLight drawn = {{vec3(0.0), 0.0, vec3(0.0), 0.0}, false, vec3(0.0), kNone};
     if (pick.source == kNone && pick.emitter == kNone) return drawn;
     drawn = draw_from(pick, at, lod_bias, pick_and_emitter.y, u);
+    if (!drawn.is_surface) drawn.group = sources[pick.source].group;
     if (dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
     drawn.light.pdf *= pick.probability;
     drawn.light.weight *= 1.0 / pick.probability;
@@ -129,8 +133,21 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, uint i
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
     paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
     paths[path_index].cost = path.cost + 1.0;
+    if (kLightKinds != 0u && push.depth == 0u)
+        store_light_shares(push.capacity, path_index,
+                           find_shares(evaluate_diffuse_scattering(scattering, wi), bsdf.value));
+    store_light_group(push.capacity, path_index, drawn.group);
     rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.lod_bias);
     return true;
+}
+
+/// To the layers of light.
+void share_emission(uint path_index, vec3 light, uint group) {
+    add_to_group(push.capacity, path_index, group, light);
+    if (push.depth == 0u)
+        add_to_kind(push.capacity, path_index, kKindEmission, light);
+    else
+        add_scattered(push.capacity, path_index, light, push.depth - 1u);
 }
 
 /// True if there is a shadow ray.
@@ -138,7 +155,9 @@ bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
     MaterialData material = materials[instances[hit.instance].material];
-    paths[path_index].radiance = path.radiance + find_emission(path, hit, point, material.emission);
+    vec3 emission = find_emission(path, hit, point, material.emission);
+    paths[path_index].radiance = path.radiance + emission;
+    share_emission(path_index, emission, material.light_group);
     return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit.instance);
 }
 

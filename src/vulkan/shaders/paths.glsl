@@ -12,6 +12,7 @@
 #include "formulas/ggx_albedo.h"
 #include "formulas/bsdf.h"
 #include "formulas/layered_bsdf.h"
+#include "formulas/lobe_shares.h"
 #include "formulas/light.h"
 #include "formulas/environment.h"
 #include "formulas/path.h"
@@ -66,6 +67,12 @@ Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 w
 BsdfValue evaluate_scattering(Scattering scattering, vec3 wi) {
     if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, wi);
     return evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
+}
+
+/// The diffuse part of it.
+vec3 evaluate_diffuse_scattering(Scattering scattering, vec3 wi) {
+    if (scattering.has_layers) return evaluate_layered_diffuse(scattering.layered, kLayerTable, scattering.wo_local, wi);
+    return evaluate_diffuse(scattering.bsdf, scattering.wo_local, wi);
 }
 
 BsdfSample sample_scattering(Scattering scattering, float u_lobe, vec2 u) {

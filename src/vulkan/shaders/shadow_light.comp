@@ -1,6 +1,7 @@
 // Adds the contribution of unoccluded shadow rays.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/light_sums.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -9,5 +10,8 @@ void main() {
     if (index >= push.count) return;
     uint ray_index = shadow_list[index];
     uint path_index = ray_index - push.capacity;
-    if (!is_hit(hits[ray_index])) paths[path_index].radiance += paths[path_index].contribution;
+    if (is_hit(hits[ray_index])) return;
+    vec3 light = paths[path_index].contribution;
+    paths[path_index].radiance += light;
+    add_shadow_light(push.capacity, path_index, light, push.depth);
 }

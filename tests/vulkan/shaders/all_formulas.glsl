@@ -7,6 +7,7 @@
 #include "formulas/layer_albedo.h"
 #include "formulas/layer_parameters.h"
 #include "formulas/layered_bsdf.h"
+#include "formulas/lobe_shares.h"
 #include "formulas/power.h"
 #include "formulas/camera.h"
 #include "formulas/cell_place.h"

@@ -69,7 +69,7 @@ struct AllStructs {
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
-    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
+    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
@@ -115,7 +115,7 @@ struct AllStructs {
 #define FIELDS_LIGHT(s) \
     FIELD(s.kind) FIELD(s.power) FIELD3(s.color) FIELD(s.strength) FIELD3(s.center) FIELD(s.radius) \
     FIELD(s.radius2) FIELD3(s.basis.t) FIELD3(s.basis.b) FIELD3(s.basis.n) FIELD(s.cone) \
-    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible) FIELD(s.texture) FIELD(s.link)
+    FIELD(s.edge) FIELD(s.half_width) FIELD(s.half_height) FIELD(s.is_visible) FIELD(s.texture) FIELD(s.link) FIELD(s.group)
 #define FIELDS_LIGHT_NODE(s) \
     FIELD3(s.center) FIELD(s.radius) FIELD3(s.axis) FIELD(s.spread_cosine) FIELD(s.spread_sine) \
     FIELD(s.reach_cosine) FIELD(s.power) FIELD(s.source) FIELD(s.end) FIELD(s.flags)

@@ -36,13 +36,14 @@ struct ShadingResults {
     float pdf;
     Vec3 direction, weight;
     GgxAlbedo albedo;
+    Vec3 diffuse_shares;
 };
 
 struct LayerResults {
     Vec3 value;
     float pdf;
     Vec3 direction, weight;
-    Vec3 diffuse;
+    Vec3 diffuse, diffuse_shares;
     float power, logarithm;
 };
 
@@ -174,6 +175,7 @@ FN ShadingResults run_shading(FormulaInput from) {
     r.direction = s.direction;
     r.weight = s.weight;
     r.albedo = lookup_ggx_albedo(p.roughness, wo.z);
+    r.diffuse_shares = find_shares(evaluate_diffuse(b, wo, wi), v.value);
     return r;
 }
 
@@ -216,6 +218,7 @@ FN LayerResults run_layers(FormulaInput from) {
     r.direction = drawn.direction;
     r.weight = drawn.weight;
     r.diffuse = evaluate_eon(s.base_color, from.u[9], wo, wi);
+    r.diffuse_shares = find_shares(evaluate_layered_diffuse(b, make_test_layers(), wo, wi), v.value);
     r.power = find_power_of_two(20.0f * from.u[10] - 10.0f);
     r.logarithm = find_logarithm(1e-6f + from.u[11]);
     return r;
@@ -260,6 +263,7 @@ FN LightSourceData make_test_source(FormulaInput from, uint kind) {
     source.is_visible = from.b & 1u;
     source.texture = kNone;
     source.link = kNone;
+    source.group = 0u;
     return source;
 }
 

@@ -1,0 +1,20 @@
+// What a material is at one point.
+#pragma once
+
+#include <cstdint>
+
+#include "prepare/prepared_scene.h"
+
+namespace relief::cpu {
+
+/// A material at one point, textures looked up.
+struct PointMaterial {
+    Vec3f base_color, emission;
+    float roughness, metallic, ior;
+    uint32_t layers; ///< record of PreparedScene::layers; kNoIndex: none
+};
+
+/// Of the material of an instance.
+PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv);
+
+} // namespace relief::cpu

@@ -1,0 +1,80 @@
+// Sums of the layers that share out the light of a picture (image/light_layers.h). They lie in the film's
+// buffer behind its other sums, path by path: a colour for each kind and each group that the picture has
+// layers of. What paths keep for them lies behind. Nothing is left of all this where it has none.
+#ifndef RELIEF_LIGHT_SUMS_GLSL
+#define RELIEF_LIGHT_SUMS_GLSL
+
+#include "vulkan/shaders/scene.glsl"
+#include "formulas/light_layers.h"
+#include "vulkan/layout/device_paths.h"
+
+layout(constant_id = kLightKindsConstant) const uint kLightKinds = 0u;
+layout(constant_id = kLightGroupsConstant) const uint kLightGroups = 0u;
+layout(constant_id = kDefaultGroupConstant) const uint kDefaultGroup = 0xffffffffu;
+layout(constant_id = kEnvironmentGroupConstant) const uint kEnvironmentGroup = 0xffffffffu;
+layout(scalar, set = 0, binding = kBindFilm) buffer LightSums { uint light_words[]; };
+
+vec3 load_light_words(uint first) {
+    return uintBitsToFloat(uvec3(light_words[first], light_words[first + 1u], light_words[first + 2u]));
+}
+
+void store_light_words(uint first, vec3 v) {
+    uvec3 bits = floatBitsToUint(v);
+    light_words[first] = bits.x;
+    light_words[first + 1u] = bits.y;
+    light_words[first + 2u] = bits.z;
+}
+
+/// `layer`: a kind, or behind all kinds a group.
+void add_to_layer(uint capacity, uint path_index, uint layer, vec3 light) {
+    uint first = capacity * kFilmSumsWords + 3u * (path_index * (kLightKinds + kLightGroups) + layer);
+    store_light_words(first, load_light_words(first) + light);
+}
+
+void add_to_kind(uint capacity, uint path_index, uint kind, vec3 light) {
+    if (kLightKinds != 0u) add_to_layer(capacity, path_index, kind, light);
+}
+
+/// kNone: of a group without a layer.
+void add_to_group(uint capacity, uint path_index, uint group, vec3 light) {
+    if (kLightGroups != 0u && group != kNone) add_to_layer(capacity, path_index, kLightKinds + group, light);
+}
+
+/// First word of what a path keeps.
+uint find_path_light(uint capacity, uint path_index) {
+    return capacity * (kFilmSumsWords + 3u * (kLightKinds + kLightGroups)) + path_index * kPathLightWords;
+}
+
+void store_light_shares(uint capacity, uint path_index, vec3 shares) {
+    store_light_words(find_path_light(capacity, path_index), shares);
+}
+
+void store_bounce_shares(uint capacity, uint path_index, vec3 shares) {
+    store_light_words(find_path_light(capacity, path_index) + 3u, shares);
+}
+
+void store_light_group(uint capacity, uint path_index, uint group) {
+    if (kLightGroups != 0u) light_words[find_path_light(capacity, path_index) + 6u] = group;
+}
+
+void add_split(uint capacity, uint path_index, vec3 light, vec3 diffuse_shares, uint bounces) {
+    vec3 diffuse = light * diffuse_shares;
+    add_to_layer(capacity, path_index, find_light_kind(kLobeDiffuse, bounces), diffuse);
+    add_to_layer(capacity, path_index, find_light_kind(kLobeSpecular, bounces), light - diffuse);
+}
+
+/// Light that the first vertex scatters; `bounces`: those between it and the light.
+void add_scattered(uint capacity, uint path_index, vec3 light, uint bounces) {
+    if (kLightKinds == 0u) return;
+    add_split(capacity, path_index, light, load_light_words(find_path_light(capacity, path_index) + 3u), bounces);
+}
+
+/// What a shadow ray brings to the vertex after `depth` bounces.
+void add_shadow_light(uint capacity, uint path_index, vec3 light, uint depth) {
+    uint kept = find_path_light(capacity, path_index);
+    if (kLightKinds != 0u)
+        add_split(capacity, path_index, light, load_light_words(kept + (depth == 0u ? 0u : 3u)), depth);
+    if (kLightGroups != 0u) add_to_group(capacity, path_index, light_words[kept + 6u], light);
+}
+
+#endif
