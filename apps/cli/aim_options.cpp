@@ -139,6 +139,12 @@ void add_display_options(CLI::App& verb, DisplayArguments& a) {
             {{"8", "8"}, {"16", "16"}}};
         a.png_bits = parse_word("--png-bits", text, kNames);
     });
+    add(verb, "--color-space", "NAME", "of EXR: linear (default: Rec.709), acescg, aces2065-1",
+        [&a](const std::string& text) {
+            constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
+                {{"linear", "linear"}, {"acescg", "acescg"}, {"aces2065-1", "aces2065-1"}}};
+            a.color_space = parse_word("--color-space", text, kNames);
+        });
 }
 
 void add_aim_options(CLI::App& verb, AimArguments& arguments) {
@@ -153,6 +159,9 @@ void check_display(const DisplayArguments& display, const std::filesystem::path&
         !(display.exposure.empty() && display.tone_map.empty() && display.png_bits.empty()))
         throw Error(ErrorKind::usage, {"radiance is written as it is, without a display", output.string(),
                                        "--exposure, --tonemap and --png-bits go with .png and .exr"});
+    if (get_lower_extension(output) != ".exr" && !display.color_space.empty())
+        throw Error(ErrorKind::usage,
+                    {"only .exr files tell their color space", output.string(), "-o FILE.exr"});
     if (!display.tone_map.empty()) check_tone_map(display.tone_map);
 }
 
@@ -170,6 +179,7 @@ void add_display_entries(const DisplayArguments& display, Image& image) {
     if (!display.exposure.empty()) image.metadata["relief:exposure"] = display.exposure;
     if (!display.tone_map.empty()) image.metadata["relief:display"] = display.tone_map;
     if (!display.png_bits.empty()) image.metadata["relief:png_bits"] = display.png_bits;
+    if (!display.color_space.empty()) image.metadata["relief:color_space"] = display.color_space;
 }
 
 std::vector<std::string> list_picture_options(const AimArguments& arguments) {
@@ -181,6 +191,7 @@ std::vector<std::string> list_picture_options(const AimArguments& arguments) {
     add("--exposure", arguments.display.exposure);
     add("--tonemap", arguments.display.tone_map);
     add("--png-bits", arguments.display.png_bits);
+    add("--color-space", arguments.display.color_space);
     return words;
 }
 

@@ -12,9 +12,10 @@
 namespace relief::cli {
 
 struct DisplayArguments {
-    std::string exposure; ///< empty, EV as a number, or "auto"
-    std::string tone_map; ///< name of a display transform; empty: the default
-    std::string png_bits; ///< "8", "16" or empty
+    std::string exposure;    ///< empty, EV as a number, or "auto"
+    std::string tone_map;    ///< name of a display transform; empty: the default
+    std::string png_bits;    ///< "8", "16" or empty
+    std::string color_space; ///< of the file; empty: linear Rec.709, or that of the parts that are joined
 };
 
 struct AimArguments {
@@ -28,7 +29,7 @@ struct AimArguments {
 /// Adds the options; `arguments` must outlive parsing.
 void add_aim_options(CLI::App& verb, AimArguments& arguments);
 
-/// Adds --exposure, --tonemap and --png-bits; `arguments` must outlive parsing.
+/// Adds --exposure, --tonemap, --png-bits and --color-space; `arguments` must outlive parsing.
 void add_display_options(CLI::App& verb, DisplayArguments& arguments);
 
 /// Throws Error{usage} for a display of a picture that has none, Error{failed} for one whose libraries cannot
@@ -40,7 +41,8 @@ void check_display(const DisplayArguments& arguments, const std::filesystem::pat
 void apply_background(const AimArguments& arguments, const std::filesystem::path& output,
                       ImageSettings& image);
 
-/// Adds the header entries that PNG files, and those made from the picture later, are shown by.
+/// Adds the header entries that PNG files, and those made from the picture later, are shown by, and the
+/// colour space of an EXR file.
 void add_display_entries(const DisplayArguments& arguments, Image& image);
 
 /// Those, and the background.

@@ -1,10 +1,12 @@
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include "io/picture/colour_space.h"
 #include "io/picture/exr_names.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/image_coders.h"
@@ -25,12 +27,21 @@ class ExrStream final : public Imf::OStream {
     CheckedFile& file_;
 };
 
+void add_chromaticities(const std::string& space, Imf::Header& header) {
+    const Chromaticities c = find_chromaticities(space);
+    const auto make = [](const Vec2f& xy) { return Imath::V2f(xy.x, xy.y); };
+    header.insert("chromaticities", Imf::ChromaticitiesAttribute(Imf::Chromaticities(
+                                        make(c.red), make(c.green), make(c.blue), make(c.white))));
+}
+
 Imf::Header make_header(const Image& image) {
     const Imath::V2i first(image.x0, image.y0);
     const int full_width = image.full_width > 0 ? image.full_width : image.x0 + image.width;
     const int full_height = image.full_height > 0 ? image.full_height : image.y0 + image.height;
     Imf::Header header(Imath::Box2i(Imath::V2i(0), Imath::V2i(full_width - 1, full_height - 1)),
                        Imath::Box2i(first, first + Imath::V2i(image.width - 1, image.height - 1)));
+    if (const auto space = image.metadata.find(kColourSpaceTag); space != image.metadata.end())
+        add_chromaticities(space->second, header);
     for (const auto& [name, value] : image.metadata) {
         // The pixels' own attributes win; OpenEXR refuses empty names and texts for values of other types.
         const std::string attribute = get_attribute_name(name);

@@ -4,6 +4,7 @@
 #include <new>
 #include <sstream>
 
+#include "io/picture/colour_space.h"
 #include "io/picture/image_input.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -108,6 +109,7 @@ Image read_image(const std::filesystem::path& file) {
         const size_t channel_count = header.channels.size();
         image.pixels.resize(size_t(header.width) * size_t(header.height) * channel_count);
         source->read_floats(int(channel_count), channel_count, image.pixels.data());
+        convert_picture(ColourWay::from_file, image);
         return image;
     });
 }

@@ -1,11 +1,13 @@
 // write_image and check_writable.
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "base/suggest.h"
 #include "io/file_system.h"
+#include "io/picture/colour_space.h"
 #include "io/picture/display_transform.h"
 #include "io/picture/image_coders.h"
 #include "relief/error.h"
@@ -125,9 +127,12 @@ void write_image(const Image& image, const std::filesystem::path& file) {
     check_output_extension(file);
     check_image(image, file);
     const std::string extension = get_extension(file);
+    std::optional<Image> converted; // to the space that the header names
+    if (extension == ".exr" && image.metadata.contains(kColourSpaceTag))
+        convert_picture(ColourWay::to_file, converted.emplace(image));
     write_checked(file, [&](CheckedFile& stream) {
         if (extension == ".exr")
-            encode_exr(image, stream);
+            encode_exr(converted ? *converted : image, stream);
         else if (extension == ".hdr")
             encode_hdr(image.width, image.height, make_colour_rows(image), stream);
         else

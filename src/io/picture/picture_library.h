@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/picture/colour_space.h"
 #include "io/picture/pixel_source.h"
 #include "relief/types.h"
 
@@ -29,11 +30,16 @@ class PictureLibrary {
                                                     const std::string& name) const = 0;
     /// From linear Rec.709 to sRGB values in [0, 1]: the output transform of ACES 1.0 for SDR video.
     virtual std::unique_ptr<ColourTransform> make_aces_display() const = 0;
+    /// Between linear Rec.709 and a space other than `linear` and `srgb`. Nothing where neither the library
+    /// nor the configuration that the environment variable OCIO names knows it; Error{bad_input} where that
+    /// is faulty.
+    virtual std::unique_ptr<ColourTransform> make_colour_space(const std::string& name,
+                                                               ColourWay way) const = 0;
 };
 
 /// The module's function that returns its library. Raise the number with every layout change of
 /// PictureLibrary, ColourTransform, PixelSource and PixelHeader: other builds are then refused.
-#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_2
+#define RELIEF_PICTURE_LIBRARY_ENTRY relief_picture_library_3
 
 /// Loads a module, for good. Throws Error{failed} with `name` where it is missing or of another layout.
 const PictureLibrary& load_picture_library(const std::string& module, const std::string& name);

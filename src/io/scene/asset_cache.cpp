@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "formulas/tonemap.h"
+#include "io/picture/colour_space.h"
 #include "io/scene/tile_names.h"
 #include "math/half.h"
 #include "relief/error.h"
@@ -91,16 +92,18 @@ fs::path AssetCache::resolve(const std::string& file) const {
     return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
 }
 
-std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel) {
+std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel,
+                                                const std::string& space) {
     const fs::path path = resolve(file);
-    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel}];
+    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel, space}];
     if (cached) return cached;
     auto texture = std::make_shared<Texture>(read_texture(path));
     if (channel > 0) move_first(*texture, channel);
     if (use != TextureUse::data) {
         check_finite(*texture, 0);
-        if (use == TextureUse::colour) decode_colours(*texture);
+        if (use == TextureUse::colour && space.empty()) decode_colours(*texture);
         if (use != TextureUse::vector) spread_grey(*texture);
+        if (!space.empty()) decode_texture(space, *texture);
         if (use == TextureUse::radiance && lift_negatives(*texture))
             warnings_.push_back(fmt::format("{}: negative radiance counts as 0", path.string()));
     }

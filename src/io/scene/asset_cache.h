@@ -22,9 +22,11 @@ class AssetCache {
     explicit AssetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     std::filesystem::path resolve(const std::string& file) const;
-    /// `channel`, from 0, comes first in the texture. Throws Error{bad_input} as read_texture, and for a
-    /// channel that the file lacks.
-    std::shared_ptr<const Texture> load(const std::string& file, TextureUse use, uint32_t channel = 0);
+    /// `channel`, from 0, comes first in the texture; `space` of colours and radiance: as the file holds them
+    /// (io/picture/colour_space.h), empty for sRGB where integers are colours and else linear Rec.709. Throws
+    /// Error{bad_input} as read_texture and decode_texture, and for a channel that the file lacks.
+    std::shared_ptr<const Texture> load(const std::string& file, TextureUse use, uint32_t channel = 0,
+                                        const std::string& space = {});
     /// The tiles of a displacement map as they are: one for a plain file, all that exist for a name with a
     /// token (io/scene/tile_names.h). A plain file that is one tile of several is warned of.
     std::vector<MapTile> load_displacement(const std::string& file);
@@ -34,7 +36,8 @@ class AssetCache {
 
   private:
     std::filesystem::path folder_;
-    std::map<std::tuple<std::string, TextureUse, uint32_t>, std::shared_ptr<const Texture>> textures_;
+    std::map<std::tuple<std::string, TextureUse, uint32_t, std::string>, std::shared_ptr<const Texture>>
+        textures_;
     std::vector<std::string> warnings_;
 };
 

@@ -15,7 +15,8 @@ inline constexpr auto kRoot = make_keys("version", "render", "camera", "environm
 inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed");
 inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance");
-inline constexpr auto kEnvironment = make_keys("file", "color", "strength", "rotate_degrees", "light_group");
+inline constexpr auto kEnvironment =
+    make_keys("file", "color_space", "color", "strength", "rotate_degrees", "light_group");
 inline constexpr auto kMaterial =
     make_keys("base_color", "base_color_texture", "roughness", "roughness_texture", "metallic",
               "metallic_texture", "ior", "emission", "base_weight", "base_diffuse_roughness",
@@ -23,7 +24,7 @@ inline constexpr auto kMaterial =
               "coat_weight", "coat_color", "coat_roughness", "coat_ior", "coat_darkening", "fuzz_weight",
               "fuzz_color", "fuzz_roughness", "emission_luminance", "emission_color", "opacity",
               "geometry_opacity", "opacity_texture", "normal_texture", "geometry_normal", "light_group");
-inline constexpr auto kColourTexture = make_keys("file", "filter");
+inline constexpr auto kColourTexture = make_keys("file", "filter", "color_space");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
 inline constexpr auto kNormalTexture = make_keys("file", "filter", "scale", "flip_y");
 inline constexpr auto kDisplacement =

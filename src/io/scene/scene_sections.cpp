@@ -45,11 +45,12 @@ void read_light_group(const JsonNode& node, std::string& group) {
 }
 
 std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::string_view key, TextureUse use,
-                                                AssetCache& assets, uint32_t channel = 0) {
+                                                AssetCache& assets, uint32_t channel = 0,
+                                                const std::string& space = {}) {
     const auto found = node.find(key);
     if (!found) return nullptr;
     const std::string file = found->as_string();
-    return found->with_place([&] { return assets.load(file, use, channel); });
+    return found->with_place([&] { return assets.load(file, use, channel, space); });
 }
 
 /// Which of a texel's values is the number.
@@ -59,6 +60,15 @@ uint32_t read_channel(const JsonNode& node) {
     const auto found = std::find(std::begin(kNames), std::end(kNames), name);
     if (found == std::end(kNames)) node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a");
     return uint32_t(found - std::begin(kNames));
+}
+
+/// `auto` and none are the same.
+std::string read_space(const JsonNode& node) {
+    const auto space = node.find("color_space");
+    if (!space) return {};
+    const std::string name = space->as_string();
+    if (name.empty()) space->fail("a color space needs a name", "auto, linear, srgb, acescg, ...");
+    return name == "auto" ? std::string() : name;
 }
 
 struct FilteredTexture {
@@ -88,7 +98,8 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
     }
     found->get("file");
     const auto channel = found->find("channel");
-    result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0);
+    result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0,
+                                      use == TextureUse::colour ? read_space(*found) : std::string());
     return result;
 }
 
@@ -257,7 +268,9 @@ Light read_light(const JsonNode& node, AssetCache& assets) {
 Environment read_environment(const JsonNode& node, AssetCache& assets) {
     node.check_keys(scene_keys::kEnvironment);
     Environment environment;
-    environment.texture = read_texture_key(node, "file", TextureUse::radiance, assets);
+    environment.texture = read_texture_key(node, "file", TextureUse::radiance, assets, 0, read_space(node));
+    if (const auto space = node.find("color_space"); space && !environment.texture)
+        space->fail("is that of a file, and there is none", "color is linear Rec.709");
     read_vec3(node, "color", environment.color, 0);
     read_float(node, "strength", environment.strength, 0);
     read_float(node, "rotate_degrees", environment.rotate_degrees);

@@ -10,4 +10,7 @@ namespace relief {
 /// PictureLibrary::make_aces_display. Throws Error{failed} where the library does not know the transform.
 std::unique_ptr<ColourTransform> make_ocio_aces_display();
 
+/// PictureLibrary::make_colour_space.
+std::unique_ptr<ColourTransform> make_ocio_colour_space(const std::string& name, ColourWay way);
+
 } // namespace relief

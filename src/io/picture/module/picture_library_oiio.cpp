@@ -173,6 +173,10 @@ class OiioLibrary final : public PictureLibrary {
         return std::make_unique<OiioSource>(name, bytes);
     }
     std::unique_ptr<ColourTransform> make_aces_display() const override { return make_ocio_aces_display(); }
+    std::unique_ptr<ColourTransform> make_colour_space(const std::string& name,
+                                                       ColourWay way) const override {
+        return make_ocio_colour_space(name, way);
+    }
 };
 
 } // namespace
