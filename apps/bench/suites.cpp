@@ -95,26 +95,26 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_paper3, make_paper3_table);
 }
 
-/// Own scenes, rendered by the command `relief` beside this program.
-SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
-    CyclesOptions options;
-    options.settings = make_settings(o, 1280, 720);
+/// Own scenes, rendered by Cycles and by the command `relief` beside this program.
+template <class Options>
+SuiteResult run_beside_cycles(const BenchOptions& o, const Report& report, std::pair<int, int> size,
+                              Value (*run)(const Options&, const Report&),
+                              Table (*make_table)(const Value&)) {
+    Options options;
+    options.settings = make_settings(o, size.first, size.second);
     options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
     options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
     check_scenes(o, cycles_scene_names());
     if (!o.scenes.empty()) options.scenes = o.scenes;
-    return run_suite(o, std::move(options), report, run_cycles, make_cycles_table);
+    return run_suite(o, std::move(options), report, run, make_table);
 }
 
-/// As the suite cycles.
+SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
+    return run_beside_cycles(o, report, {1280, 720}, run_cycles, make_cycles_table);
+}
+
 SuiteResult run_quality_suite(const BenchOptions& o, const Report& report) {
-    QualityOptions options;
-    options.settings = make_settings(o, 640, 360);
-    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
-    options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
-    check_scenes(o, cycles_scene_names());
-    if (!o.scenes.empty()) options.scenes = o.scenes;
-    return run_suite(o, std::move(options), report, run_quality, make_quality_table);
+    return run_beside_cycles(o, report, {640, 360}, run_quality, make_quality_table);
 }
 
 /// CPU engine, own scene.
