@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bench/cycles.h"
+#include "bench/picture_channels.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/error.h"
 #include "relief/samples.h"
@@ -16,14 +17,6 @@ Material make_white() {
     Material white;
     white.name = "white", white.roughness = 1, white.ior = 1;
     return white;
-}
-
-size_t find_channel(const Image& image, const char* name) {
-    const auto channel = image.find_channel(name);
-    if (!channel)
-        throw Error(ErrorKind::failed,
-                    {std::string("the picture has no channel ") + name, "bench cycles", ""});
-    return *channel;
 }
 
 } // namespace

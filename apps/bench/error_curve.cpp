@@ -1,8 +1,8 @@
 #include "bench/error_curve.h"
 
 #include <cmath>
-#include <string>
 
+#include "bench/picture_channels.h"
 #include "relief/error.h"
 
 namespace relief::bench {
@@ -10,14 +10,6 @@ namespace relief::bench {
 namespace {
 
 constexpr double kFloor = 0.01; ///< keeps dark pixels from counting without end
-
-size_t find_channel(const Image& image, const char* name) {
-    const auto channel = image.find_channel(name);
-    if (!channel)
-        throw Error(ErrorKind::failed,
-                    {std::string("the picture has no channel ") + name, "relative error", ""});
-    return *channel;
-}
 
 double interpolate_seconds(const ErrorPoint& worse, const ErrorPoint& better, double error) {
     const double share = std::log(error / worse.error) / std::log(better.error / worse.error);
