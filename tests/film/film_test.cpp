@@ -10,30 +10,12 @@
 
 #include "math/vec.h"
 #include "relief/error.h"
+#include "support/all_layers.h"
 
 namespace relief {
 namespace {
 
-const std::vector<std::string> kAllLayers{"depth",
-                                          "N",
-                                          "N_camera",
-                                          "Ng",
-                                          "P",
-                                          "albedo",
-                                          "uv",
-                                          "id",
-                                          "samples",
-                                          "variance",
-                                          "cost",
-                                          "diffuse_direct",
-                                          "emission",
-                                          "background",
-                                          "diffuse_indirect",
-                                          "specular_direct",
-                                          "specular_indirect",
-                                          "light_key",
-                                          "CryptoObject",
-                                          "CryptoMaterial"};
+const std::vector<std::string> kAllLayers = test::list_all_layers("light_key");
 
 /// Instance k is object 101 + k, of one of three materials.
 std::shared_ptr<const InstanceMattes> make_mattes() {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cpu/cpu_engine.h"
+#include "support/all_layers.h"
 #include "support/many_lights.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/shading_fixture.h"
@@ -9,26 +10,7 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers{"depth",
-                                       "N",
-                                       "N_camera",
-                                       "Ng",
-                                       "P",
-                                       "albedo",
-                                       "uv",
-                                       "id",
-                                       "samples",
-                                       "variance",
-                                       "cost",
-                                       "diffuse_direct",
-                                       "emission",
-                                       "background",
-                                       "diffuse_indirect",
-                                       "specular_direct",
-                                       "specular_indirect",
-                                       "light_default",
-                                       "CryptoObject",
-                                       "CryptoMaterial"};
+const std::vector<std::string> kLayers = test::list_all_layers("light_default");
 
 /// Lights in groups by turns, each with a layer.
 void add_light_groups(Scene& scene, std::vector<std::string>& layers) {

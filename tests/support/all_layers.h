@@ -1,0 +1,33 @@
+// Names of all layers of a picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relief::test {
+
+/// `light_layer`: that of a group of lights, "light_NAME".
+inline std::vector<std::string> list_all_layers(const std::string& light_layer) {
+    return {"depth",
+            "N",
+            "N_camera",
+            "Ng",
+            "P",
+            "albedo",
+            "uv",
+            "id",
+            "samples",
+            "variance",
+            "cost",
+            "diffuse_direct",
+            "emission",
+            "background",
+            "diffuse_indirect",
+            "specular_direct",
+            "specular_indirect",
+            light_layer,
+            "CryptoObject",
+            "CryptoMaterial"};
+}
+
+} // namespace relief::test
