@@ -38,7 +38,7 @@ struct LitPoint {
 /// while a light that is never drawn would be missing.
 const float kLeastCosine = 0.015625f;
 
-/// Part of the draws that lights in the tree get at least where they give any light: beside the sun a lamp
+/// Part of the draws that lights in the tree get at least where they give any light: beside the sun a light
 /// nearby is underestimated by a tree that spans a town.
 const float kLeastTreeShare = 0.25f;
 

@@ -69,7 +69,7 @@ TEST(LightLinks, mirrors_do_not_show_lights_that_do_not_light_them) {
 }
 
 TEST(LightLinks, light_comes_on_from_what_is_lit) {
-    // The floor is lit by the wall alone, which is lit by the lamp.
+    // The floor is lit by the wall alone, which is lit by the light.
     Scene scene = make_floor_scene();
     scene.objects[0].name = "floor";
     add_object(scene, make_quad_mesh({Vec3f{-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}}),

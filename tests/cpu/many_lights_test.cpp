@@ -27,7 +27,7 @@ class ManyLights : public testing::Test {
           choice_(make_light_tables(*prepared_, 0.02f, make_emitter_table(*prepared_))) {}
 
     float next() { return unit_(random_); }
-    /// On the floor or on a wall, near lamps and away from them.
+    /// On the floor or on a wall, near lights and away from them.
     scalar::LitPoint next_point() {
         const float x = next(), y = next();
         const Vec3f direction = scalar::square_to_sphere({next(), next()});
@@ -150,7 +150,7 @@ TEST_F(ManyLights, give_the_light_of_uniform_choice_with_far_less_noise) {
     EXPECT_GT(noise[2] / noise[1], 0.3) << "a list is hardly better";
 }
 
-/// The hall under some of its lamps; emissive bodies glow with the first of them.
+/// The hall under some of its lights; emissive bodies glow with the first of them.
 Image render_part(size_t first, size_t count, int spp) {
     Scene scene = make_hall(kLightCount);
     scene.lights = {scene.lights.begin() + long(first), scene.lights.begin() + long(first + count)};

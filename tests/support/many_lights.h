@@ -1,4 +1,4 @@
-// A hall under a thousand lamps of all kinds.
+// A hall under a thousand lights of all kinds.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Lamps that have a place, above a square of half width `half`; each kind may have an extent.
+/// Lights that have a place, above a square of half width `half`; each kind may have an extent.
 inline std::vector<Light> make_many_lights(size_t count, float half, uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0, 1);
@@ -33,7 +33,7 @@ inline std::vector<Light> make_many_lights(size_t count, float half, uint32_t se
     return lights;
 }
 
-/// A floor, a wall and a ball under the lamps, and two emissive bodies beside them.
+/// A floor, a wall and a ball under the lights, and two emissive bodies beside them.
 inline Scene make_hall(size_t light_count) {
     Scene scene;
     Material floor = make_matte(0.7f), ball = make_matte(0.9f), glow = make_matte(0.2f);
