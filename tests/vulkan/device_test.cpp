@@ -56,7 +56,8 @@ std::vector<char> read_file(const std::filesystem::path& path) {
 
 /// Runs one kernel on a device of its own with this cache; true if the result is right.
 bool run_with_cache(const std::filesystem::path& path) {
-    const Device device({.index = get_test_device_index(), .pipeline_cache = path, .is_validated = true});
+    const Device device(
+        {.index = get_test_device_index(), .pipeline_cache = path, .is_validated = true, .is_shared = false});
     const Buffer values(device, {.name = "values", .bytes = 256});
     BindingTable bindings(device);
     bindings.bind(scalar::kBindFilm, values);

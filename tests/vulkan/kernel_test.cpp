@@ -6,6 +6,7 @@
 
 #include "vulkan/device/kernel_internals.h"
 #include "vulkan/gpu_fixture.h"
+#include "vulkan/layout/device_sort.h"
 #include "vulkan/test_shaders.h"
 
 namespace relief::vulkan::tests {
@@ -30,6 +31,22 @@ TEST_F(Kernels, of_other_constants_do_not) {
     EXPECT_NE(pipeline(first), pipeline(second));
     EXPECT_EQ(first.group_size(), 64u);
     EXPECT_EQ(second.group_size(), 32u);
+}
+
+TEST_F(Kernels, differ_by_the_constants_that_the_shader_declares_alone) {
+    const auto make = [](uint32_t unknown) {
+        return Kernel(device(), {.shader = "sort_count", .constants = {scalar::kSortGroupSize, unknown}});
+    };
+    EXPECT_EQ(pipeline(make(0)), pipeline(make(1)));
+}
+
+TEST_F(Kernels, are_shared_by_devices_unless_one_is_of_its_own) {
+    const KernelConfig config{.shader = "geometric_normal", .constants = {64}};
+    const Device second({.index = get_test_device_index(), .is_validated = true});
+    EXPECT_EQ(pipeline(Kernel(device(), config)), pipeline(Kernel(second, config)));
+    EXPECT_EQ(second.allocated_bytes(Purpose::ray_buffers), 0u) << "memory is accounted for one by one";
+    const Device own({.index = get_test_device_index(), .is_shared = false});
+    EXPECT_NE(pipeline(Kernel(device(), config)), pipeline(Kernel(own, config)));
 }
 
 TEST_F(Kernels, of_shaders_from_elsewhere_do_not_even_under_one_name) {

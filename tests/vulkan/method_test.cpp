@@ -36,7 +36,7 @@ Film make_film(const RenderSettings& settings, const PreparedScene& scene) {
     return film;
 }
 
-/// On a validated device of its own.
+/// On a validated device.
 Picture render_with(RenderMethod method, const Scene& scene, RenderSettings settings) {
     settings.experiment.method = method;
     auto device = std::make_unique<Device>(

@@ -17,7 +17,7 @@ bool has_message(const Device& device, std::string_view part) {
 }
 
 TEST(Validation, finds_a_missing_barrier) {
-    const Device device({.index = get_test_device_index(), .is_validated = true});
+    const Device device({.index = get_test_device_index(), .is_validated = true, .is_shared = false});
     const Buffer one(device, {.name = "one", .bytes = 64}), two(device, {.name = "two", .bytes = 64});
     const auto copy = [](const vk::raii::CommandBuffer& commands, const Buffer& from, const Buffer& to) {
         commands.copyBuffer(*from.internals().buffer, *to.internals().buffer, vk::BufferCopy(0, 0, 64));
@@ -36,7 +36,7 @@ TEST(Validation, finds_a_missing_barrier) {
 }
 
 TEST(Validation, finds_a_wrong_call_and_names_the_object) {
-    const Device device({.index = get_test_device_index(), .is_validated = true});
+    const Device device({.index = get_test_device_index(), .is_validated = true, .is_shared = false});
     const Buffer buffer(device, {.name = "the small one", .bytes = 64});
     device.internals().run_once("a fill beyond the end", [&](const vk::raii::CommandBuffer& commands) {
         commands.fillBuffer(*buffer.internals().buffer, 128, 4, 0);
@@ -48,7 +48,7 @@ TEST(Validation, finds_a_wrong_call_and_names_the_object) {
 TEST(Validation, is_off_unless_asked_for) {
     const Device device({});
     EXPECT_TRUE(device.validation_messages().empty());
-    EXPECT_EQ(device.internals().messages, nullptr);
+    EXPECT_EQ(device.internals().shared->messages, nullptr);
 }
 
 } // namespace

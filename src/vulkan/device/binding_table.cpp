@@ -49,7 +49,7 @@ void write_binding(const BindingTable::Implementation& table, uint32_t binding,
         write.descriptorType = vk::DescriptorType::eUniformTexelBuffer;
         write.pTexelBufferView = &texels;
     }
-    table.device->device.updateDescriptorSets(write, {});
+    table.device->shared->device.updateDescriptorSets(write, {});
 }
 
 void make_unbound(BindingTable::Implementation& table, const Device& device, TexelFormat format) {
@@ -83,7 +83,7 @@ Buffer make_albedos(const Device& device) {
 BindingTable::BindingTable(const Device& device) : implementation_(std::make_unique<Implementation>()) {
     Implementation& own = *implementation_;
     own.device = &device.internals();
-    const auto& handle = own.device->device;
+    const auto& handle = own.device->shared->device;
     check_vulkan("making the table of bindings", [&] {
         const std::array sizes = {
             vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, scalar::kStorageBindingCount),
@@ -91,7 +91,8 @@ BindingTable::BindingTable(const Device& device) : implementation_(std::make_uni
         own.pool = vk::raii::DescriptorPool(handle,
                                             {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
         own.device->set_name(own.pool, "relief bindings");
-        own.set = std::move(vk::raii::DescriptorSets(handle, {*own.pool, *own.device->set_layout}).front());
+        own.set =
+            std::move(vk::raii::DescriptorSets(handle, {*own.pool, *own.device->shared->set_layout}).front());
         own.device->set_name(own.set, "relief bindings");
     });
     make_unbound(own, device, TexelFormat::none);
@@ -116,10 +117,10 @@ void BindingTable::bind(uint32_t binding, const Buffer& buffer) {
         throw Error(
             ErrorKind::failed,
             {fmt::format("{} has not the texel format of binding {}", config.name, binding), "Vulkan", ""});
-    if (format == TexelFormat::none && config.bytes > implementation_->device->max_buffer_bytes)
+    if (format == TexelFormat::none && config.bytes > implementation_->device->shared->max_buffer_bytes)
         throw Error(ErrorKind::out_of_memory,
                     {fmt::format("{} has {} bytes, a storage binding reaches {}", config.name, config.bytes,
-                                 implementation_->device->max_buffer_bytes),
+                                 implementation_->device->shared->max_buffer_bytes),
                      "Vulkan", kUseCpu});
     write_binding(*implementation_, binding, buffer.internals());
 }

@@ -33,9 +33,9 @@ uint64_t round_up(uint64_t bytes) {
 
 /// Texel buffers may exceed the range of a storage binding.
 uint64_t find_largest(const Device::Implementation& device, TexelFormat format) {
-    if (format == TexelFormat::none) return device.max_buffer_bytes;
-    const uint64_t texels = uint64_t(device.limits.maxTexelBufferElements) * texel_bytes(format);
-    return std::min(texels, device.max_allocation_bytes);
+    if (format == TexelFormat::none) return device.shared->max_buffer_bytes;
+    const uint64_t texels = uint64_t(device.shared->limits.maxTexelBufferElements) * texel_bytes(format);
+    return std::min(texels, device.shared->max_allocation_bytes);
 }
 
 void check_size(const Device::Implementation& device, const BufferConfig& config) {
@@ -43,7 +43,7 @@ void check_size(const Device::Implementation& device, const BufferConfig& config
     if (config.bytes <= largest && round_up(config.bytes) <= largest) return;
     throw Error(ErrorKind::out_of_memory,
                 {fmt::format("{} needs {} bytes, one buffer of {} may have {}", config.name, config.bytes,
-                             device.description.name, largest),
+                             device.shared->description.name, largest),
                  "Vulkan", kUseCpu});
 }
 
@@ -56,7 +56,7 @@ vk::BufferUsageFlags choose_usage(const BufferConfig& config) {
 }
 
 bool is_direct(const Buffer::Implementation& buffer) {
-    return buffer.memory.mapped() && (buffer.config.is_host_visible || !buffer.device.config.is_staged);
+    return buffer.memory.mapped() && (buffer.config.is_host_visible || !buffer.device.is_staged);
 }
 
 } // namespace
@@ -67,7 +67,7 @@ Buffer::Implementation::Implementation(Device::Implementation& owner, const Buff
     : device(owner), config(wanted) {
     check_size(device, config);
     check_vulkan(config.name, [&] {
-        buffer = vk::raii::Buffer(device.device,
+        buffer = vk::raii::Buffer(device.shared->device,
                                   vk::BufferCreateInfo({}, round_up(config.bytes), choose_usage(config)));
         device.set_name(buffer, config.name);
         const MemoryPlace place = config.is_host_visible ? MemoryPlace::host : MemoryPlace::device;
@@ -77,7 +77,7 @@ Buffer::Implementation::Implementation(Device::Implementation& owner, const Buff
     try {
         buffer.bindMemory(*memory.block->memory, memory.offset);
         if (config.format != TexelFormat::none) {
-            texels = vk::raii::BufferView(device.device,
+            texels = vk::raii::BufferView(device.shared->device,
                                           {{}, *buffer, find_texel(config.format).format, 0, VK_WHOLE_SIZE});
             device.set_name(texels, config.name + " (texels)");
         }

@@ -76,7 +76,7 @@ struct Commands::Implementation {
     void prepare();
     void bind_kernel(const Kernel& kernel, std::span<const std::byte> push);
     void begin_drawing(DrawSize size);
-    bool is_parted() const { return device.description.is_cpu && device.is_stop_asked_for; }
+    bool is_parted() const { return device.shared->description.is_cpu && device.is_stop_asked_for; }
     void launch(const Kernel& kernel, uint64_t groups, std::span<const std::byte> push);
     void launch_parts(const Kernel& kernel, Rows rows, std::span<const std::byte> push);
     void record_rows(const Kernel& kernel, const Rows& rows, std::span<const std::byte> push);
@@ -93,10 +93,11 @@ void Commands::Implementation::start() {
     kernel_names.clear();
     buffer.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     const auto bind = [&](vk::PipelineBindPoint point) {
-        buffer.bindDescriptorSets(point, *device.pipeline_layout, 0, *bindings.set, {});
+        buffer.bindDescriptorSets(point, *device.shared->pipeline_layout, 0, *bindings.set, {});
     };
     bind(vk::PipelineBindPoint::eCompute);
-    if (device.shader_stages & vk::ShaderStageFlagBits::eFragment) bind(vk::PipelineBindPoint::eGraphics);
+    if (device.shared->shader_stages & vk::ShaderStageFlagBits::eFragment)
+        bind(vk::PipelineBindPoint::eGraphics);
     is_recording = true;
 }
 
@@ -110,7 +111,7 @@ void Commands::Implementation::prepare() {
     // The last mark is reserved for the end of the submission.
     if (is_recording && marks.size() + 1 == kMarkCount && marks.back() != stage) run();
     if (!is_recording) start();
-    record_barrier(buffer, device.shader_stages);
+    record_barrier(buffer, device.shared->shader_stages);
     if (*queries && (marks.empty() || marks.back() != stage)) mark(stage);
 }
 
@@ -119,8 +120,8 @@ void Commands::Implementation::bind_kernel(const Kernel& kernel, std::span<const
     const Kernel::Implementation& used = kernel.internals();
     buffer.bindPipeline(used.is_drawn ? vk::PipelineBindPoint::eGraphics : vk::PipelineBindPoint::eCompute,
                         **used.pipeline);
-    (*buffer).pushConstants(*device.pipeline_layout, device.shader_stages, 0, uint32_t(push.size()),
-                            push.data(), *buffer.getDispatcher());
+    (*buffer).pushConstants(*device.shared->pipeline_layout, device.shared->shader_stages, 0,
+                            uint32_t(push.size()), push.data(), *buffer.getDispatcher());
     kernel_names.insert(used.name);
     ++dispatch_count;
 }
@@ -158,8 +159,8 @@ void Commands::Implementation::launch(const Kernel& kernel, uint64_t groups,
                                       std::span<const std::byte> push) {
     const bool is_drawn = kernel.is_drawn();
     const bool has_parts = is_parted() && groups > kPartGroups;
-    const uint64_t most_rows = device.limits.maxComputeWorkGroupCount[1];
-    const uint64_t widest = is_drawn ? groups : device.limits.maxComputeWorkGroupCount[0];
+    const uint64_t most_rows = device.shared->limits.maxComputeWorkGroupCount[1];
+    const uint64_t widest = is_drawn ? groups : device.shared->limits.maxComputeWorkGroupCount[0];
     const uint64_t columns =
         has_parts ? std::max<uint64_t>(kPartGroups, (groups + most_rows - 1) / most_rows) : widest;
     const uint64_t rows = (groups + columns - 1) / columns;
@@ -193,8 +194,8 @@ void Commands::Implementation::read_marks() {
     static_cast<void>(result);
     for (size_t i = 0; i + 1 < marks.size(); ++i)
         if (marks[i])
-            seconds[size_t(*marks[i])] +=
-                double((ticks[i + 1] - ticks[i]) & device.timestamp_mask) * device.timestamp_period_s;
+            seconds[size_t(*marks[i])] += double((ticks[i + 1] - ticks[i]) & device.shared->timestamp_mask) *
+                                          device.shared->timestamp_period_s;
 }
 
 std::string Commands::Implementation::describe() const {
@@ -207,7 +208,7 @@ void Commands::Implementation::run() {
     device.heed_stop();
     check_vulkan("running kernels", [&] {
         if (*queries) mark(std::nullopt);
-        record_host_barrier(buffer, device.shader_stages);
+        record_host_barrier(buffer, device.shared->shader_stages);
         buffer.end();
         const auto begin = std::chrono::steady_clock::now();
         device.submit_and_wait(buffer, [this] { return describe(); });
@@ -223,14 +224,14 @@ Commands::Commands(const Device& device, const BindingTable& bindings)
     : implementation_(new Implementation{device.internals(), bindings.internals()}) {
     Implementation& own = *implementation_;
     check_vulkan("making a command buffer", [&] {
-        const vk::raii::Device& handle = own.device.device;
-        own.pool =
-            vk::raii::CommandPool(handle, {vk::CommandPoolCreateFlagBits::eTransient, own.device.family});
+        const vk::raii::Device& handle = own.device.shared->device;
+        own.pool = vk::raii::CommandPool(
+            handle, {vk::CommandPoolCreateFlagBits::eTransient, own.device.shared->family});
         own.device.set_name(own.pool, "relief commands");
         own.buffer = std::move(
             vk::raii::CommandBuffers(handle, {*own.pool, vk::CommandBufferLevel::ePrimary, 1}).front());
         own.device.set_name(own.buffer, "relief commands");
-        if (device.is_cpu() || own.device.timestamp_period_s == 0.0f) return;
+        if (device.is_cpu() || own.device.shared->timestamp_period_s == 0.0f) return;
         own.queries = vk::raii::QueryPool(handle, {{}, vk::QueryType::eTimestamp, kMarkCount});
         own.device.set_name(own.queries, "relief stages");
     });

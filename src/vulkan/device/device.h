@@ -41,6 +41,8 @@ class Device {
         bool is_validated = false;
         /// Always copies through staging memory, even if the host can access device memory; for tests.
         bool is_staged = false;
+        /// Uses the logical device and the pipelines of earlier Devices of this process; see shared_device.h.
+        bool is_shared = true;
     };
 
     /// Throws Error{device_missing}: no driver, no such index, or missing features, which it names.

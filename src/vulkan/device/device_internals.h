@@ -11,9 +11,8 @@
 #include "engine/stop_request.h"
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/device.h"
-#include "vulkan/device/instance.h"
 #include "vulkan/device/memory.h"
-#include "vulkan/device/pipeline_store.h"
+#include "vulkan/device/shared_device.h"
 
 namespace relief::vulkan {
 
@@ -23,10 +22,7 @@ struct Device::Implementation {
 
     /// Names an object for validation messages and debuggers.
     template <class Handle> void set_name(const Handle& handle, const std::string& name) const {
-        if (!instance.has_debug_names) return;
-        const auto plain = static_cast<typename Handle::CType>(*handle);
-        device.setDebugUtilsObjectNameEXT(
-            {Handle::objectType, reinterpret_cast<uint64_t>(plain), name.c_str()});
+        shared->set_name(handle, name);
     }
     /// Submits a recorded command buffer and waits. `describe` names its contents if the device is lost.
     void submit_and_wait(const vk::raii::CommandBuffer& commands,
@@ -41,26 +37,8 @@ struct Device::Implementation {
 
     static constexpr uint64_t kStagingBytes = 16u << 20;
 
-    Config config;
-    std::unique_ptr<MessageLog> messages; ///< null without validation
-    Instance instance;
-    vk::raii::PhysicalDevice physical = nullptr;
-    DeviceDescription description;
-    vk::PhysicalDeviceLimits limits;
-    uint64_t max_buffer_bytes = 0;     ///< as a storage buffer
-    uint64_t max_allocation_bytes = 0; ///< of a buffer of any kind
-    uint32_t resident_group_count = 0;
-    float timestamp_period_s = 0; ///< 0: the queue has none
-    uint64_t timestamp_mask = 0;  ///< valid bits of a timestamp
-    uint32_t family = 0;
-    vk::ShaderStageFlags shader_stages = vk::ShaderStageFlagBits::eCompute; ///< available to kernels
-    vk::raii::Device device = nullptr;
-    vk::raii::Queue queue = nullptr;
-    vk::raii::PipelineCache pipeline_cache = nullptr;
-    size_t loaded_cache_bytes = 0;
-    vk::raii::DescriptorSetLayout set_layout = nullptr;
-    vk::raii::PipelineLayout pipeline_layout = nullptr;
-    PipelineStore<vk::raii::Pipeline> pipelines;
+    std::shared_ptr<SharedDevice> shared;
+    bool is_staged = false;
     vk::raii::CommandPool pool = nullptr;
     vk::raii::Fence fence = nullptr;
     std::unique_ptr<MemoryAllocator> memory;

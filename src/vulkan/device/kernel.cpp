@@ -1,5 +1,6 @@
 #include "vulkan/device/kernel.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ void check_config(const Device& device, const KernelConfig& config, std::span<co
 
 vk::raii::ShaderModule make_module(const Device::Implementation& device, const std::string& name,
                                    std::span<const uint32_t> code) {
-    vk::raii::ShaderModule module(device.device,
+    vk::raii::ShaderModule module(device.shared->device,
                                   vk::ShaderModuleCreateInfo({}, code.size_bytes(), code.data()));
     device.set_name(module, name);
     return module;
@@ -53,9 +54,9 @@ vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, con
     const vk::PipelineRenderingCreateInfo no_attachments;
     vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
                                         &one_sample, nullptr, &no_colors, &dynamic_state,
-                                        *device.pipeline_layout);
+                                        *device.shared->pipeline_layout);
     info.pNext = &no_attachments;
-    return {device.device, device.pipeline_cache, info};
+    return {device.shared->device, device.shared->pipeline_cache, info};
 }
 
 vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const KernelConfig& config,
@@ -69,17 +70,34 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
                                            config.constants.data());
     const bool is_drawn = !config.vertex_shader.empty();
     // Commands launches kernels in parts on a CPU device.
-    const vk::PipelineCreateFlags flags =
-        device.description.is_cpu ? vk::PipelineCreateFlagBits::eDispatchBase : vk::PipelineCreateFlags();
+    const vk::PipelineCreateFlags flags = device.shared->description.is_cpu
+                                              ? vk::PipelineCreateFlagBits::eDispatchBase
+                                              : vk::PipelineCreateFlags();
     const vk::PipelineShaderStageCreateInfo stage(
         {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
         "main", &constants);
     vk::raii::Pipeline pipeline =
         is_drawn ? make_drawn_pipeline(device, config, stage)
-                 : vk::raii::Pipeline(device.device, device.pipeline_cache,
-                                      vk::ComputePipelineCreateInfo(flags, stage, *device.pipeline_layout));
+                 : vk::raii::Pipeline(
+                       device.shared->device, device.shared->pipeline_cache,
+                       vk::ComputePipelineCreateInfo(flags, stage, *device.shared->pipeline_layout));
     device.set_name(pipeline, config.shader);
     return pipeline;
+}
+
+/// The constants with 0 in place of those that the shader does not declare, which change nothing in it
+/// (SPIR-V specification, 2.3 and 3.20).
+std::vector<uint32_t> keep_declared(const std::vector<uint32_t>& constants, std::span<const uint32_t> code) {
+    constexpr uint32_t kDecorate = 71, kSpecId = 1;
+    constexpr size_t kHeaderWords = 5;
+    std::vector<uint32_t> kept(constants.size(), 0);
+    for (size_t i = kHeaderWords; i < code.size();) {
+        const uint32_t operation = code[i] & 0xffff, words = code[i] >> 16;
+        if (operation == kDecorate && words == 4 && code[i + 2] == kSpecId && code[i + 3] < kept.size())
+            kept[code[i + 3]] = constants[code[i + 3]];
+        i += std::max(words, 1u);
+    }
+    return kept;
 }
 
 /// The device's cached pipeline, or an own one for external SPIR-V.
@@ -90,7 +108,8 @@ find_pipeline(Device::Implementation& device, const KernelConfig& config, std::s
         return make_pipeline(device, config, code);
     };
     if (!config.code.empty()) return std::make_shared<const vk::raii::Pipeline>(make());
-    return device.pipelines.find_or_make({config.shader, config.vertex_shader, config.constants}, make);
+    return device.shared->pipelines.find_or_make(
+        {config.shader, config.vertex_shader, keep_declared(config.constants, code)}, make);
 }
 
 } // namespace

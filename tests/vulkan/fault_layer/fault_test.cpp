@@ -7,6 +7,7 @@
 #include "relief/devices.h"
 #include "relief/error.h"
 #include "vulkan/device/commands.h"
+#include "vulkan/device/device_internals.h"
 #include "vulkan/layout/device_sort.h"
 
 namespace relief::vulkan::tests {
@@ -77,6 +78,8 @@ TEST(LostDevice, is_an_error_that_names_what_ran) {
     expect_text(error, device.description().name);
     expect_text(error, "device.engine = cpu");
     EXPECT_TRUE(device.validation_messages().empty());
+    const Device next({.is_validated = true});
+    EXPECT_NE(next.internals().shared, device.internals().shared);
 }
 
 TEST(NoDriver, is_an_empty_list_and_an_error) {
