@@ -138,10 +138,10 @@ struct Displacement {
     std::vector<MapTile> tiles;
 };
 
-/// OpenPBR 1.1 without transmission, subsurface and anisotropy: fuzz over a coat over a base, which is metal,
-/// a diffuse body under a clear dielectric surface, or a mix of the two. With what comes after the filters as
-/// it is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a
-/// texture is v = 1, wrap mode is repeat.
+/// OpenPBR 1.1 without subsurface and anisotropy: fuzz over a coat over a base, which is metal, a diffuse
+/// body under a clear dielectric surface, glass, or a mix of them. With what comes after the filters as it
+/// is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a texture
+/// is v = 1, wrap mode is repeat.
 struct Material {
     std::string name;
     Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
@@ -166,6 +166,14 @@ struct Material {
     float fuzz_weight = 0;         ///< [0, 1]; 0 removes the fuzz
     Vec3f fuzz_color{1, 1, 1};     ///< each in [0, 1]
     float fuzz_roughness = 0.5f;   ///< [0, 1]; below 0.07 as 0.07
+    /// [0, 1]: part of the dielectric that is glass, of the ior and roughness above; not under a coat or
+    /// fuzz. A body of it is closed, with its faces outwards; bodies of glass do not lie inside one another.
+    float transmission_weight = 0;
+    /// Each in [0, 1]: what is left of light that went through transmission_depth of a body; without a depth,
+    /// at each crossing of its surface; straight through a thin wall.
+    Vec3f transmission_color{1, 1, 1};
+    float transmission_depth = 0; ///< scene units, >= 0; 0: the body itself absorbs nothing
+    bool is_thin_walled = false;  ///< glass is a thin wall and no body: it refracts nothing
     /// [0, 1]: the part of rays that the surface stops, a cut-out below 1; not of an emitter. Intersectors
     /// take all surfaces for opaque.
     float opacity = 1;
@@ -189,8 +197,17 @@ template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& mater
     visit("normal_texture", material.normal_texture, material.normal_filter);
 }
 
-/// Whether some rays pass through a surface of the material.
+/// Whether some rays pass through a surface of the material as if it were not there.
 inline bool is_cut_out(const Material& material) { return material.opacity < 1 || material.opacity_texture; }
+
+/// Roughness up to which thin walls are clear.
+inline constexpr float kClearRoughness = 0.03f;
+
+/// Whether a surface of the material is a thin wall that rays pass straight on, those to lights too.
+inline bool is_clear_wall(const Material& material) {
+    return material.is_thin_walled && material.transmission_weight > 0 &&
+           material.roughness <= kClearRoughness;
+}
 
 /// Visibility mask with all bits set. Renders ignore masks and show all objects.
 inline constexpr uint32_t kVisibleToAll = 0xffffffff;

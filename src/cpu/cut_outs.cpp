@@ -1,40 +1,71 @@
 #include "cpu/cut_outs.h"
 
-#include <algorithm>
+#include <cmath>
 #include <limits>
 
-#include "cpu/shading/textures.h"
+#include "cpu/shading/point_material.h"
+#include "formulas/glass_vertex.h"
 #include "prepare/prepared_scene.h"
 
 namespace relief::cpu {
 
 namespace {
 
-float find_opacity(const Material& material, const Vec2f& uv) {
-    const float factor = material.opacity_texture
-                             ? fetch_texture(*material.opacity_texture, material.opacity_filter, uv).x
-                             : 1.0f;
-    return std::clamp(material.opacity * factor, 0.0f, 1.0f);
+/// The rays that are asked about, and what they met.
+struct Crossing {
+    const Tracer& tracer;
+    std::span<const TraceRay> rays;
+    std::span<const TraceHit> hits;
+    uint32_t round;
+    const CutOutPaths& paths;
+};
+
+uint32_t find_material(const PreparedScene& scene, const TraceHit& hit) {
+    return scene.instances[hit.instance].material;
+}
+
+/// Null: of a surface that is no clear wall.
+const scalar::GlassParameters* find_clear_wall(const PreparedScene& scene, uint32_t material) {
+    const scalar::GlassParameters* glass = scene.glass.find(material);
+    return glass && glass->kind == scalar::kClearWall ? glass : nullptr;
+}
+
+bool may_pass(const PreparedScene& scene, const TraceHit& hit) {
+    if (!hit.is_hit()) return false;
+    const uint32_t material = find_material(scene, hit);
+    return is_cut_out(scene.materials[material]) || find_clear_wall(scene, material);
+}
+
+bool passes(const Crossing& crossing, uint32_t k, const SurfacePoint& point) {
+    const PreparedScene& scene = crossing.tracer.scene();
+    const CutOutPaths& paths = crossing.paths;
+    const uint32_t index = find_material(scene, crossing.hits[k]);
+    const Material& material = scene.materials[index];
+    const float opacity = find_opacity(material, point.uv);
+    const scalar::GlassParameters* wall = find_clear_wall(scene, index);
+    if (!wall) return paths.draw(k, crossing.round) >= opacity;
+    const float cosine = std::fabs(dot(point.geometric_normal, crossing.rays[k].direction));
+    const Vec3f left = scalar::pass_clear_wall(*wall, find_metallic(material, point.uv), opacity, cosine);
+    const float share = scalar::largest_component(left);
+    const bool is_by_weight = paths.rule == WallRule::by_weight;
+    if (is_by_weight ? !(share > 0) : paths.draw(k, crossing.round) < 1 - share) return false;
+    paths.pass_wall(k, is_by_weight ? left : left * (1 / share));
+    return true;
 }
 
 /// Of the rays that scratch.indices lists it keeps those that pass what they met.
-void keep_passed(const Tracer& tracer, std::span<const TraceHit> hits, uint32_t round, const CutOutDraw& draw,
-                 CutOutScratch& scratch) {
-    const PreparedScene& scene = tracer.scene();
-    const auto get_material = [&](const TraceHit& hit) -> const Material& {
-        return scene.materials[scene.instances[hit.instance].material];
-    };
-    std::erase_if(scratch.indices,
-                  [&](uint32_t k) { return !hits[k].is_hit() || !is_cut_out(get_material(hits[k])); });
+void keep_passed(const Crossing& crossing, CutOutScratch& scratch) {
+    const PreparedScene& scene = crossing.tracer.scene();
+    std::erase_if(scratch.indices, [&](uint32_t k) { return !may_pass(scene, crossing.hits[k]); });
     scratch.hits.clear();
-    for (const uint32_t k : scratch.indices) scratch.hits.push_back(hits[k]);
+    for (const uint32_t k : scratch.indices) scratch.hits.push_back(crossing.hits[k]);
     scratch.points.resize(scratch.hits.size());
-    tracer.make_surface_points(scratch.hits, scratch.points, scratch.patches);
+    crossing.tracer.make_surface_points(scratch.hits, scratch.points, scratch.patches);
     size_t kept = 0;
     for (size_t n = 0; n < scratch.indices.size(); ++n) {
         const uint32_t k = scratch.indices[n];
         scratch.indices[kept] = k;
-        kept += draw(k, round) >= find_opacity(get_material(hits[k]), scratch.points[n].uv) ? 1 : 0;
+        kept += passes(crossing, k, scratch.points[n]) ? 1 : 0;
     }
     scratch.indices.resize(kept);
 }
@@ -58,11 +89,11 @@ void gather_rays(std::span<const TraceRay> rays, std::span<const float> coarse_f
 } // namespace
 
 void pass_cut_outs(const Tracer& tracer, std::span<TraceRay> rays, std::span<const float> coarse_from,
-                   std::span<TraceHit> hits, int depth, const CutOutDraw& draw, CutOutScratch& scratch) {
+                   std::span<TraceHit> hits, int depth, const CutOutPaths& paths, CutOutScratch& scratch) {
     scratch.indices.resize(rays.size());
     for (uint32_t k = 0; k < rays.size(); ++k) scratch.indices[k] = k;
     for (uint32_t round = 0;; ++round) {
-        keep_passed(tracer, hits, round, draw, scratch);
+        keep_passed({tracer, rays, hits, round, paths}, scratch);
         if (scratch.indices.empty()) return;
         gather_rays(rays, coarse_from, hits, scratch);
         if (coarse_from.empty())

@@ -1,6 +1,5 @@
 #include "cpu/path_lights.h"
 
-#include "formulas/light_layers.h"
 #include "formulas/path.h"
 
 namespace relief::cpu {
@@ -17,25 +16,16 @@ void PathLights::add_seen(uint32_t path, uint32_t kind, uint32_t group, const Ve
     add_to_group(path, group, light);
 }
 
-void PathLights::add_camera_light(const LightSet& lights, const std::optional<Vec3f>& plain,
-                                  const CameraWave& wave) {
-    if (lights.has_visible_lights())
-        for (size_t k = 0; k < wave.paths.size(); ++k)
-            lights.see_each(wave.rays[k].origin, wave.rays[k].direction, wave.hits[k].t,
-                            [&](const scalar::LightSourceData& source, const Vec3f& light) {
-                                add_seen(wave.paths[k], scalar::kKindEmission, source.group, light);
-                            });
-    const uint32_t group = plain ? groups_.of_default : groups_.of_environment;
-    for (size_t n = 0; n < wave.missed.size(); ++n) {
-        const uint32_t k = wave.missed[n];
-        // Lights cover a plain background.
-        const bool is_covered =
-            plain && lights.has_visible_lights() &&
-            lights.see(wave.rays[k].origin, wave.rays[k].direction, wave.hits[k].t).is_met;
-        if (!is_covered)
-            add_seen(wave.paths[k], scalar::kKindBackground, group,
-                     plain ? *plain : wave.backgrounds[n].radiance);
-    }
+void PathLights::add_seen_lights(uint32_t path, const LightSet& lights, const TraceRay& ray, float distance,
+                                 const Vec3f& share) {
+    lights.see_each(ray.origin, ray.direction, distance,
+                    [&](const scalar::LightSourceData& source, const Vec3f& light) {
+                        add_seen(path, scalar::kKindEmission, source.group, share * light);
+                    });
+}
+
+void PathLights::add_background(uint32_t path, bool is_plain, const Vec3f& light) {
+    add_seen(path, scalar::kKindBackground, is_plain ? groups_.of_default : groups_.of_environment, light);
 }
 
 void PathLights::add_emission(uint32_t path, uint32_t material, const Vec3f& light, int depth) {
@@ -46,10 +36,11 @@ void PathLights::add_emission(uint32_t path, uint32_t material, const Vec3f& lig
         add_to_group(path, group, light);
 }
 
-void PathLights::add_split(uint32_t path, const Vec3f& light, const Vec3f& diffuse_shares, uint32_t bounces) {
-    const Vec3f diffuse = light * diffuse_shares;
+void PathLights::add_split(uint32_t path, const Vec3f& light, const scalar::LightShares& shares,
+                           uint32_t bounces) {
+    const Vec3f diffuse = light * shares.diffuse;
     sums_[path * count_ + scalar::find_light_kind(scalar::kLobeDiffuse, bounces)] += diffuse;
-    sums_[path * count_ + scalar::find_light_kind(scalar::kLobeSpecular, bounces)] += light - diffuse;
+    sums_[path * count_ + scalar::find_light_kind(shares.rest, bounces)] += light - diffuse;
 }
 
 void PathLights::add_met_lights(uint32_t path, const Meeting& meeting, int depth) {
@@ -63,7 +54,7 @@ void PathLights::add_met_lights(uint32_t path, const Meeting& meeting, int depth
 
 void PathLights::add_shadow_light(size_t index, uint32_t path, const Vec3f& light, uint32_t bounces) {
     const ShadowRay& ray = shadow_rays_[index];
-    if (has_kinds_) add_split(path, light, bounces == 0 ? ray.diffuse_shares : shares_[path], bounces);
+    if (has_kinds_) add_split(path, light, bounces == 0 ? ray.shares : shares_[path], bounces);
     add_to_group(path, ray.group, light);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cpu/shading/lights.h"
+#include "formulas/light_layers.h"
 #include "image/light_layers.h"
 #include "math/vec.h"
 #include "prepare/light_groups.h"
@@ -33,20 +34,15 @@ class PathLights {
     /// As Film::add_lights takes it.
     std::span<const Vec3f> at(uint32_t path) const { return {sums_.data() + path * count_, count_}; }
 
-    /// The wave of camera rays: paths, their rays and hits, which of these missed, and what is behind them.
-    struct CameraWave {
-        std::span<const uint32_t> paths;
-        std::span<const TraceRay> rays;
-        std::span<const TraceHit> hits;
-        std::span<const uint32_t> missed;
-        std::span<const EnvironmentLookup> backgrounds;
-    };
-    /// Lights that the camera sees, and what it sees behind all surfaces: `plain`, or else the environment.
-    void add_camera_light(const LightSet& lights, const std::optional<Vec3f>& plain, const CameraWave& wave);
+    /// Lights that a camera ray meets before `distance`, of which `share` comes to the camera.
+    void add_seen_lights(uint32_t path, const LightSet& lights, const TraceRay& ray, float distance,
+                         const Vec3f& share);
+    /// What the camera sees behind all surfaces: the plain background, or else the environment.
+    void add_background(uint32_t path, bool is_plain, const Vec3f& light);
     /// A surface that a ray meets emits, after so many bounces. The kinds have it from add_scattered(),
     /// unless the camera sees it.
     void add_emission(uint32_t path, uint32_t material, const Vec3f& light, int depth);
-    /// Light that the first surface scatters, in the shares of set_diffuse_shares(); not yet of a group.
+    /// Light that the first surface scatters, in the shares of set_shares(); not yet of a group.
     /// `bounces`: those between it and the light.
     void add_scattered(uint32_t path, const Vec3f& light, uint32_t bounces) {
         if (has_kinds_) add_split(path, light, shares_[path], bounces);
@@ -62,14 +58,14 @@ class PathLights {
     /// To their groups, each light that the ray meets, which comes to the vertex after `depth` bounces.
     void add_met_lights(uint32_t path, const Meeting& meeting, int depth);
 
-    /// The path leaves its first vertex: the part of what comes along it that is scattered diffusely.
-    void set_diffuse_shares(uint32_t path, const Vec3f& shares) {
+    /// The path leaves its first vertex: how what comes along it is scattered.
+    void set_shares(uint32_t path, const scalar::LightShares& shares) {
         if (has_kinds_) shares_[path] = shares;
     }
 
     /// The next shadow ray of a wave, in order; its shares are those of light that the first vertex scatters.
     struct ShadowRay {
-        Vec3f diffuse_shares;
+        scalar::LightShares shares;
         uint32_t group;
     };
     void clear_shadow_rays() { shadow_rays_.clear(); }
@@ -83,14 +79,14 @@ class PathLights {
         if (group != kNoIndex) sums_[path * count_ + first_group_ + group] += light;
     }
     void add_seen(uint32_t path, uint32_t kind, uint32_t group, const Vec3f& light);
-    void add_split(uint32_t path, const Vec3f& light, const Vec3f& diffuse_shares, uint32_t bounces);
+    void add_split(uint32_t path, const Vec3f& light, const scalar::LightShares& shares, uint32_t bounces);
 
     const LightGroups& groups_;
     float clamp_indirect_;
     bool has_kinds_;
-    size_t first_group_, count_; ///< of the colours of a path
-    std::vector<Vec3f> sums_;    ///< path by path: the kinds, the groups
-    std::vector<Vec3f> shares_;  ///< of set_diffuse_shares()
+    size_t first_group_, count_;              ///< of the colours of a path
+    std::vector<Vec3f> sums_;                 ///< path by path: the kinds, the groups
+    std::vector<scalar::LightShares> shares_; ///< of set_shares()
     std::vector<ShadowRay> shadow_rays_;
 };
 

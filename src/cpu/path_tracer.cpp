@@ -9,11 +9,12 @@
 #include "base/timer.h"
 #include "cpu/bounce_rays.h"
 #include "cpu/cut_outs.h"
+#include "cpu/glass_paths.h"
 #include "cpu/path_lights.h"
 #include "cpu/shading/normal_maps.h"
-#include "cpu/shading/point_material.h"
-#include "cpu/shading/shading_kernels.h"
+#include "cpu/shading/vertex_access.h"
 #include "formulas/camera.h"
+#include "formulas/glass.h"
 #include "formulas/light.h"
 #include "formulas/light_tree.h"
 #include "formulas/path.h"
@@ -33,15 +34,16 @@ struct Path {
     Vec3f throughput{1, 1, 1};
     scalar::LitPoint previous{}; ///< the vertex that the ray left
     float bsdf_pdf = 0;          ///< with which the ray was drawn there
+    uint32_t body = kNoIndex;    ///< of solid glass that the ray is in: record of PreparedScene::glass
     int x = 0, y = 0;
     FilmSample result;
 };
 
-void add_layers(uint32_t record, size_t lane, VertexLanes& lanes) {
-    lanes.has_layers |= 1u << lane;
-    lanes.layers[lane] = record;
-    lanes.layered_metallic[lane] = lanes.metallic[lane];
-    lanes.metallic[lane] = 0, lanes.ior[lane] = 1;
+/// `diffuse`: of light along `direction`. What comes from behind a surface is transmitted.
+scalar::LightShares find_shares(const VertexLanes& lanes, size_t lane, const float (&diffuse)[3][16],
+                                const Vec3f& direction) {
+    const bool is_behind = dot(get_lane(lanes.geometric_normal, lane), direction) < 0;
+    return {get_lane(diffuse, lane), is_behind ? scalar::kLobeTransmission : scalar::kLobeSpecular};
 }
 
 struct ShadowRay {
@@ -67,14 +69,20 @@ class TileTracer {
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
     void add_backgrounds();
-    void see_lights();
+    void add_background(uint32_t path, const Vec3f& light);
     void gather_lights();
+    void add_lights_before(size_t k, const Vec3f& share, const EnvironmentLookup& behind);
     void drop_misses();
     void draw_random();
     void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     void reflect(size_t first, size_t count);
+    const scalar::GlassParameters* find_body(uint32_t body) const {
+        return body == kNoIndex ? nullptr : &tracer_.scene().glass.records[body];
+    }
+    void pass_wall(size_t k, const Vec3f& left);
+    uint32_t choose_body(size_t k, const VertexLanes& lanes, size_t lane, const Vec3f& direction) const;
     void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
     Vec3f add_found_light(uint32_t path, const Vec3f& light);
     void add_emission(size_t k, const Vec3f& emission);
@@ -90,6 +98,7 @@ class TileTracer {
     Film& film_;
     TileCounters& counters_;
     PictureFootprints* footprints_;
+    const bool has_glass_;
     scalar::CameraFrame camera_;
     scalar::BounceLod bounce_lod_;
     uint32_t sample_index_ = 0;
@@ -134,6 +143,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       film_(film),
       counters_(report.counters),
       footprints_(report.footprints),
+      has_glass_(!scene.tracer.scene().glass.empty()),
       camera_(make_camera_frame(scene.tracer.scene())),
       bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)),
       path_lights_(film.light_layers(), scene.tracer.scene().light_groups, scene.settings.image) {
@@ -171,6 +181,7 @@ void TileTracer::start_paths() {
         Path& path = paths_[i];
         places_[i] = Vec2f{float(path.x), float(path.y)} + places_[i];
         path.throughput = {1, 1, 1};
+        path.body = kNoIndex;
         path.result = {};
         path.result.cost = 1;
         active_[i] = i;
@@ -195,10 +206,12 @@ void TileTracer::trace_paths() {
     else
         closest_bounce_hits(tracer_, rays_, coarse_from_, hits_, depth_, bounce_scratch_, scratch_);
     if (tracer_.scene().has_cut_outs)
-        pass_cut_outs(
-            tracer_, rays_, depth_ > 0 ? std::span<const float>(coarse_from_) : std::span<const float>(),
-            hits_, depth_, [&](uint32_t k, uint32_t round) { return draw_cut_out(active_[k], false, round); },
-            cut_out_scratch_);
+        pass_cut_outs(tracer_, rays_,
+                      depth_ > 0 ? std::span<const float>(coarse_from_) : std::span<const float>(), hits_,
+                      depth_,
+                      {[&](uint32_t k, uint32_t round) { return draw_cut_out(active_[k], false, round); },
+                       [&](uint32_t k, const Vec3f& left) { pass_wall(k, left); }, WallRule::by_chance},
+                      cut_out_scratch_);
     if (!footprints_) return;
     for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
 }
@@ -211,9 +224,6 @@ void TileTracer::shade_paths() {
     const Timer timer;
     shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
     add_backgrounds();
-    if (depth_ == 0 && path_lights_.is_on())
-        path_lights_.add_camera_light(lights_, settings_.image.background,
-                                      {active_, rays_, hits_, missed_, backgrounds_});
     drop_misses();
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
@@ -236,44 +246,64 @@ void TileTracer::add_backgrounds() {
         count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
-    if (depth_ == 0 && lights_.has_visible_lights()) see_lights();
+    if (depth_ == 0 && lights_.has_visible_lights())
+        for (size_t k = 0; k < active_.size(); ++k) add_lights_before(k, paths_[active_[k]].throughput, {});
+    const auto add = [&](size_t n, const Vec3f& light) { add_background(active_[missed_[n]], light); };
     if (depth_ == 0 && settings_.image.background) {
-        for (size_t n = 0; n < count; ++n) {
-            FilmSample& result = paths_[active_[missed_[n]]].result;
-            if (result.alpha == 0) result.radiance += *settings_.image.background;
-        }
+        // Lights cover the background of the picture, which is none of the scene.
+        for (size_t n = 0; n < count; ++n)
+            if (paths_[active_[missed_[n]]].result.alpha == 0) add(n, *settings_.image.background);
         return;
     }
     lights_.look_up_environment(directions_, backgrounds_);
     if (depth_ > 0) return gather_lights();
-    for (size_t n = 0; n < count; ++n)
-        paths_[active_[missed_[n]]].result.radiance += backgrounds_[n].radiance;
+    for (size_t n = 0; n < count; ++n) add(n, backgrounds_[n].radiance);
 }
 
-/// Lights cover the background of the picture, which is none of the scene.
-void TileTracer::see_lights() {
-    for (size_t k = 0; k < active_.size(); ++k) {
-        FilmSample& result = paths_[active_[k]].result;
-        const LightSet::Sight seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
-        result.radiance += seen.radiance;
-        if (seen.is_met) result.alpha = 1;
-    }
+/// What the camera sees behind all surfaces; less of it than there is through clear walls.
+void TileTracer::add_background(uint32_t path, const Vec3f& light) {
+    const Vec3f seen = paths_[path].throughput * light;
+    paths_[path].result.radiance += seen;
+    if (path_lights_.is_on()) path_lights_.add_background(path, settings_.image.background.has_value(), seen);
 }
 
 /// Misses look up the image at places far apart, hits do not; both meet analytic lights, which are rare.
 void TileTracer::gather_lights() {
-    const auto gather = [&](size_t k, const EnvironmentLookup& behind) {
-        const Path& path = paths_[active_[k]];
-        const LightSet::BounceRay ray{path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf};
-        const Vec3f light = path.throughput * lights_.evaluate_mis(ray, behind);
-        add_found_light(active_[k], light);
-        if (path_lights_.has_groups())
-            path_lights_.add_met_lights(active_[k], {lights_, ray, behind, path.throughput, light}, depth_);
-    };
-    for (size_t n = 0; n < missed_.size(); ++n) gather(missed_[n], backgrounds_[n]);
+    for (size_t n = 0; n < missed_.size(); ++n) {
+        const size_t k = missed_[n];
+        add_lights_before(k, paths_[active_[k]].throughput, backgrounds_[n]);
+    }
     if (!lights_.has_analytic_lights()) return;
     for (size_t k = 0; k < active_.size(); ++k)
-        if (hits_[k].is_hit()) gather(k, {});
+        if (hits_[k].is_hit()) add_lights_before(k, paths_[active_[k]].throughput, {});
+}
+
+/// Of what ray k meets before hits_[k] and, where that is nothing, behind it; `share` comes to the camera.
+void TileTracer::add_lights_before(size_t k, const Vec3f& share, const EnvironmentLookup& behind) {
+    const uint32_t index = active_[k];
+    Path& path = paths_[index];
+    if (depth_ == 0) {
+        const LightSet::Sight seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
+        path.result.radiance += share * seen.radiance;
+        if (seen.is_met) path.result.alpha = 1;
+        if (path_lights_.is_on()) path_lights_.add_seen_lights(index, lights_, rays_[k], hits_[k].t, share);
+        return;
+    }
+    const LightSet::BounceRay ray{path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf,
+                                  find_body(path.body)};
+    const Vec3f light = share * lights_.evaluate_mis(ray, behind);
+    add_found_light(index, light);
+    if (path_lights_.has_groups())
+        path_lights_.add_met_lights(index, {lights_, ray, behind, share, light}, depth_);
+}
+
+/// The path goes on behind a clear wall; what lies before it has shone through none.
+void TileTracer::pass_wall(size_t k, const Vec3f& left) {
+    Vec3f& throughput = paths_[active_[k]].throughput;
+    const Vec3f whole = throughput;
+    throughput = throughput * left;
+    if (depth_ == 0 ? lights_.has_visible_lights() : lights_.has_analytic_lights())
+        add_lights_before(k, whole - throughput, {});
 }
 
 void TileTracer::drop_misses() {
@@ -341,25 +371,38 @@ void TileTracer::draw_lights(size_t first, size_t count) {
     lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
 }
 
+/// Of solid glass that a ray from a vertex goes into.
+uint32_t TileTracer::choose_body(size_t k, const VertexLanes& lanes, size_t lane,
+                                 const Vec3f& direction) const {
+    const uint32_t record = lanes.has_glass >> lane & 1 ? lanes.glass[lane] : kNoIndex;
+    return find_next_body(tracer_.scene().glass,
+                          {paths_[active_[k]].body, record, dot(points_[k].geometric_normal, direction),
+                           dot(get_lane(lanes.geometric_normal, lane), direction) < 0});
+}
+
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
+    const PreparedScene& scene = tracer_.scene();
     for (size_t n = 0; n < count; ++n) {
-        const PointMaterial m =
-            make_point_material(tracer_.scene(), hits_[first + n].instance, points_[first + n].uv);
+        const size_t k = first + n;
+        const SurfacePoint& point = points_[k];
+        PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
+        if (has_glass_) {
+            Path& path = paths_[active_[k]];
+            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
+            path.throughput = path.throughput *
+                              meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
+        }
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
-        set_lane(m.base_color, lane, lanes.base_color);
-        lanes.roughness[lane] = m.roughness, lanes.metallic[lane] = m.metallic, lanes.ior[lane] = m.ior;
-        if (lane == 0) lanes.has_layers = 0;
-        if (m.layers != kNoIndex) add_layers(m.layers, lane, lanes);
+        set_material(m, lane, lanes);
         emissions_[n] = m.emission;
         set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
     }
-    for (size_t n = count; n % 16 != 0; ++n)
-        lanes_[n / 16].metallic[n % 16] = 0, lanes_[n / 16].ior[n % 16] = 1;
+    for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
     const bool has_bounce = depth_ < settings_.image.bounces;
-    const MaterialLayers& found = tracer_.scene().layers;
+    const MaterialLayers& found = scene.layers;
     const LayerView layers{found.records.data(), found.entries.data(), uint32_t(found.entries.size())};
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
@@ -370,6 +413,7 @@ void TileTracer::reflect(size_t first, size_t count) {
              .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
              .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr,
              .layers = layers,
+             .glass = scene.glass.records.data(),
              .wants_diffuse_shares = depth_ == 0 && path_lights_.has_kinds()},
             lanes_[n / 16]);
     }
@@ -411,8 +455,7 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     Path& path = paths_[active_[k]];
     const bool is_last = depth_ == settings_.image.bounces;
     const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
-    const Vec3f contribution =
-        path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
+    Vec3f contribution = path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
     TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].lod_bias};
     if (light.emitter) {
@@ -420,28 +463,39 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
         ray.t_max = length(to) * (1 - 1e-6f);
         ray.direction = normalize(to);
     }
+    if (has_glass_)
+        if (const auto* body = find_body(choose_body(k, lanes, lane, ray.direction)))
+            contribution = contribution * scalar::absorb_along(body->depth, ray.t_max);
     shadow_rays_.push_back(ray);
     shadows_.push_back(
         {active_[k], scalar::clamp_indirect(contribution, settings_.image.clamp_indirect, uint32_t(depth_))});
-    if (path_lights_.is_on()) path_lights_.add_shadow_ray({get_lane(lanes.light_diffuse, lane), light.group});
+    if (path_lights_.is_on())
+        path_lights_.add_shadow_ray(
+            {find_shares(lanes, lane, lanes.light_diffuse, light.direction), light.group});
     path.result.cost += 1;
 }
 
 bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
     Path& path = paths_[active_[k]];
     path.throughput = path.throughput * get_lane(lanes.bounce_weight, lane);
-    const float probability = scalar::survival_probability(uint32_t(depth_), path.throughput);
+    const Vec3f direction = get_lane(lanes.bounce_direction, lane);
+    if (has_glass_) path.body = choose_body(k, lanes, lane, direction);
+    const auto* body = find_body(path.body);
+    const float probability = scalar::survival_probability(
+        uint32_t(depth_), body ? path.throughput * (body->ior * body->ior) : path.throughput);
     if (!is_finite(path.throughput) || random_[scalar::kRoulettePair][k].x >= probability) return false;
     path.throughput *= 1 / probability;
     path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane), points_[k].instance};
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
-    if (depth_ == 0) path_lights_.set_diffuse_shares(active_[k], get_lane(lanes.bounce_diffuse, lane));
+    if (depth_ == 0)
+        path_lights_.set_shares(active_[k], find_shares(lanes, lane, lanes.bounce_diffuse, direction));
     active_[next] = active_[k];
-    rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, get_lane(lanes.bounce_direction, lane), kInfinity,
-                   uint32_t(hits_[k].lod_bias)};
-    coarse_from_[next] =
-        scalar::find_coarse_distance(bounce_lod_, rays_[next].origin, rays_[next].lod_bias, path.bsdf_pdf);
+    rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, direction, kInfinity, uint32_t(hits_[k].lod_bias)};
+    // A body is left on the surface that it was entered on: between the two there would be no way out.
+    coarse_from_[next] = body ? kInfinity
+                              : scalar::find_coarse_distance(bounce_lod_, rays_[next].origin,
+                                                             rays_[next].lod_bias, path.bsdf_pdf);
     return true;
 }
 
@@ -452,10 +506,15 @@ void TileTracer::pass_shadow_rays() {
         if (occluded_[k]) stopped_.push_back(k), stopped_rays_.push_back(shadow_rays_[k]);
     stoppers_.resize(stopped_.size());
     tracer_.continued_hits(stopped_rays_, stoppers_, depth_);
-    pass_cut_outs(
-        tracer_, stopped_rays_, {}, stoppers_, depth_,
-        [&](uint32_t n, uint32_t round) { return draw_cut_out(shadows_[stopped_[n]].path, true, round); },
-        cut_out_scratch_);
+    const auto get_shadow = [&](uint32_t n) -> ShadowRay& { return shadows_[stopped_[n]]; };
+    const auto pass = [&](uint32_t n, const Vec3f& left) {
+        get_shadow(n).contribution = get_shadow(n).contribution * left;
+    };
+    const auto draw = [&](uint32_t n, uint32_t round) {
+        return draw_cut_out(get_shadow(n).path, true, round);
+    };
+    pass_cut_outs(tracer_, stopped_rays_, {}, stoppers_, depth_, {draw, pass, WallRule::by_weight},
+                  cut_out_scratch_);
     for (size_t n = 0; n < stopped_.size(); ++n) occluded_[stopped_[n]] = stoppers_[n].is_hit() ? 1 : 0;
 }
 

@@ -48,7 +48,7 @@ constexpr LayerKind make_light_kind(size_t kind) {
 }
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 20> kLayerKinds{{
+constexpr std::array<LayerKind, 22> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
@@ -66,12 +66,14 @@ constexpr std::array<LayerKind, 20> kLayerKinds{{
     make_light_kind(3),
     make_light_kind(4),
     make_light_kind(5),
+    make_light_kind(6),
+    make_light_kind(7),
     {"light_GROUP", Source::light_group, {"R", "G", "B"}, 3}, // one for each group
     {kObjectMattes, Source::objects, {"", "", ""}, 0},
     {kMaterialMattes, Source::materials, {"", "", ""}, 0},
 }};
 
-static_assert(kLightKinds.size() == 6);
+static_assert(kLightKinds.size() == 8);
 
 constexpr size_t kRadianceSums = 4;
 /// Radiance whose noise counts half: in the dark no relative error is ever small.

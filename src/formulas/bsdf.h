@@ -207,8 +207,8 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     return result;
 }
 
-/// Reflection of `wo` at a visible microfacet normal (Dupuy and Benyoub 2023, spherical caps).
-FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
+/// A visible microfacet normal (Dupuy and Benyoub 2023, spherical caps).
+FN Vec3 sample_ggx_normal(Float alpha, Vec3 wo, Vec2 u) {
     Vec3 stretched = {alpha * wo.x, alpha * wo.y, wo.z};
     Vec3 o = normalize(stretched);
     SinCos phi = find_sin_cos(Float(2.0f * kPi) * u.x);
@@ -216,7 +216,12 @@ FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
     Float sin_theta = sqrt(max(Float(0.0f), Float(1.0f) - z * z));
     Vec3 unstretched = {alpha * (sin_theta * phi.cosine + o.x), alpha * (sin_theta * phi.sine + o.y),
                         z + o.z};
-    Vec3 h = normalize(unstretched);
+    return normalize(unstretched);
+}
+
+/// Reflection of `wo` at such a normal.
+FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
+    Vec3 h = sample_ggx_normal(alpha, wo, u);
     return h * (Float(2.0f) * dot(wo, h)) - wo;
 }
 

@@ -7,12 +7,19 @@
 /// Ways in which the first surface scatters light; each has two kinds, direct and indirect.
 const uint kLobeDiffuse = 0u;
 const uint kLobeSpecular = 1u;
-const uint kLobeCount = 2u;
+const uint kLobeTransmission = 2u;
+const uint kLobeCount = 3u;
 
 // In the order of kLightKinds (image/light_layers.h). A further way of scattering goes before these two.
-const uint kKindEmission = 4u;   ///< surfaces and lights that the camera sees shine
-const uint kKindBackground = 5u; ///< what the camera sees behind all surfaces
-const uint kKindCount = 6u;
+const uint kKindEmission = 6u;   ///< surfaces and lights that the camera sees shine
+const uint kKindBackground = 7u; ///< what the camera sees behind all surfaces
+const uint kKindCount = 8u;
+
+/// How light that a surface scatters is shared out over the lobes.
+struct LightShares {
+    Vec3 diffuse; ///< in [0, 1]
+    uint rest;    ///< lobe of the rest: specular or transmission
+};
 
 /// Of light that the first surface scatters; `bounces`: what is between it and the light.
 FN uint find_light_kind(uint lobe, uint bounces) { return 2u * lobe + (bounces > 0u ? 1u : 0u); }

@@ -45,10 +45,13 @@ struct LightDraw {
     float pdf;      ///< infinity for a delta light
 };
 
+const float kSunDistance = 1e30f;
+
 /// A light hit by a ray.
 struct LightSeen {
-    Vec3 radiance; ///< zero: missed
-    float pdf;     ///< density with which sampling would have chosen the direction
+    Vec3 radiance;  ///< zero: missed
+    float pdf;      ///< density with which sampling would have chosen the direction
+    float distance; ///< of the light met; of a sun kSunDistance
 };
 
 /// Whether an instance is in a set, by the word of the set that it belongs to: word `instance` / 32.
@@ -247,25 +250,28 @@ FN LightSeen meet_flat_light(LightSourceData source, Vec3 origin, Vec3 direction
     bool is_on = source.kind == kSourceDisk ? is_on_disk : is_on_rectangle;
     bool is_met = is_on && facing > 0.0f && t > 0.0f && t < distance;
     float pdf = t * t / (max(facing, 1e-30f) * shape_area(source));
-    LightSeen seen = {shape_radiance(source) * (is_met ? 1.0f : 0.0f), is_met ? pdf : 0.0f};
+    LightSeen seen = {shape_radiance(source) * (is_met ? 1.0f : 0.0f), is_met ? pdf : 0.0f,
+                      is_met ? t : 0.0f};
     return seen;
 }
 
 /// Light of the scene's list that a ray hits within `distance`.
 FN LightSeen meet_light(LightSourceData source, Vec3 origin, Vec3 direction, float distance) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
-    LightSeen seen = {zero, 0.0f};
+    LightSeen seen = {zero, 0.0f, 0.0f};
     if (source.kind == kSourceSun && source.cone > 0.0f && distance == make_infinity()) {
         // 1 - cos from the chord between the unit vectors, exact for small angles.
         Vec3 chord = direction - source.basis.n;
         if (0.5f * dot(chord, chord) > source.cone) return seen;
         seen.radiance = shape_radiance(source);
         seen.pdf = cone_pdf(source.cone);
+        seen.distance = kSunDistance;
     }
     if ((source.kind == kSourcePoint || source.kind == kSourceSpot) && source.radius > 0.0f) {
         Vec3 to = source.center - origin;
         float t = sphere_distance(to, source.radius, direction);
         if (!(t > 0.0f) || t >= distance) return seen;
+        seen.distance = t;
         seen.radiance = shape_radiance(source) * direction_falloff(source, direction);
         seen.pdf = cone_pdf(sphere_cone_height(source.radius, length(to)));
     }

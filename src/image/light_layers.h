@@ -12,8 +12,9 @@
 namespace relief {
 
 /// Layers of the kinds, in the order of scalar::find_light_kind(), kKindEmission and kKindBackground.
-inline constexpr std::array<const char*, 6> kLightKinds{
-    "diffuse_direct", "diffuse_indirect", "specular_direct", "specular_indirect", "emission", "background"};
+inline constexpr std::array<const char*, 8> kLightKinds{
+    "diffuse_direct",      "diffuse_indirect",      "specular_direct", "specular_indirect",
+    "transmission_direct", "transmission_indirect", "emission",        "background"};
 
 /// "light_NAME" is the layer of the group NAME.
 inline constexpr std::string_view kLightGroupPrefix = "light_";

@@ -225,10 +225,12 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->materials.emplace_back();
     for (Material& material : prepared->materials)
         material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
-    prepared->has_cut_outs = std::ranges::any_of(prepared->materials, is_cut_out);
+    prepared->has_cut_outs = std::ranges::any_of(
+        prepared->materials, [](const Material& m) { return is_cut_out(m) || is_clear_wall(m); });
     prepared->has_normal_maps = std::ranges::any_of(
         prepared->materials, [](const Material& material) { return !!material.normal_texture; });
     prepared->layers = make_material_layers(prepared->materials);
+    prepared->glass = make_material_glass(prepared->materials);
     prepared->links = make_light_links(scene);
     prepared->lights = std::move(scene.lights);
     prepared->environment = std::move(scene.environment);

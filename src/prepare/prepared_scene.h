@@ -10,6 +10,7 @@
 #include "math/affine.h"
 #include "prepare/light_groups.h"
 #include "prepare/light_links.h"
+#include "prepare/material_glass.h"
 #include "prepare/material_layers.h"
 #include "relief/render.h"
 #include "relief/scene.h"
@@ -61,9 +62,10 @@ struct PreparedScene {
     std::vector<Instance> instances; ///< in the order of Scene::objects
     std::vector<PreparedMap> maps;   ///< of all displacements
     std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
-    bool has_cut_outs = false;       ///< some material lets rays through
+    bool has_cut_outs = false;       ///< some material is a cut-out or a clear wall
     bool has_normal_maps = false;    ///< some material has one
     MaterialLayers layers;           ///< of the materials
+    MaterialGlass glass;             ///< of the materials
     std::vector<Light> lights;
     LightLinks links; ///< of the lights
     std::optional<Environment> environment;

@@ -185,6 +185,24 @@ void check_displacement(const Displacement& map, size_t index) {
     check_range(where, "scale", map.scale, -kHuge, kHuge);
 }
 
+void check_glass(const Material& material, const std::string& where) {
+    check_range(where, "transmission_weight", material.transmission_weight, 0, 1);
+    check_range(where, "transmission_color", material.transmission_color, 0, 1);
+    check_range(where, "transmission_depth", material.transmission_depth, 0, kHuge);
+    if (!(material.transmission_weight > 0)) return;
+    if (material.coat_weight > 0 || material.fuzz_weight > 0)
+        fail(where,
+             fmt::format("transmission_weight and {} exclude each other",
+                         material.coat_weight > 0 ? "coat_weight" : "fuzz_weight"),
+             "glass has neither coat nor fuzz here; give one of the two another material");
+    if (is_clear_wall(material) && !(material.emission == Vec3f{}))
+        fail(
+            where,
+            "a thin wall that rays pass straight through cannot emit light: transmission_weight and emission "
+            "exclude each other",
+            fmt::format("a roughness above {:g} makes it a wall that rays end on", kClearRoughness));
+}
+
 void check_material(const Material& material, size_t index) {
     const std::string where = describe("material", material.name, index);
     check_range(where, "base_color", material.base_color, 0, 1);
@@ -197,6 +215,7 @@ void check_material(const Material& material, size_t index) {
     if (is_cut_out(material) && !(material.emission == Vec3f{}))
         fail(where,
              "a surface that emits light cannot be a cut-out: opacity and emission exclude each other");
+    check_glass(material, where);
     for (const auto& [what, value] : {std::pair("base_weight", material.base_weight),
                                       std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
                                       std::pair("specular_weight", material.specular_weight),

@@ -52,7 +52,15 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           {material.normal_scale, material.normal_scale * (material.normal_flip_y ? -1 : 1)},
                           groups.empty() ? kNoIndex : groups[result.size()],
                           0,
+                          {},
+                          0,
                           {}});
+    for (size_t k = 0; k < result.size(); ++k) {
+        const scalar::GlassParameters* glass = scene.glass.find(uint32_t(k));
+        if (!glass) continue;
+        result[k].has_glass = 1;
+        result[k].glass = *glass;
+    }
     if (scene.layers.empty()) return result;
     for (size_t k = 0; k < result.size(); ++k) {
         const uint32_t record = scene.layers.record_of_material[k];

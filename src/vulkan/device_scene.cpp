@@ -100,9 +100,12 @@ std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constan
 
 std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    if (!has_layers_) return constants;
-    constants.resize(scalar::kLayersConstant + 1);
-    constants[scalar::kLayersConstant] = 1;
+    const auto set = [&](uint32_t constant) {
+        constants.resize(std::max<size_t>(constants.size(), constant + 1));
+        constants[constant] = 1;
+    };
+    if (has_layers_) set(scalar::kLayersConstant);
+    if (has_glass_) set(scalar::kGlassConstant);
     return constants;
 }
 
@@ -128,6 +131,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     for (const Light& light : scene.lights) add(light.color_texture);
     has_layers_ = !scene.layers.empty();
     has_normal_maps_ = scene.has_normal_maps;
+    has_glass_ = !scene.glass.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }

@@ -23,7 +23,7 @@ constexpr uint32_t kGroupSize = 64;
 
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
-static_assert(sizeof(scalar::PathData) == 76 && sizeof(scalar::SurfacePointData) == 68);
+static_assert(sizeof(scalar::PathData) == 80 && sizeof(scalar::SurfacePointData) == 68);
 static_assert(sizeof(scalar::FilmSumsData) == scalar::kFilmSumsWords * sizeof(uint32_t));
 static_assert(kLightKinds.size() == scalar::kKindCount);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
@@ -46,7 +46,7 @@ Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
 std::vector<uint32_t> add_light_layers(std::vector<uint32_t> constants, const LightLayers& layers,
                                        const LightGroups& groups) {
     if (layers.count() == 0) return constants;
-    constants.resize(scalar::kEnvironmentGroupConstant + 1);
+    constants.resize(std::max<size_t>(constants.size(), scalar::kEnvironmentGroupConstant + 1));
     constants[scalar::kLightKindsConstant] = uint32_t(layers.kind_count());
     constants[scalar::kLightGroupsConstant] = uint32_t(layers.groups.size());
     constants[scalar::kDefaultGroupConstant] = groups.of_default;
@@ -90,7 +90,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
-    background_ = make_lighting_kernel("background");
+    background_ = make_scattering_kernel("background");
     surface_point_ = make_reading_kernel(tracer, "surface_point");
     shading_normal_ = Kernel(device, {.shader = "shading_normal",
                                       .constants = tracer.device_scene().add_normal_maps({kGroupSize})});
@@ -101,7 +101,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     shadow_light_ = make_lighting_kernel("shadow_light");
     film_ = make_kernel(device, "film");
     if (tracer.scene().has_cut_outs) {
-        cut_outs_.emplace(make_reading_kernel(tracer, "cut_outs"));
+        cut_outs_.emplace(make_scattering_kernel("cut_outs"));
         saved_list_ = make_buffer<uint32_t>(device, "saved_list", capacity_);
     }
     make_buffers();
@@ -295,7 +295,15 @@ void PathTracer::pass_cut_outs(scalar::PathPush push, bool is_shadow, CastStatis
     const Buffer& list = is_shadow ? shadow_list_ : path_list_;
     const Buffer& passed = is_shadow ? path_list_ : next_path_list_;
     const uint64_t bytes = uint64_t(push.count) * sizeof(uint32_t);
-    scalar::CutOutPush cut_out{push.count, capacity_, push.depth, is_shadow ? 1u : 0u, push.sample_index, 0};
+    scalar::CutOutPush cut_out{.count = push.count,
+                               .capacity = capacity_,
+                               .depth = push.depth,
+                               .is_shadow = is_shadow ? 1u : 0u,
+                               .sample_index = push.sample_index,
+                               .round = 0,
+                               .source_count = push.source_count,
+                               .first_light_node = push.first_light_node,
+                               .clamp_indirect = push.clamp_indirect};
     commands.begin_stage(Stage::shade);
     commands.copy(list, 0, saved_list_, 0, bytes);
     for (;; ++cut_out.round) {

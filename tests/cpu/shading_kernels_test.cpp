@@ -13,12 +13,14 @@
 #include "cpu/shading/shading_kernels.h"
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
+#include "formulas/glass_bsdf.h"
 #include "formulas/layered_bsdf.h"
 #include "formulas/lobe_shares.h"
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"
 #include "formulas/warp.h"
+#include "prepare/material_glass.h"
 #include "prepare/material_layers.h"
 #include "relief/render.h"
 #include "support/shading_scenes.h"
@@ -117,6 +119,7 @@ struct Case {
     cpu::TraceRay ray;
     scalar::BsdfParameters material;
     uint32_t layers; ///< record of make_layers; kNoIndex: without
+    uint32_t glass;  ///< record of make_glass, likewise
     Vec3f light;
     float light_pdf;
     Vec2f pick, u;
@@ -136,6 +139,17 @@ MaterialLayers make_layers() {
     texture->width = texture->height = 1, texture->floats = {1, 1, 1, 1};
     materials[5].coat_weight = 0.4f, materials[5].roughness_texture = texture;
     return make_material_layers(materials);
+}
+
+/// One of each kind.
+MaterialGlass make_glass() {
+    std::vector<Material> materials(3);
+    for (Material& m : materials) m.transmission_weight = 1, m.specular_color = {1, 0.7f, 0.4f};
+    materials[0].transmission_color = {0.9f, 0.5f, 0.2f}, materials[0].ior = 1.3f;
+    materials[1].is_thin_walled = materials[2].is_thin_walled = true;
+    materials[1].transmission_color = {0.2f, 0.5f, 0.9f};
+    materials[2].roughness = 0;
+    return make_material_glass(materials);
 }
 
 /// Every kind of material in one batch, points seen from both sides and at grazing angles, lights behind the
@@ -161,6 +175,10 @@ std::vector<Case> make_cases() {
         // Batches without layers, with some, and of layers alone.
         const size_t batch = k / 16 % 5;
         c.layers = batch == 4 || (batch % 2 == 1 && k % 4 != 0) ? uint32_t(k % 6) : kNoIndex;
+        // The same with glass, in other batches.
+        const size_t third = k / 16 % 3;
+        c.glass = third == 2 || (third == 1 && k % 5 == 0) ? uint32_t(k % 3) : kNoIndex;
+        if (c.glass != kNoIndex) c.layers = kNoIndex;
         c.light = numbers.direction();
         c.light_pdf = k % 7 == 0 ? 0 : numbers.next() + 0.1f;
         c.pick = numbers.pair(), c.u = numbers.pair();
@@ -178,46 +196,69 @@ void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
     lanes.roughness[lane] = c.material.roughness, lanes.metallic[lane] = c.material.metallic;
     lanes.ior[lane] = c.material.ior, lanes.light_pdf[lane] = c.light_pdf;
     lanes.layers[lane] = c.layers, lanes.layered_metallic[lane] = c.material.metallic;
-    if (lane == 0) lanes.has_layers = 0;
+    if (lane == 0) lanes.has_layers = lanes.has_glass = 0;
     if (c.layers != kNoIndex) lanes.has_layers |= 1u << lane;
+    lanes.glass[lane] = c.glass;
+    if (c.glass != kNoIndex) lanes.has_glass |= 1u << lane;
 }
 
 cpu::LayerView view(const MaterialLayers& layers) {
     return {layers.records.data(), layers.entries.data(), uint32_t(layers.entries.size())};
 }
 
-/// The BSDF of a case, with or without layers.
+struct CaseMaterials {
+    MaterialLayers layers = make_layers();
+    MaterialGlass glass = make_glass();
+};
+
+/// The BSDF of a case, with or without layers, or of glass.
 struct CaseBsdf {
-    CaseBsdf(const Case& c, const MaterialLayers& layers, const Vec3f& viewer)
-        : wo(viewer), has_layers(c.layers != kNoIndex), table{layers.entries.data()} {
+    CaseBsdf(const Case& c, const CaseMaterials& materials, const Vec3f& viewer, bool is_inside)
+        : wo(viewer),
+          has_layers(c.layers != kNoIndex),
+          is_glass(c.glass != kNoIndex),
+          table{materials.layers.entries.data()} {
+        const MaterialLayers& layers = materials.layers;
         plain = scalar::make_bsdf(c.material, wo.z);
+        if (is_glass)
+            glass =
+                scalar::make_glass_bsdf(materials.glass.records[c.glass], c.material.roughness, is_inside);
         if (!has_layers) return;
         scalar::LayeredSurface surface{c.material.base_color, c.material.roughness, layers.records[c.layers]};
         surface.layers.metallic = c.material.metallic;
         layered = scalar::make_layered_bsdf(surface, table, wo.z);
     }
     scalar::BsdfValue evaluate(const Vec3f& wi) const {
-        return has_layers ? scalar::evaluate_layered_bsdf(layered, table, wo, wi)
-                          : scalar::evaluate_bsdf(plain, wo, wi);
+        return is_glass     ? scalar::evaluate_glass_bsdf(glass, wo, wi)
+               : has_layers ? scalar::evaluate_layered_bsdf(layered, table, wo, wi)
+                            : scalar::evaluate_bsdf(plain, wo, wi);
     }
     Vec3f evaluate_diffuse(const Vec3f& wi) const {
-        return has_layers ? scalar::evaluate_layered_diffuse(layered, table, wo, wi)
-                          : scalar::evaluate_diffuse(plain, wo, wi);
+        return is_glass     ? Vec3f{}
+               : has_layers ? scalar::evaluate_layered_diffuse(layered, table, wo, wi)
+                            : scalar::evaluate_diffuse(plain, wo, wi);
     }
     scalar::BsdfSample sample(float lobe, const Vec2f& u) const {
-        return has_layers ? scalar::sample_layered_bsdf(layered, table, wo, lobe, u)
-                          : scalar::sample_bsdf(plain, wo, lobe, u);
+        return is_glass     ? scalar::sample_glass_bsdf(glass, wo, lobe, u)
+               : has_layers ? scalar::sample_layered_bsdf(layered, table, wo, lobe, u)
+                            : scalar::sample_bsdf(plain, wo, lobe, u);
+    }
+
+    /// Whether a direction is above, or of glass on one side of both normals.
+    bool is_possible(const Vec3f& local, float height) const {
+        return is_glass && local.z < 0 ? height < 0 : height > 0 && (local.z > 0 || !is_glass);
     }
 
     Vec3f wo;
-    bool has_layers;
+    bool has_layers, is_glass;
     scalar::LayerTable table;
     scalar::Bsdf plain;
     scalar::LayeredBsdf layered{};
+    scalar::GlassBsdf glass{};
 };
 
 /// The same with the formulas for one.
-void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexLanes& lanes, size_t lane) {
+void expect_lane(const Case& c, const CaseMaterials& materials, const cpu::VertexLanes& lanes, size_t lane) {
     const Vec3f wo = -c.ray.direction;
     const bool is_behind = dot(c.point.geometric_normal, wo) < 0;
     const Vec3f geometric = is_behind ? -c.point.geometric_normal : c.point.geometric_normal;
@@ -226,10 +267,12 @@ void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexL
     EXPECT_EQ(get_lane(lanes.shading_normal, lane), shading);
     const scalar::Basis basis = scalar::make_basis(scalar::bend_normal(shading, geometric, wo));
     const Vec3f wo_local = scalar::lift_viewer(scalar::to_local(basis, wo));
-    const CaseBsdf bsdf(c, layers, wo_local);
+    const CaseBsdf bsdf(c, materials, wo_local, is_behind);
 
-    const scalar::BsdfValue value = bsdf.evaluate(scalar::to_local(basis, c.light));
-    const bool needs_shadow_ray = c.light_pdf > 0 && dot(c.light, geometric) > 0 && !(value.value == Vec3f{});
+    const Vec3f light_local = scalar::to_local(basis, c.light);
+    const scalar::BsdfValue value = bsdf.evaluate(light_local);
+    const bool needs_shadow_ray = c.light_pdf > 0 && bsdf.is_possible(light_local, dot(c.light, geometric)) &&
+                                  !(value.value == Vec3f{});
     ASSERT_EQ(lanes.needs_shadow_ray >> lane & 1, needs_shadow_ray);
     EXPECT_EQ(get_lane(lanes.light_reflected, lane), value.value);
     EXPECT_EQ(lanes.light_bsdf_pdf[lane], value.pdf);
@@ -243,7 +286,8 @@ void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexL
 
     const scalar::BsdfSample drawn = bsdf.sample(c.pick.y, c.u);
     const Vec3f direction = normalize(scalar::from_local(basis, drawn.direction));
-    const bool has_bounce = !(drawn.weight == Vec3f{}) && dot(geometric, direction) > 0;
+    const bool has_bounce =
+        !(drawn.weight == Vec3f{}) && bsdf.is_possible(drawn.direction, dot(geometric, direction));
     ASSERT_EQ(lanes.has_bounce >> lane & 1, has_bounce);
     if (!has_bounce) return;
     EXPECT_EQ(get_lane(lanes.bounce_direction, lane), direction);
@@ -257,7 +301,7 @@ void expect_lane(const Case& c, const MaterialLayers& layers, const cpu::VertexL
 
 TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_one) {
     const std::vector<Case> cases = make_cases();
-    const MaterialLayers layers = make_layers();
+    const CaseMaterials materials;
     for (const std::string& isa : available_isas()) {
         uint32_t lit = 0, going = 0;
         for (size_t first = 0; first < cases.size(); first += 16) {
@@ -273,11 +317,12 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
                 set_lane(c, lane, lanes);
             }
             cpu::find_shading_kernels(isa.c_str())
-                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data(), view(layers), true},
+                .reflect({count, points.data(), rays.data(), picks.data(), pairs.data(),
+                          view(materials.layers), materials.glass.records.data(), true},
                          lanes);
             EXPECT_EQ((lanes.needs_shadow_ray | lanes.has_bounce) >> count, 0);
             for (size_t lane = 0; lane < count; ++lane) {
-                expect_lane(cases[first + lane], layers, lanes, lane);
+                expect_lane(cases[first + lane], materials, lanes, lane);
                 ASSERT_FALSE(testing::Test::HasFailure()) << isa << ", case " << first + lane;
             }
             lit += uint32_t(std::popcount(lanes.needs_shadow_ray)),

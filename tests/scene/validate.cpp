@@ -158,6 +158,25 @@ TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
                "neither none, cubic nor bspline");
 }
 
+TEST(ValidateScene, refuses_glass_under_layers_and_clear_walls_that_glow) {
+    const auto of_glass = [](const auto& change) {
+        return complaint([&](Scene& s) {
+            s.materials[0].transmission_weight = 0.5f;
+            change(s.materials[0]);
+        });
+    };
+    EXPECT_EQ(of_glass([](Material&) {}), "accepted");
+    EXPECT_HAS(of_glass([](Material& m) { m.coat_weight = 0.1f; }),
+               "transmission_weight and coat_weight exclude each other");
+    EXPECT_HAS(of_glass([](Material& m) { m.fuzz_weight = 0.1f; }),
+               "transmission_weight and fuzz_weight exclude each other");
+    const auto glow = [](Material& m, float roughness) {
+        m.emission = {1, 1, 1}, m.is_thin_walled = true, m.roughness = roughness;
+    };
+    EXPECT_HAS(of_glass([&](Material& m) { glow(m, 0.01f); }), "transmission_weight and emission exclude");
+    EXPECT_EQ(of_glass([&](Material& m) { glow(m, 0.1f); }), "accepted");
+}
+
 TEST(ValidateScene, refuses_values_out_of_range) {
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].roughness = 1.5f; }), "roughness is 1.5");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].ior = 0.5f; }), "ior");
@@ -181,6 +200,10 @@ TEST(ValidateScene, refuses_values_out_of_range) {
                    s.materials[0].opacity = 0.5f, s.materials[0].emission = {1, 0, 0};
                }),
                "opacity and emission exclude each other");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].transmission_weight = 2; }),
+               "transmission_weight is 2");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].transmission_color.y = -1; }), "transmission_color");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].transmission_depth = kNan; }), "transmission_depth");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].direction = {}; }), "light 0: direction");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].strength = -1; }), "light 0: strength");
     EXPECT_HAS(complaint([](Scene& s) { s.lights[0].light_group = "a b"; }), "no name of a light group");

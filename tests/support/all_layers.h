@@ -25,6 +25,8 @@ inline std::vector<std::string> list_all_layers(const std::string& light_layer) 
             "diffuse_indirect",
             "specular_direct",
             "specular_indirect",
+            "transmission_indirect",
+            "transmission_direct",
             light_layer,
             "CryptoObject",
             "CryptoMaterial"};

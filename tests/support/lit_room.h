@@ -1,5 +1,5 @@
-// Surfaces that scatter in every way under lights of every kind, in groups; and checks of the layers that the
-// light of such pictures is shared out over.
+// Surfaces that scatter and transmit in every way under lights of every kind, in groups; and checks of the
+// layers that the light of such pictures is shared out over.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +14,24 @@
 #include "support/shading_scenes.h"
 
 namespace relief::test {
+
+/// A ball of glass, a bubble through which the camera sees the disk, and an upright pane of frosted glass.
+inline void add_glass(Scene& scene) {
+    Material glass;
+    glass.transmission_weight = 1, glass.roughness = 0.35f, glass.transmission_color = {0.9f, 0.8f, 0.6f};
+    Material bubble = glass, frosted = glass;
+    bubble.roughness = 0, bubble.is_thin_walled = true;
+    frosted.is_thin_walled = true;
+    const auto place = [&](const Vec3f& at, const Material& material) {
+        add_object(scene, make_sphere(4, SphereNormals::smooth), material);
+        Affine& placed = scene.objects.back().world_from_object;
+        for (int k = 0; k < 3; ++k) placed.rows[k] = placed.rows[k] * 0.5f;
+        placed.translation = at;
+    };
+    place({-1.7f, 0.5f, 2.2f}, glass), place({0, 2.8f, 2.5f}, bubble);
+    add_object(scene, make_floor(0.5f), frosted);
+    scene.objects.back().world_from_object = {{Vec3f{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {-2, 2.2f, 0.5f}};
+}
 
 /// "key" is a sun, "rim" a disk that the camera sees, "lamp" a surface, "sky" the environment; a point light
 /// is in no group.
@@ -32,6 +50,7 @@ inline Scene make_lit_room() {
     place({-1.2f, 1, 0}, metal), place({1.2f, 1, 0}, glossy);
     add_object(scene, make_floor(0.6f), lamp);
     scene.objects.back().world_from_object.translation = {0, 0.3f, 2};
+    add_glass(scene);
     scene.lights.resize(3);
     scene.lights[0].direction = {-1, -2, -1}, scene.lights[0].angle_degrees = 4;
     scene.lights[0].light_group = "key";

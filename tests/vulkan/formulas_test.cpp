@@ -18,6 +18,8 @@
 #include "formulas/environment.h"
 #include "formulas/environment_data.h"
 #include "formulas/ggx_albedo.h"
+#include "formulas/glass_bsdf.h"
+#include "formulas/glass_vertex.h"
 #include "formulas/layered_bsdf.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
@@ -57,7 +59,7 @@ using scalar::FormulaInput;
 using scalar::FormulaOutput;
 
 constexpr uint32_t kCount = 1u << 14;
-constexpr uint32_t kPartCount = 9;
+constexpr uint32_t kPartCount = 10;
 
 std::vector<FormulaInput> make_inputs() {
     std::mt19937 random(1);
@@ -92,7 +94,8 @@ std::vector<FormulaOutput> run_on_device(const Device& device, const std::vector
 FormulaOutput run_in_cpp(const FormulaInput& input) {
     return {scalar::run_exact(input),   scalar::run_warp(input),    scalar::run_camera(input),
             scalar::run_shading(input), scalar::run_light(input),   scalar::run_tone(input),
-            scalar::run_source(input),  scalar::run_surface(input), scalar::run_layers(input)};
+            scalar::run_source(input),  scalar::run_surface(input), scalar::run_layers(input),
+            scalar::run_glass(input)};
 }
 
 /// Largest |device - cpp| / (1 + |cpp|) over the floats of one part.
@@ -140,6 +143,7 @@ TEST_F(Formulas, of_warps_are_close) { expect_close(&FormulaOutput::warp, 1e-5f)
 TEST_F(Formulas, of_the_camera_are_close) { expect_close(&FormulaOutput::camera, 1e-4f); }
 TEST_F(Formulas, of_the_bsdf_are_close) { expect_close(&FormulaOutput::shading, 2e-4f); }
 TEST_F(Formulas, of_layers_are_close) { expect_close(&FormulaOutput::layers, 5e-4f); }
+TEST_F(Formulas, of_glass_are_close) { expect_close(&FormulaOutput::glass, 5e-4f); }
 TEST_F(Formulas, of_lights_are_close) { expect_close(&FormulaOutput::light, 1e-4f); }
 TEST_F(Formulas, of_tones_are_close) { expect_close(&FormulaOutput::tone, 1e-5f); }
 

@@ -129,6 +129,30 @@ void use_cut_outs(Scene& scene, RenderSettings&) {
     scene.materials.front().opacity_filter = MapFilter::cubic;
 }
 
+/// A rough body that absorbs, one of a part of glass, and a clear wall as floor; lights before and behind it.
+void use_glass(Scene& scene, RenderSettings& settings) {
+    settings.image.bounces = 8;
+    Material& body = scene.materials.at(0);
+    body.transmission_weight = 1, body.roughness = 0.3f, body.metallic = 0, body.ior = 1.4f;
+    body.metallic_texture = nullptr;
+    body.transmission_color = {0.9f, 0.5f, 0.3f}, body.transmission_depth = 0.7f;
+    Material& wall = scene.materials.at(2);
+    wall.coat_weight = wall.fuzz_weight = 0;
+    wall.transmission_weight = 0.9f, wall.is_thin_walled = true, wall.roughness = 0.03f;
+    wall.transmission_color = {0.5f, 1, 0.8f};
+    Material mixed = body;
+    mixed.transmission_weight = 0.6f, mixed.metallic = 0.3f, mixed.transmission_depth = 0;
+    mixed.normal_texture = nullptr; // the sphere has no uvs
+    mixed.is_thin_walled = true, mixed.base_diffuse_roughness = 0.5f, mixed.specular_weight = 0.8f;
+    add_object(scene, make_sphere(4, SphereNormals::smooth), mixed);
+    scene.objects.back().world_from_object =
+        compose(make_translation({1, 1.2f, 2}), make_scale({0.6f, 0.6f, 0.6f}));
+    Light light;
+    light.type = LightType::point, light.position = {0, -3, 1}, light.radius = 0.5f, light.strength = 30;
+    light.is_visible_to_camera = true;
+    scene.lights.push_back(light);
+}
+
 class PathTracerTest : public GpuTest {
   protected:
     explicit PathTracerTest(const Variant& variant = {"", [](Scene&, RenderSettings&) {}}) {
@@ -208,7 +232,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"with_many_linked_lights", use_many_linked_lights},
                     Variant{"with_direct_light_alone", use_direct_light_alone},
                     Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
-                    Variant{"with_cut_outs", use_cut_outs}, Variant{"with_long_paths", use_long_paths}),
+                    Variant{"with_cut_outs", use_cut_outs}, Variant{"with_glass", use_glass},
+                    Variant{"with_long_paths", use_long_paths}),
     [](const auto& info) { return info.param.name; });
 
 TEST_P(PathTracerVariants, takes_the_samples_of_the_cpu_engine) {

@@ -243,6 +243,7 @@ inline std::vector<ShadingCase> make_cases(const PreparedScene& scene) {
         c.path.previous = random.next_direction() * 5.0f;
         c.path.pixel_seed = scalar::hash_uint(k + 77);
         c.path.cost = 1;
+        c.path.body = scalar::kNone;
     }
     return cases;
 }

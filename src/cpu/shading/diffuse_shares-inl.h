@@ -28,6 +28,13 @@ HWY_NOINLINE void find_diffuse_shares(const cpu::VertexBatch& batch, cpu::Vertex
         light = select(layered.has_layers, evaluate(to_light), light);
         bounce = select(layered.has_layers, evaluate(along_ray), bounce);
     }
+    if (v.has_glass & first_lanes(batch.count)) {
+        alignas(64) float marks[16];
+        for (size_t lane = 0; lane < 16; ++lane) marks[lane] = v.has_glass >> lane & 1 ? 1 : 0;
+        const Bool is_glass = is_set(marks);
+        light = select(is_glass, make_grey(Float(0.0f)), light);
+        bounce = select(is_glass, make_grey(Float(0.0f)), bounce);
+    }
     store_vectors(find_shares(light, load_vectors(v.light_reflected)), v.light_diffuse);
     store_vectors(find_shares(bounce, load_vectors(v.bounce_weight) * Float::load(v.bounce_pdf)),
                   v.bounce_diffuse);

@@ -42,9 +42,10 @@ using scalar::kLayerColumns;
 /// Reads the members of records one after another.
 class RecordReader {
   public:
-    RecordReader(const scalar::LayerParameters* records, const Uint& index)
+    template <class Record>
+    RecordReader(const Record* records, const Uint& index)
         : next_(reinterpret_cast<const float*>(records)),
-          first_(index * Uint(sizeof(scalar::LayerParameters) / sizeof(float))) {}
+          first_(index * Uint(sizeof(Record) / sizeof(float))) {}
 
     HWY_INLINE Float read() { return gather(next_++, first_); }
     HWY_INLINE Vec3 read_vector() {

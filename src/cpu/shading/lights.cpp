@@ -1,5 +1,6 @@
 #include "cpu/shading/lights.h"
 #include "formulas/constants.h"
+#include "formulas/glass.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
 #include "formulas/warp.h"

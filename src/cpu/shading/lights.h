@@ -9,6 +9,8 @@
 #include "cpu/shading/light_choice.h"
 #include "cpu/tracer.h"
 #include "formulas/constants.h"
+#include "formulas/glass.h"
+#include "formulas/glass_parameters.h"
 #include "formulas/light.h"
 #include "formulas/light_source.h"
 #include "formulas/light_tree.h"
@@ -73,8 +75,9 @@ class LightSet {
     struct BounceRay {
         scalar::LitPoint from;
         Vec3f direction;
-        float distance; ///< infinity: out of the scene
-        float bsdf_pdf; ///< the ray's own density
+        float distance;                                ///< infinity: out of the scene
+        float bsdf_pdf;                                ///< the ray's own density
+        const scalar::GlassParameters* body = nullptr; ///< that it goes through, which takes its part
     };
     /// Light of the environment and of the scene's lights that a bounce ray meets, weighted against the
     /// density of drawing it. `behind`: the environment along the ray, where the distance is infinite.
@@ -130,13 +133,14 @@ void LightSet::meet_each(const BounceRay& ray, const EnvironmentLookup& behind, 
         return seen;
     };
     const auto add = [&](const scalar::LightSourceData& source, const scalar::LightSeen& seen, float share) {
-        visit(source, seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share));
+        const Vec3f light = seen.radiance * scalar::power_heuristic(ray.bsdf_pdf, seen.pdf * share);
+        visit(source, ray.body ? light * scalar::absorb_along(ray.body->depth, seen.distance) : light);
     };
     for (const scalar::LightSourceData& source : choice_.listed()) {
         if (!choice_.is_lit(source, ray.from)) continue;
         scalar::LightSeen seen = meet(source);
         if (source.kind == scalar::kSourceEnvironment && ray.distance == scalar::make_infinity())
-            seen = {behind.radiance, behind.pdf};
+            seen = {behind.radiance, behind.pdf, ray.distance};
         if (!(seen.radiance == Vec3f{}))
             add(source, seen, choice_.find_probability(shares, source, ray.from));
     }

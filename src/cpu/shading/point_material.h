@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "math/vec.h"
 #include "prepare/prepared_scene.h"
 
 namespace relief::cpu {
@@ -12,9 +13,14 @@ struct PointMaterial {
     Vec3f base_color, emission;
     float roughness, metallic, ior;
     uint32_t layers; ///< record of PreparedScene::layers; kNoIndex: none
+    uint32_t glass;  ///< record of PreparedScene::glass; kNoIndex: none
 };
 
 /// Of the material of an instance.
 PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv);
+
+/// In [0, 1], with its texture.
+float find_opacity(const Material& material, const Vec2f& uv);
+float find_metallic(const Material& material, const Vec2f& uv);
 
 } // namespace relief::cpu

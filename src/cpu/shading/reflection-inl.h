@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cpu/shading/diffuse_shares-inl.h"
+#include "cpu/shading/glass-inl.h"
 #include "cpu/shading/layers-inl.h"
 #include "cpu/shading/vertex_lanes-inl.h"
 
@@ -52,6 +53,7 @@ inline void reflect(const cpu::VertexBatch& batch, cpu::VertexLanes& v) {
         reflect_path(point, scattering, load_pairs(batch.pick_pairs, count).y,
                      load_pairs(batch.bsdf_pairs, count), v);
     if (v.has_layers & lanes) reflect_layers(batch, point, scattering.basis, scattering.wo_local, v);
+    if (v.has_glass & lanes) reflect_glass(batch, point, scattering.basis, scattering.wo_local, is_behind, v);
     if (batch.wants_diffuse_shares) find_diffuse_shares(batch, v);
     v.needs_shadow_ray &= lanes, v.has_bounce &= lanes;
 }

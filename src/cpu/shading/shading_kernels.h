@@ -7,6 +7,7 @@
 #include "cpu/shading/environment_light.h"
 #include "cpu/tracer.h"
 #include "formulas/camera.h"
+#include "formulas/glass_parameters.h"
 #include "formulas/layer_parameters.h"
 
 namespace relief::cpu {
@@ -35,7 +36,8 @@ struct VertexBatch {
     const TraceRay* rays;    ///< that came there
     const Vec2f* pick_pairs; ///< random numbers, y picks the lobe; null: no path goes on
     const Vec2f* bsdf_pairs;
-    LayerView layers; ///< read where VertexLanes::has_layers says so
+    LayerView layers;                               ///< read where VertexLanes::has_layers says so
+    const scalar::GlassParameters* glass = nullptr; ///< and has_glass
     bool wants_diffuse_shares = false;
 };
 
@@ -47,6 +49,8 @@ struct VertexLanes {
     uint32_t has_layers;             ///< bits of lanes with layers; metallic 0 and ior 1 save work in them
     alignas(64) uint32_t layers[16]; ///< of such a lane, its record
     alignas(64) float layered_metallic[16]; ///< of such a lane, in place of the record's
+    uint32_t has_glass;             ///< bits of lanes that are glass; metallic 0 and ior 1 save work in them
+    alignas(64) uint32_t glass[16]; ///< of such a lane, its record
     // Found. Normals are on the viewer's side; origins are moved off the surface.
     alignas(64) float geometric_normal[3][16], shading_normal[3][16];
     alignas(64) float light_reflected[3][16]; ///< BSDF times cosine
@@ -75,7 +79,7 @@ struct ShadingKernels {
     /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
     void (*sample_2d)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
                       Vec2f* drawn);
-    /// What the vertices of a batch reflect (formulas/bsdf.h, formulas/layered_bsdf.h).
+    /// What the vertices of a batch scatter (formulas/bsdf.h, layered_bsdf.h, glass_bsdf.h).
     void (*reflect)(const VertexBatch&, VertexLanes&);
     /// As the functions of EnvironmentLight for one direction, place or pair.
     void (*look_up_environment)(const EnvironmentTables&, const Vec3f* directions, size_t count,

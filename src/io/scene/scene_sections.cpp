@@ -311,12 +311,17 @@ void read_layers(const JsonNode& node, Material& material) {
                                      std::pair("coat_roughness", &material.coat_roughness),
                                      std::pair("coat_darkening", &material.coat_darkening),
                                      std::pair("fuzz_weight", &material.fuzz_weight),
+                                     std::pair("transmission_weight", &material.transmission_weight),
                                      std::pair("fuzz_roughness", &material.fuzz_roughness)})
         read_float(node, key, *value, 0, 1);
     read_vec3(node, "specular_color", material.specular_color, 0, 1);
     read_vec3(node, "coat_color", material.coat_color, 0, 1);
     read_vec3(node, "fuzz_color", material.fuzz_color, 0, 1);
     read_float(node, "coat_ior", material.coat_ior, 1);
+    read_vec3(node, "transmission_color", material.transmission_color, 0, 1);
+    read_float(node, "transmission_depth", material.transmission_depth, 0);
+    read_optional(node, "geometry_thin_walled", material.is_thin_walled,
+                  [](const JsonNode& n) { return n.as_bool(); });
 }
 
 void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& material) {
@@ -332,6 +337,10 @@ void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& mat
 } // namespace
 
 Material read_material(const JsonNode& node, const std::string& name, AssetCache& assets) {
+    for (const std::string_view key : scene_keys::kMaterialLacks)
+        if (const auto found = node.find(key))
+            found->fail("this input of OpenPBR is not rendered",
+                        "leave it out; docs/decisions/openpbr.md lists what is");
     node.check_keys(scene_keys::kMaterial);
     Material material;
     material.name = name;

@@ -43,6 +43,10 @@ void write_layers(const Material& material, Json& node) {
     write("fuzz_weight", &Material::fuzz_weight);
     write("fuzz_color", &Material::fuzz_color);
     write("fuzz_roughness", &Material::fuzz_roughness);
+    write("transmission_weight", &Material::transmission_weight);
+    write("transmission_color", &Material::transmission_color);
+    write("transmission_depth", &Material::transmission_depth);
+    if (material.is_thin_walled) node["geometry_thin_walled"] = true;
 }
 
 void write_normal_options(const Material& material, Json& node) {

@@ -14,8 +14,8 @@ Json to_json(const Vec3f& v);
 Json write_picture(const PictureDefaults& picture);
 Json write_camera(const Camera& camera);
 Json write_light(const Light& light);
-/// What of base, coat and fuzz differs from a material that only has a base colour, roughness, metallic and
-/// ior.
+/// What of base, coat, fuzz and glass differs from a material that only has a base colour, roughness,
+/// metallic and ior.
 void write_layers(const Material& material, Json& node);
 /// Adds what the entry of the normal map, which is there already, says beside file and filter.
 void write_normal_options(const Material& material, Json& node);

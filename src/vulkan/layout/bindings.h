@@ -103,6 +103,8 @@ const uint kLightGroupsConstant = 14u;
 // Of the latter, that of lights without one, and that of the environment; kNone: not asked for.
 const uint kDefaultGroupConstant = 15u;
 const uint kEnvironmentGroupConstant = 16u;
+// Of kernels that know of glass: not 0 where a material of the scene lets light through.
+const uint kGlassConstant = 17u;
 
 #include "formulas/end.h"
 #endif

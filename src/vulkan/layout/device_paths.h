@@ -19,6 +19,7 @@ struct PathData {
     Vec3 contribution; ///< of its shadow ray, if unoccluded
     Vec3 normal;       ///< at `previous`, of the side that the ray left to; where there is a light tree
     uint instance;     ///< that `previous` is on; where lights are linked
+    uint body;         ///< of solid glass that its ray is in: a material; kNone: none
 };
 
 /// A surface point for shading, world space; normals on the viewer's side.
@@ -48,9 +49,9 @@ struct FilmSumsData {
 };
 
 const uint kFilmSumsWords = 25u; ///< of FilmSumsData
-/// Of a path, in the film's buffer behind all sums of light: what it scattered diffusely, as shares, of light
-/// that was drawn at its first vertex and of what comes there; the group of the light that was drawn last.
-const uint kPathLightWords = 7u;
+/// Of a path, in the film's buffer behind all sums of light: LightShares of the light that was drawn at its
+/// first vertex and of what comes there; the group of the light that was drawn last.
+const uint kPathLightWords = 9u;
 
 /// Emissive patch `index`: cumulative probability in units of 2^-24, as fine as random numbers.
 struct EmitterData {
@@ -80,7 +81,9 @@ struct CutOutPush {
     uint depth;
     uint is_shadow; ///< rays of the shadow list; what passes comes into the path list
     uint sample_index;
-    uint round; ///< cut-outs that all of them have passed
+    uint round;                          ///< cut-outs that all of them have passed
+    uint source_count, first_light_node; ///< as in PathPush
+    float clamp_indirect;
 };
 
 /// Push constants of the other kernels of a depth.

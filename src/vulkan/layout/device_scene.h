@@ -2,6 +2,7 @@
 // block layout, members of 4 bytes, identical in C++ and GLSL.
 #ifndef RELIEF_DEVICE_SCENE_H
 #define RELIEF_DEVICE_SCENE_H
+#include "formulas/glass_parameters.h"
 #include "formulas/layer_parameters.h"
 
 #include "formulas/begin.h"
@@ -78,6 +79,8 @@ struct MaterialData {
     uint light_group;  ///< of what it emits, as LightSourceData::group
     uint has_layers;
     LayerParameters layers;
+    uint has_glass;
+    GlassParameters glass;
 };
 
 /// A tile of a patch above level 5: its tree index = number of all patches + its index among tile records.

@@ -14,12 +14,17 @@ bool continue_path(uint path_index, HitData hit) {
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    Scattering scattering = make_scattering(point, materials[instances[hit.instance].material], -ray.direction);
-    BsdfSample drawn = sample_scattering(scattering, pick.y, u);
+    uint material = instances[hit.instance].material;
+    Scattering scattering = make_scattering(point, materials[material], -ray.direction, pick.y);
+    BsdfSample drawn = sample_scattering(scattering, u);
     vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
-    if (drawn.weight == vec3(0.0) || dot(point.geometric_normal, direction) <= 0.0) return false;
+    if (drawn.weight == vec3(0.0) || !is_on_one_side(scattering, point, direction, drawn.direction)) return false;
     vec3 throughput = path.throughput * drawn.weight;
-    float probability = survival_probability(push.depth, throughput);
+    uint body = find_next_body(path, scattering, point, material, direction);
+    bool is_inside = kHasGlass != 0u && body != kNone;
+    // Inside, radiance is larger by the square of the ior.
+    float ior = is_inside ? materials[body].glass.ior : 1.0;
+    float probability = survival_probability(push.depth, throughput * (ior * ior));
     if (!is_finite(throughput) || last.x >= probability) return false;
     paths[path_index].throughput = throughput * (1.0 / probability);
     paths[path_index].previous = point.position;
@@ -27,12 +32,14 @@ bool continue_path(uint path_index, HitData hit) {
     if (kHasLightLinks != 0u) paths[path_index].instance = hit.instance;
     paths[path_index].bsdf_pdf = drawn.pdf;
     paths[path_index].cost = path.cost + 1.0;
+    if (kHasGlass != 0u) paths[path_index].body = body;
     if (kLightKinds != 0u && push.depth == 0u)
         store_bounce_shares(push.capacity, path_index,
-                            find_shares(evaluate_diffuse_scattering(scattering, drawn.direction),
-                                        drawn.weight * drawn.pdf));
+                            find_light_shares(scattering, drawn.direction, drawn.weight * drawn.pdf));
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
     float near_end = find_coarse_distance(push.bounce_lod, origin, ray.lod_bias, drawn.pdf);
+    // A body is left on the surface that it was entered on: between the two there would be no way out.
+    if (is_inside) near_end = make_infinity();
     RayData next = {origin, 0.0, direction, near_end, ray.lod_bias};
     rays[path_index] = next;
     return true;

@@ -20,6 +20,7 @@ void main() {
     path.contribution = vec3(0.0);
     path.normal = vec3(0.0);
     path.instance = kNone;
+    path.body = kNone;
     CameraRay start = start_camera_ray(push.camera, vec2(x, y), path.pixel_seed, push.sample_index);
     RayData ray = {start.origin, 0.0, start.direction, make_infinity(), 0u};
     paths[index] = path;

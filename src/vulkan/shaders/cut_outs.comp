@@ -1,24 +1,67 @@
 // Lists the rays that pass the cut-out which they have met; they go on from behind it.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
+#include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
 
 layout(scalar, push_constant) uniform Push { CutOutPush push; };
 
-float find_opacity(HitData hit) {
+#include "vulkan/shaders/met_lights.glsl"
+
+/// Opacity, and metallic where clear walls ask for it.
+vec2 find_opacity(HitData hit, MaterialData material) {
     InstanceData instance = instances[hit.instance];
-    MaterialData material = materials[instance.material];
-    if (material.opacity_texture == kNone) return material.opacity;
-    SurfaceData s = surfaces[instance.surface];
-    vec2 uv = interpolate_uv(s, load_corners(s, hit.patch_index), vec2(hit.u, hit.v));
-    return clamp(material.opacity * fetch_texture(material.opacity_texture, uv).x, 0.0, 1.0);
+    uint indices[2] = {material.opacity_texture, kHasGlass != 0u ? material.metallic_texture : kNone};
+    vec2 factors = vec2(1.0);
+    if (indices[0] != kNone || indices[1] != kNone) {
+        SurfaceData s = surfaces[instance.surface];
+        vec2 uv = interpolate_uv(s, load_corners(s, hit.patch_index), vec2(hit.u, hit.v));
+        // A loop, so that the look-up is inlined only once.
+        for (int k = 0; k < 2; ++k)
+            if (indices[k] != kNone) factors[k] = fetch_texture(indices[k], uv).x;
+    }
+    return clamp(vec2(material.opacity, material.metallic) * factors, 0.0, 1.0);
 }
 
-bool passes(uint path_index, HitData hit) {
+/// Cosine of a ray to the geometric normal.
+float find_cosine(uint ray_index, HitData hit) {
+    InstanceData instance = instances[hit.instance];
+    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
+    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
+    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    return abs(dot(found.triangle.normal, rays[ray_index].direction));
+}
+
+/// The path goes on with `left` of its light. Lights that it has met before the wall shine through none.
+void pass_wall(uint path_index, float distance, vec3 left) {
+    vec3 lost = paths[path_index].throughput * (vec3(1.0) - left);
+    paths[path_index].throughput *= left;
+    if (lost == vec3(0.0)) return;
+    LightSeen nothing = {vec3(0.0), 0.0, distance};
+    if (push.depth > 0u)
+        meet_lights(path_index, lost, distance, nothing);
+    else
+        see_lights(path_index, lost, distance);
+}
+
+/// Of the ray of a path, or of its shadow ray, which loses part of its light in place of being drawn for.
+bool passes(uint path_index, uint ray_index, HitData hit) {
     if (!is_hit(hit)) return false;
+    MaterialData material = materials[instances[hit.instance].material];
+    bool is_wall = kHasGlass != 0u && material.has_glass != 0u && material.glass.kind == kClearWall;
+    vec2 found = find_opacity(hit, material);
     float u = draw_cut_out(paths[path_index].pixel_seed, push.sample_index, push.depth, push.is_shadow, push.round);
-    return u >= find_opacity(hit);
+    if (!is_wall) return u >= found.x;
+    vec3 left = pass_clear_wall(material.glass, found.y, found.x, find_cosine(ray_index, hit));
+    float share = largest_component(left);
+    if (push.is_shadow != 0u) {
+        paths[path_index].contribution *= left;
+        return share > 0.0;
+    }
+    if (u < 1.0 - share) return false;
+    pass_wall(path_index, hit.t, left * (1.0 / share));
+    return true;
 }
 
 void main() {
@@ -27,7 +70,7 @@ void main() {
     bool is_shadow = push.is_shadow != 0u;
     uint ray_index = is_shadow ? shadow_list[index] : path_list[index];
     HitData hit = hits[ray_index];
-    uint count = passes(is_shadow ? ray_index - push.capacity : ray_index, hit) ? 1u : 0u;
+    uint count = passes(is_shadow ? ray_index - push.capacity : ray_index, ray_index, hit) ? 1u : 0u;
     uint place = atomicAdd(counters.path_count, count);
     if (count == 0u) return;
     rays[ray_index].t_min = hit.t;

@@ -17,11 +17,12 @@ struct DrawnLight {
     uint group;
 };
 
-DrawnLight draw_from_environment(vec3 normal, vec2 u) {
+/// `is_open`: light from behind the surface counts.
+DrawnLight draw_from_environment(vec3 normal, bool is_open, vec2 u) {
     EnvironmentDraw drawn = draw_environment_direction(push.environment, u);
     DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0), kNone};
     // Early out without reading the image: half of the directions point into the surface.
-    if (!(drawn.pdf > 0.0) || dot(drawn.direction, normal) <= 0.0) return result;
+    if (!(drawn.pdf > 0.0) || (!is_open && dot(drawn.direction, normal) <= 0.0)) return result;
     result.light.weight = environment_radiance_at(push.environment, drawn.position) * (1.0 / drawn.pdf);
     result.light.pdf = drawn.pdf;
     return result;
@@ -46,10 +47,10 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     return result;
 }
 
-DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u_emitter, vec2 u) {
+DrawnLight draw_from(LightPick pick, SurfacePointData at, bool is_open, uint lod_bias, float u_emitter, vec2 u) {
     if (kHasLightTree != 0u && pick.source == kNone) return draw_from_emitter(at.position, lod_bias, pick.emitter, u);
     LightSourceData source = sources[pick.source];
-    if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, u);
+    if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, is_open, u);
     if (source.kind == kSourceEmitters)
         return draw_from_emitter(at.position, lod_bias, find_emitter(push.emitter_count, u_emitter), u);
     DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0), kNone};
@@ -59,15 +60,15 @@ DrawnLight draw_from(LightPick pick, SurfacePointData at, uint lod_bias, float u
 }
 
 /// Selects a light in proportion to its estimated irradiance, then a direction; density 0: no sample.
-DrawnLight draw_light(SurfacePointData at, uint instance, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
+DrawnLight draw_light(SurfacePointData at, uint instance, bool is_open, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
     LitPoint lit = {at.position, at.geometric_normal, instance};
     LightPick pick =
         pick_light(push.source_count, push.first_light_node, lit, pick_and_emitter.x, pick_and_emitter.y);
     DrawnLight drawn = {{vec3(0.0), 0.0, vec3(0.0), 0.0}, false, vec3(0.0), kNone};
     if (pick.source == kNone && pick.emitter == kNone) return drawn;
-    drawn = draw_from(pick, at, lod_bias, pick_and_emitter.y, u);
+    drawn = draw_from(pick, at, is_open, lod_bias, pick_and_emitter.y, u);
     if (!drawn.is_surface) drawn.group = sources[pick.source].group;
-    if (dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
+    if (!is_open && dot(drawn.light.direction, at.geometric_normal) <= 0.0) drawn.light.pdf = 0.0;
     drawn.light.pdf *= pick.probability;
     drawn.light.weight *= 1.0 / pick.probability;
     return drawn;
@@ -119,26 +120,52 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
 
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, uint instance) {
+    uint material_index = instances[instance].material;
+    MaterialData material = materials[material_index];
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    DrawnLight drawn = draw_light(point, instance, ray.lod_bias, vec2(pick.x, last.y), u);
+    DrawnLight drawn =
+        draw_light(point, instance, is_see_through(material), ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
-    Scattering scattering = make_scattering(point, materials[instances[instance].material], -ray.direction);
+    Scattering scattering = make_scattering(point, material, -ray.direction, pick.y);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
+    if (kHasGlass != 0u && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
     float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
+    RayData shadow = make_shadow_ray(point, drawn, ray.lod_bias);
+    uint body = find_next_body(path, scattering, point, material_index, shadow.direction);
+    if (kHasGlass != 0u && body != kNone) contribution *= absorb_along(materials[body].glass.depth, shadow.t_max);
     paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
     paths[path_index].cost = path.cost + 1.0;
     if (kLightKinds != 0u && push.depth == 0u)
-        store_light_shares(push.capacity, path_index,
-                           find_shares(evaluate_diffuse_scattering(scattering, wi), bsdf.value));
+        store_light_shares(push.capacity, path_index, find_light_shares(scattering, wi, bsdf.value));
     store_light_group(push.capacity, path_index, drawn.group);
-    rays[push.capacity + path_index] = make_shadow_ray(point, drawn, ray.lod_bias);
+    rays[push.capacity + path_index] = shadow;
     return true;
+}
+
+/// Takes what a body took on the way, and what goes with the choice between glass and the rest.
+PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointData point, uint material_index) {
+    MaterialData material = materials[material_index];
+    vec3 factor = vec3(1.0);
+    if (material.has_glass != 0u && material.glass.kind == kSolidGlass) {
+        if (point.is_flipped != 0u) path.body = material_index;
+        // Met from outside, whatever the path took for true: at a fold of the surface, say.
+        if (point.is_flipped == 0u && path.body == material_index) path.body = kNone;
+    }
+    if (path.body != kNone) factor = absorb_along(materials[path.body].glass.depth, hit.t);
+    if (material.has_glass != 0u) {
+        vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
+        factor *= draw_vertex_glass(point, material, -rays[path_index].direction, pick.y).weight;
+    }
+    path.throughput *= factor;
+    paths[path_index].throughput = path.throughput;
+    paths[path_index].body = path.body;
+    return path;
 }
 
 /// To the layers of light.
@@ -154,7 +181,9 @@ void share_emission(uint path_index, vec3 light, uint group) {
 bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
-    MaterialData material = materials[instances[hit.instance].material];
+    uint material_index = instances[hit.instance].material;
+    if (kHasGlass != 0u) path = meet_glass(path_index, path, hit, point, material_index);
+    MaterialData material = materials[material_index];
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);

@@ -45,36 +45,46 @@ uint find_path_light(uint capacity, uint path_index) {
     return capacity * (kFilmSumsWords + 3u * (kLightKinds + kLightGroups)) + path_index * kPathLightWords;
 }
 
-void store_light_shares(uint capacity, uint path_index, vec3 shares) {
-    store_light_words(find_path_light(capacity, path_index), shares);
+void store_shares(uint first, LightShares shares) {
+    store_light_words(first, shares.diffuse);
+    light_words[first + 3u] = shares.rest;
 }
 
-void store_bounce_shares(uint capacity, uint path_index, vec3 shares) {
-    store_light_words(find_path_light(capacity, path_index) + 3u, shares);
+LightShares load_shares(uint first) {
+    LightShares shares = {load_light_words(first), light_words[first + 3u]};
+    return shares;
+}
+
+void store_light_shares(uint capacity, uint path_index, LightShares shares) {
+    store_shares(find_path_light(capacity, path_index), shares);
+}
+
+void store_bounce_shares(uint capacity, uint path_index, LightShares shares) {
+    store_shares(find_path_light(capacity, path_index) + 4u, shares);
 }
 
 void store_light_group(uint capacity, uint path_index, uint group) {
-    if (kLightGroups != 0u) light_words[find_path_light(capacity, path_index) + 6u] = group;
+    if (kLightGroups != 0u) light_words[find_path_light(capacity, path_index) + 8u] = group;
 }
 
-void add_split(uint capacity, uint path_index, vec3 light, vec3 diffuse_shares, uint bounces) {
-    vec3 diffuse = light * diffuse_shares;
+void add_split(uint capacity, uint path_index, vec3 light, LightShares shares, uint bounces) {
+    vec3 diffuse = light * shares.diffuse;
     add_to_layer(capacity, path_index, find_light_kind(kLobeDiffuse, bounces), diffuse);
-    add_to_layer(capacity, path_index, find_light_kind(kLobeSpecular, bounces), light - diffuse);
+    add_to_layer(capacity, path_index, find_light_kind(shares.rest, bounces), light - diffuse);
 }
 
 /// Light that the first vertex scatters; `bounces`: those between it and the light.
 void add_scattered(uint capacity, uint path_index, vec3 light, uint bounces) {
     if (kLightKinds == 0u) return;
-    add_split(capacity, path_index, light, load_light_words(find_path_light(capacity, path_index) + 3u), bounces);
+    add_split(capacity, path_index, light, load_shares(find_path_light(capacity, path_index) + 4u), bounces);
 }
 
 /// What a shadow ray brings to the vertex after `depth` bounces.
 void add_shadow_light(uint capacity, uint path_index, vec3 light, uint depth) {
     uint kept = find_path_light(capacity, path_index);
     if (kLightKinds != 0u)
-        add_split(capacity, path_index, light, load_light_words(kept + (depth == 0u ? 0u : 3u)), depth);
-    if (kLightGroups != 0u) add_to_group(capacity, path_index, light_words[kept + 6u], light);
+        add_split(capacity, path_index, light, load_shares(kept + (depth == 0u ? 0u : 4u)), depth);
+    if (kLightGroups != 0u) add_to_group(capacity, path_index, light_words[kept + 8u], light);
 }
 
 #endif

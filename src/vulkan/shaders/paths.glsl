@@ -12,7 +12,11 @@
 #include "formulas/ggx_albedo.h"
 #include "formulas/bsdf.h"
 #include "formulas/layered_bsdf.h"
+#include "formulas/light_layers.h"
 #include "formulas/lobe_shares.h"
+#include "formulas/glass.h"
+#include "formulas/glass_bsdf.h"
+#include "formulas/glass_vertex.h"
 #include "formulas/light.h"
 #include "formulas/environment.h"
 #include "formulas/path.h"
@@ -38,21 +42,48 @@ layout(constant_id = kLayersConstant) const uint kHasLayers = 0;
 layout(constant_id = kLightTreeConstant) const uint kHasLightTree = 0;
 layout(constant_id = kLightLinksConstant) const uint kHasLightLinks = 0;
 layout(constant_id = kLightTexturesConstant) const uint kHasLightTextures = 0;
+layout(constant_id = kGlassConstant) const uint kHasGlass = 0;
 
-/// The BSDF for one outgoing direction, in a local frame: one of the two.
+/// The BSDF for one outgoing direction, in a local frame: one of the three.
 struct Scattering {
     Basis basis;
     vec3 wo_local;
+    float u_lobe;    ///< a random number
     bool has_layers; ///< false wherever kHasLayers is 0, which removes what needs them
+    bool is_glass;   ///< false wherever kHasGlass is 0, likewise
     Bsdf bsdf;
     LayeredBsdf layered;
+    GlassBsdf glass;
 };
 
-Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 wo) {
+/// Whether a surface may send light on to its other side, besides straight through.
+bool is_see_through(MaterialData material) {
+    return kHasGlass != 0u && material.has_glass != 0u && material.glass.kind < kClearWall;
+}
+
+/// What a surface that is partly glass is at a vertex; `u` picks.
+GlassDraw draw_vertex_glass(SurfacePointData point, MaterialData material, vec3 wo, float u) {
+    return draw_glass(material.glass, point.metallic, abs(dot(point.geometric_normal, wo)), u);
+}
+
+/// `u_pick`: a random number in [0, 1), the same for all that is asked of a vertex.
+Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 wo, float u_pick) {
     Scattering result;
     result.basis = make_basis(point.bent_normal);
     result.wo_local = lift_viewer(to_local(result.basis, wo));
+    result.u_lobe = u_pick;
+    result.is_glass = false;
+    if (kHasGlass != 0u && material.has_glass != 0u) {
+        GlassDraw drawn = draw_vertex_glass(point, material, wo, u_pick);
+        result.is_glass = drawn.is_glass;
+        result.u_lobe = drawn.u;
+        point.metallic = drawn.metallic;
+    }
     result.has_layers = kHasLayers != 0u && material.has_layers != 0u;
+    if (result.is_glass) {
+        result.glass = make_glass_bsdf(material.glass, point.roughness, point.is_flipped != 0u);
+        return result;
+    }
     if (result.has_layers) {
         LayeredSurface surface = {point.base_color, point.roughness, material.layers};
         surface.layers.metallic = point.metallic;
@@ -65,20 +96,44 @@ Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 w
 }
 
 BsdfValue evaluate_scattering(Scattering scattering, vec3 wi) {
+    if (scattering.is_glass) return evaluate_glass_bsdf(scattering.glass, scattering.wo_local, wi);
     if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, wi);
     return evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
 }
 
-/// The diffuse part of it.
-vec3 evaluate_diffuse_scattering(Scattering scattering, vec3 wi) {
-    if (scattering.has_layers) return evaluate_layered_diffuse(scattering.layered, kLayerTable, scattering.wo_local, wi);
-    return evaluate_diffuse(scattering.bsdf, scattering.wo_local, wi);
+/// Of it by way of the BSDF, what is diffuse, and the lobe of the rest.
+LightShares find_light_shares(Scattering scattering, vec3 wi, vec3 whole) {
+    LightShares shares = {vec3(0.0), wi.z < 0.0 ? kLobeTransmission : kLobeSpecular};
+    if (scattering.is_glass) return shares;
+    vec3 diffuse = scattering.has_layers
+                       ? evaluate_layered_diffuse(scattering.layered, kLayerTable, scattering.wo_local, wi)
+                       : evaluate_diffuse(scattering.bsdf, scattering.wo_local, wi);
+    shares.diffuse = find_shares(diffuse, whole);
+    return shares;
 }
 
-BsdfSample sample_scattering(Scattering scattering, float u_lobe, vec2 u) {
+BsdfSample sample_scattering(Scattering scattering, vec2 u) {
+    float u_lobe = scattering.u_lobe;
+    if (scattering.is_glass) return sample_glass_bsdf(scattering.glass, scattering.wo_local, u_lobe, u);
     if (scattering.has_layers)
         return sample_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, u_lobe, u);
     return sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
+}
+
+/// Whether light along `direction` is on one side of the surface and of the shading normal; above, of all but
+/// glass. `local`: the direction in the frame of the scattering.
+bool is_on_one_side(Scattering scattering, SurfacePointData point, vec3 direction, vec3 local) {
+    float height = dot(point.geometric_normal, direction);
+    if (!scattering.is_glass) return height > 0.0;
+    return (height > 0.0 && local.z > 0.0) || (height < 0.0 && local.z < 0.0);
+}
+
+/// The body that a ray leaves a vertex into; path.body lies before the surface.
+uint find_next_body(PathData path, Scattering scattering, SurfacePointData point, uint material_index, vec3 direction) {
+    if (kHasGlass == 0u) return kNone;
+    bool is_through = scattering.is_glass && dot(point.geometric_normal, direction) < 0.0;
+    if (!is_through || materials[material_index].glass.kind != kSolidGlass) return path.body;
+    return point.is_flipped != 0u ? kNone : material_index;
 }
 
 #endif

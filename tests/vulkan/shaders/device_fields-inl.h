@@ -66,10 +66,13 @@ struct AllStructs {
     FIELD(s.coat_f0) FIELD(s.coat_f90) FIELD(s.coat_inverse_ior2) FIELD3(s.coat_depth) FIELD(s.coat_darkening) \
     FIELD(s.coat_inside) FIELD3(s.fuzz_color) FIELD(s.fuzz_weight) FIELD(s.fuzz_exponent) FIELD(s.fuzz_scale) \
     FIELD(s.row_scale) FIELD(s.first_entry)
+#define FIELDS_GLASS(s) \
+    FIELD(s.weight) FIELD(s.ior) FIELD3(s.specular_color) FIELD3(s.tint) FIELD3(s.depth) FIELD(s.kind)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
-    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers)
+    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers) \
+    FIELD(s.has_glass) FIELDS_GLASS(s.glass)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
@@ -103,7 +106,7 @@ struct AllStructs {
     FIELD(s.builds_per_group[2])
 #define FIELDS_PATH(s) \
     FIELD3(s.throughput) FIELD(s.bsdf_pdf) FIELD3(s.previous) FIELD(s.pixel_seed) FIELD3(s.radiance) \
-    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal) FIELD(s.instance)
+    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal) FIELD(s.instance) FIELD(s.body)
 #define FIELDS_POINT(s) \
     FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
     FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)

@@ -47,6 +47,15 @@ struct LayerResults {
     float power, logarithm;
 };
 
+struct GlassResults {
+    Vec3 value;
+    float pdf;
+    Vec3 direction, weight;
+    Vec3 left, passed;
+    Vec3 drawn_weight;
+    float drawn_u, drawn_metallic;
+};
+
 struct LightResults {
     float weight;
     Vec2 place;
@@ -88,6 +97,7 @@ struct FormulaOutput {
     SourceResults source;
     SurfaceResults surface;
     LayerResults layers;
+    GlassResults glass;
 };
 
 FN ExactResults run_exact(FormulaInput from) {
@@ -221,6 +231,36 @@ FN LayerResults run_layers(FormulaInput from) {
     r.diffuse_shares = find_shares(evaluate_layered_diffuse(b, make_test_layers(), wo, wi), v.value);
     r.power = find_power_of_two(20.0f * from.u[10] - 10.0f);
     r.logarithm = find_logarithm(1e-6f + from.u[11]);
+    return r;
+}
+
+/// Of all kinds, from both sides.
+FN GlassResults run_glass(FormulaInput from) {
+    GlassParameters g;
+    g.weight = 0.2f + 0.8f * from.u[0];
+    g.ior = 1.1f + from.u[1];
+    g.specular_color = make_triple(from.u[2], 1.0f, 0.5f);
+    g.tint = make_triple(1.0f, from.u[3], 0.5f);
+    g.depth = make_triple(0.0f, 3.0f * from.u[4], 1.0f);
+    g.kind = from.u[5] < 0.5f ? kSolidGlass : from.u[5] < 0.8f ? kRoughWall : kClearWall;
+    float roughness = 0.3f + 0.7f * from.u[6];
+    Vec3 wo = square_to_cone(make_pair(from.u[7], from.u[8]), 0.95f);
+    Vec3 wi = square_to_sphere(make_pair(from.u[9], from.u[10]));
+    GlassBsdf b = make_glass_bsdf(g, roughness, from.u[11] < 0.5f);
+    BsdfValue v = evaluate_glass_bsdf(b, wo, wi);
+    // A draw between two lobes may go either way: of one alone.
+    BsdfSample drawn = sample_glass_bsdf(b, wo, 0.0f, make_pair(from.u[3], from.u[4]));
+    GlassDraw choice = draw_glass(g, from.u[2], wo.z, 0.999f);
+    GlassResults r;
+    r.value = v.value;
+    r.pdf = v.pdf;
+    r.direction = drawn.direction;
+    r.weight = drawn.weight;
+    r.left = absorb_along(g.depth, 2.0f * from.u[1]);
+    r.passed = pass_clear_wall(g, from.u[2], from.u[3], wo.z);
+    r.drawn_weight = choice.weight;
+    r.drawn_u = choice.u;
+    r.drawn_metallic = choice.metallic;
     return r;
 }
 

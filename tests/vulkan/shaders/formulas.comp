@@ -23,4 +23,5 @@ void main() {
     if (kPart == 6u) outputs[i].source = run_source(from);
     if (kPart == 7u) outputs[i].surface = run_surface(from);
     if (kPart == 8u) outputs[i].layers = run_layers(from);
+    if (kPart == 9u) outputs[i].glass = run_glass(from);
 }
