@@ -1,0 +1,289 @@
+// The vertices of a wave: lights that its rays meet, light that falls onto their hits, and the rays that go
+// on.
+#include <algorithm>
+
+#include "base/timer.h"
+#include "cpu/glass_paths.h"
+#include "cpu/shading/normal_maps.h"
+#include "cpu/shading/vertex_access.h"
+#include "cpu/tile_tracer.h"
+#include "formulas/bounce_lod.h"
+#include "formulas/glass.h"
+#include "formulas/light.h"
+
+namespace relief::cpu {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// `diffuse`: of light along `direction`. What comes from behind a surface is transmitted.
+scalar::LightShares find_shares(const VertexLanes& lanes, size_t lane, const float (&diffuse)[3][16],
+                                const Vec3f& direction) {
+    const bool is_behind = dot(get_lane(lanes.geometric_normal, lane), direction) < 0;
+    return {get_lane(diffuse, lane), is_behind ? scalar::kLobeTransmission : scalar::kLobeSpecular};
+}
+
+} // namespace
+
+void TileTracer::shade_paths() {
+    const Timer timer;
+    shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
+    add_backgrounds();
+    drop_misses();
+    points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
+    tracer_.make_surface_points(hits_, points_, scratch_);
+    if (tracer_.scene().has_normal_maps) map_shading_normals(tracer_.scene(), hits_, points_);
+    draw_random();
+    size_t next = 0;
+    for (size_t first = 0; first < active_.size(); first += kBlock)
+        next = shade_block(first, std::min(kBlock, active_.size() - first), next);
+    active_.resize(next), rays_.resize(next), coarse_from_.resize(next);
+    counters_.bounce_rays += active_.size();
+    counters_.shade_s += timer.seconds();
+}
+
+/// Light of rays that leave the scene, and of analytic lights that are met on the way.
+void TileTracer::add_backgrounds() {
+    missed_.resize(active_.size()), directions_.resize(active_.size());
+    size_t count = 0;
+    for (uint32_t k = 0; k < active_.size(); ++k) {
+        missed_[count] = k, directions_[count] = rays_[k].direction;
+        count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
+    }
+    missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
+    if (depth_ == 0 && lights_.has_visible_lights())
+        for (size_t k = 0; k < active_.size(); ++k) add_lights_before(k, paths_[active_[k]].throughput, {});
+    const auto add = [&](size_t n, const Vec3f& light) { add_background(active_[missed_[n]], light); };
+    if (depth_ == 0 && settings_.image.background) {
+        // Lights cover the background of the picture, which is none of the scene.
+        for (size_t n = 0; n < count; ++n)
+            if (paths_[active_[missed_[n]]].result.alpha == 0) add(n, *settings_.image.background);
+        return;
+    }
+    lights_.look_up_environment(directions_, backgrounds_);
+    if (depth_ > 0) return gather_lights();
+    for (size_t n = 0; n < count; ++n) add(n, backgrounds_[n].radiance);
+}
+
+/// What the camera sees behind all surfaces; less of it than there is through clear walls.
+void TileTracer::add_background(uint32_t path, const Vec3f& light) {
+    const Vec3f seen = paths_[path].throughput * light;
+    paths_[path].result.radiance += seen;
+    if (path_lights_.is_on()) path_lights_.add_background(path, settings_.image.background.has_value(), seen);
+}
+
+/// Misses look up the image at places far apart, hits do not; both meet analytic lights, which are rare.
+void TileTracer::gather_lights() {
+    for (size_t n = 0; n < missed_.size(); ++n) {
+        const size_t k = missed_[n];
+        add_lights_before(k, paths_[active_[k]].throughput, backgrounds_[n]);
+    }
+    if (!lights_.has_analytic_lights()) return;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit()) add_lights_before(k, paths_[active_[k]].throughput, {});
+}
+
+/// Of what ray k meets before hits_[k] and, where that is nothing, behind it; `share` comes to the camera.
+void TileTracer::add_lights_before(size_t k, const Vec3f& share, const EnvironmentLookup& behind) {
+    const uint32_t index = active_[k];
+    Path& path = paths_[index];
+    if (depth_ == 0) {
+        const LightSet::Sight seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
+        path.result.radiance += share * seen.radiance;
+        if (seen.is_met) path.result.alpha = 1;
+        if (path_lights_.is_on()) path_lights_.add_seen_lights(index, lights_, rays_[k], hits_[k].t, share);
+        return;
+    }
+    const LightSet::BounceRay ray{path.previous, rays_[k].direction, hits_[k].t, path.bsdf_pdf,
+                                  find_body(path.body)};
+    const Vec3f light = share * lights_.evaluate_mis(ray, behind);
+    add_found_light(index, light);
+    if (path_lights_.has_groups())
+        path_lights_.add_met_lights(index, {lights_, ray, behind, share, light}, depth_);
+}
+
+/// The path goes on behind a clear wall; what lies before it has shone through none.
+void TileTracer::pass_wall(size_t k, const Vec3f& left) {
+    Vec3f& throughput = paths_[active_[k]].throughput;
+    const Vec3f whole = throughput;
+    throughput = throughput * left;
+    if (depth_ == 0 ? lights_.has_visible_lights() : lights_.has_analytic_lights())
+        add_lights_before(k, whole - throughput, {});
+}
+
+void TileTracer::drop_misses() {
+    size_t kept = 0;
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit())
+            active_[kept] = active_[k], rays_[kept] = rays_[k], hits_[kept] = hits_[k], ++kept;
+    active_.resize(kept), rays_.resize(kept), hits_.resize(kept);
+}
+
+/// Vertices of the wave from `first` on. Paths that go on get the places from `next`; what lies before a
+/// block has been shaded, so that its place can be taken. Returns the next place.
+size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
+    draw_lights(first, count);
+    reflect(first, count);
+    std::array<uint32_t, kBlock> lit;
+    size_t lit_count = 0;
+    for (size_t n = 0; n < count; ++n) {
+        lit[lit_count] = uint32_t(n);
+        lit_count += lanes_[n / 16].needs_shadow_ray >> n % 16 & 1;
+    }
+    lights_.complete_weight(lights_drawn_, {lit.data(), lit_count});
+    for (size_t n = 0; n < count; ++n) {
+        if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
+        if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
+    }
+    for (size_t n = 0; n < lit_count; ++n)
+        add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
+    for (size_t n = 0; n < count; ++n)
+        if (lanes_[n / 16].has_bounce >> n % 16 & 1)
+            next += continue_path(first + n, lanes_[n / 16], n % 16, next) ? 1 : 0;
+    return next;
+}
+
+/// A light for each vertex of a block.
+void TileTracer::draw_lights(size_t first, size_t count) {
+    for (size_t n = 0; n < count; ++n) {
+        const size_t k = first + n;
+        const Vec3f& normal = points_[k].geometric_normal;
+        const bool is_seen_from_behind = dot(normal, rays_[k].direction) > 0;
+        receivers_[n] = {points_[k].position, hits_[k].lod_bias, is_seen_from_behind ? -normal : normal,
+                         points_[k].instance};
+        light_random_[n] = {random_[scalar::kPickPair][k].x, random_[scalar::kRoulettePair][k].y,
+                            random_[scalar::kLightPair][k]};
+    }
+    lights_.draw({receivers_.data(), count}, {light_random_.data(), count}, {lights_drawn_.data(), count});
+}
+
+/// Of solid glass that a ray from a vertex goes into.
+uint32_t TileTracer::choose_body(size_t k, const VertexLanes& lanes, size_t lane,
+                                 const Vec3f& direction) const {
+    const uint32_t record = lanes.has_glass >> lane & 1 ? lanes.glass[lane] : kNoIndex;
+    return find_next_body(tracer_.scene().glass,
+                          {paths_[active_[k]].body, record, dot(points_[k].geometric_normal, direction),
+                           dot(get_lane(lanes.geometric_normal, lane), direction) < 0});
+}
+
+/// Fills lanes_ for a block whose lights are drawn.
+void TileTracer::reflect(size_t first, size_t count) {
+    const PreparedScene& scene = tracer_.scene();
+    for (size_t n = 0; n < count; ++n) {
+        const size_t k = first + n;
+        const SurfacePoint& point = points_[k];
+        PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
+        if (has_glass_) {
+            Path& path = paths_[active_[k]];
+            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
+            path.throughput = path.throughput *
+                              meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
+        }
+        VertexLanes& lanes = lanes_[n / 16];
+        const size_t lane = n % 16;
+        set_material(m, lane, lanes);
+        emissions_[n] = m.emission;
+        set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
+        lanes.light_pdf[lane] = lights_drawn_[n].pdf;
+    }
+    for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
+    const bool has_bounce = depth_ < settings_.image.bounces;
+    const MaterialLayers& found = scene.layers;
+    const LayerView layers{found.records.data(), found.entries.data(), uint32_t(found.entries.size())};
+    for (size_t n = 0; n < count; n += 16) {
+        const size_t k = first + n;
+        tracer_.shading_kernels().reflect(
+            {.count = std::min(size_t(16), count - n),
+             .points = &points_[k],
+             .rays = &rays_[k],
+             .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
+             .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr,
+             .layers = layers,
+             .glass = scene.glass.records.data(),
+             .wants_diffuse_shares = depth_ == 0 && path_lights_.has_kinds()},
+            lanes_[n / 16]);
+    }
+}
+
+void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
+    FilmSample& result = paths_[active_[k]].result;
+    result.alpha = 1;
+    result.depth = hits_[k].t;
+    result.shading_normal = get_lane(lanes.shading_normal, lane);
+    result.geometric_normal = get_lane(lanes.geometric_normal, lane);
+    result.position = points_[k].position;
+    result.albedo = get_lane(lanes.base_color, lane);
+    result.uv = points_[k].uv;
+    result.id = points_[k].instance + 1;
+}
+
+/// What a ray of the path met by chance: at the first vertex after a bounce it is direct light.
+Vec3f TileTracer::add_found_light(uint32_t path, const Vec3f& light) {
+    const uint32_t bounces = uint32_t(std::max(depth_ - 1, 0));
+    const Vec3f found = scalar::clamp_indirect(light, settings_.image.clamp_indirect, bounces);
+    paths_[path].result.radiance += found;
+    if (depth_ > 0) path_lights_.add_scattered(path, found, bounces);
+    return found;
+}
+
+void TileTracer::add_emission(size_t k, const Vec3f& emission) {
+    const Path& path = paths_[active_[k]];
+    const float light_pdf = depth_ > 0 ? lights_.emitter_pdf(path.previous, points_[k]) : 0.0f;
+    const float weight = depth_ > 0 ? scalar::power_heuristic(path.bsdf_pdf, light_pdf) : 1.0f;
+    const Vec3f found = add_found_light(active_[k], path.throughput * emission * weight);
+    if (path_lights_.is_on())
+        path_lights_.add_emission(active_[k], tracer_.scene().instances[hits_[k].instance].material, found,
+                                  depth_);
+}
+
+/// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
+void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
+    Path& path = paths_[active_[k]];
+    const bool is_last = depth_ == settings_.image.bounces;
+    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
+    Vec3f contribution = path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
+    if (contribution == Vec3f{} || !is_finite(contribution)) return;
+    TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].lod_bias};
+    if (light.emitter) {
+        const Vec3f to = tracer_.offset_origin(*light.emitter, -light.direction) - ray.origin;
+        ray.t_max = length(to) * (1 - 1e-6f);
+        ray.direction = normalize(to);
+    }
+    if (has_glass_)
+        if (const auto* body = find_body(choose_body(k, lanes, lane, ray.direction)))
+            contribution = contribution * scalar::absorb_along(body->depth, ray.t_max);
+    shadow_rays_.push_back(ray);
+    shadows_.push_back(
+        {active_[k], scalar::clamp_indirect(contribution, settings_.image.clamp_indirect, uint32_t(depth_))});
+    if (path_lights_.is_on())
+        path_lights_.add_shadow_ray(
+            {find_shares(lanes, lane, lanes.light_diffuse, light.direction), light.group});
+    path.result.cost += 1;
+}
+
+bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
+    Path& path = paths_[active_[k]];
+    path.throughput = path.throughput * get_lane(lanes.bounce_weight, lane);
+    const Vec3f direction = get_lane(lanes.bounce_direction, lane);
+    if (has_glass_) path.body = choose_body(k, lanes, lane, direction);
+    const auto* body = find_body(path.body);
+    const float probability = scalar::survival_probability(
+        uint32_t(depth_), body ? path.throughput * (body->ior * body->ior) : path.throughput);
+    if (!is_finite(path.throughput) || random_[scalar::kRoulettePair][k].x >= probability) return false;
+    path.throughput *= 1 / probability;
+    path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane), points_[k].instance};
+    path.bsdf_pdf = lanes.bounce_pdf[lane];
+    path.result.cost += 1;
+    if (depth_ == 0)
+        path_lights_.set_shares(active_[k], find_shares(lanes, lane, lanes.bounce_diffuse, direction));
+    active_[next] = active_[k];
+    rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, direction, kInfinity, uint32_t(hits_[k].lod_bias)};
+    // A body is left on the surface that it was entered on: between the two there would be no way out.
+    coarse_from_[next] = body ? kInfinity
+                              : scalar::find_coarse_distance(bounce_lod_, rays_[next].origin,
+                                                             rays_[next].lod_bias, path.bsdf_pdf);
+    return true;
+}
+
+} // namespace relief::cpu
