@@ -13,7 +13,7 @@ help:
 	@echo 'make render    build, and render the sample scene "pumpkin" to out/pumpkin.png'
 	@echo 'make test      build, and run all tests'
 	@echo 'make quick     build, and run the tests that take seconds: for each step of a change'
-	@echo 'make peers     tests against Blender, fetched from the Python package index (0.5 GB the first time)'
+	@echo 'make peers     tests against Blender, Mitsuba and others, fetched from the Python package index (0.6 GB the first time)'
 	@echo 'make dev       optimised build with internal checks, all tests'
 	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
 	@echo 'make tsan      all tests under the thread sanitizer'

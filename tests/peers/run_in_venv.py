@@ -1,4 +1,4 @@
-"""Runs a Python script in a virtual environment with one package of the package index.
+"""Runs a Python script in a virtual environment with a package of the package index and what it lacks.
 
 usage: run_in_venv.py FOLDER PACKAGE SCRIPT ARGUMENTS...
 
@@ -11,7 +11,7 @@ import sys
 
 SKIPPED = 77
 VERSIONS = {"bpy": ["bpy==4.5.15", "bpy==4.2.0"], "cryptomatte_api": ["cryptomatte-api==1.0.0"],
-            "pyoidn": ["pyoidn==2.5.1.0"]}  # the first that can be had
+            "mitsuba": ["mitsuba==3.9.1 numpy"], "pyoidn": ["pyoidn==2.5.1.0"]}  # the first that can be had
 
 
 def install(folder, package):
@@ -22,7 +22,7 @@ def install(folder, package):
     if subprocess.run([sys.executable, "-m", "venv", folder]).returncode != 0:
         return None
     for version in VERSIONS[package]:
-        pip = subprocess.run([python, "-m", "pip", "install", "-q", "--disable-pip-version-check", version])
+        pip = subprocess.run([python, "-m", "pip", "install", "-q", "--disable-pip-version-check", *version.split()])
         if pip.returncode == 0 and subprocess.run([python, "-c", f"import {package}"]).returncode == 0:
             marker.touch()
             return python
