@@ -234,11 +234,11 @@ TEST(Film, goes_on_with_mattes_from_its_bytes) {
 
 TEST(Film, has_a_layer_for_each_kind_and_group_of_light_that_is_asked_for) {
     Film film(2, 1, {}, {"light_rim", "emission", "light_key", "diffuse_indirect", "depth"});
-    EXPECT_EQ(film.light_layers().count(), 8u);
+    EXPECT_EQ(film.light_layers().count(), 10u);
     for (int k = 1; k <= 2; ++k) {
         film.add_sample(1, 0, make_hit(1, 1, 1));
-        std::vector<Vec3f> lights; // six kinds, key, rim
-        for (int n = 0; n < 8; ++n) lights.push_back({float(k), float(n), 0.5f});
+        std::vector<Vec3f> lights; // eight kinds, key, rim
+        for (int n = 0; n < 10; ++n) lights.push_back({float(k), float(n), 0.5f});
         film.add_lights(1, 0, lights);
     }
     const Image image = film.resolve();
@@ -261,7 +261,7 @@ TEST(Film, has_a_layer_for_each_kind_and_group_of_light_that_is_asked_for) {
                                             "light_rim.B"};
     EXPECT_EQ(image.channels, expected);
     for (const auto& [layer, n] :
-         {std::pair{"diffuse_indirect", 1}, {"emission", 4}, {"light_key", 6}, {"light_rim", 7}}) {
+         {std::pair{"diffuse_indirect", 1}, {"emission", 6}, {"light_key", 8}, {"light_rim", 9}}) {
         EXPECT_EQ(value(image, 1, 0, (layer + std::string(".R")).c_str()), 1.5f) << layer;
         EXPECT_EQ(value(image, 1, 0, (layer + std::string(".G")).c_str()), float(n)) << layer;
         EXPECT_EQ(value(image, 0, 0, (layer + std::string(".B")).c_str()), 0) << layer;

@@ -21,7 +21,7 @@ TEST(LightLayerNames, are_told_from_others_and_sorted) {
     const LightLayers found = find_light_layers(layers);
     EXPECT_TRUE(found.has_kinds);
     EXPECT_EQ(found.groups, (std::vector<std::string>{"key", "rim"}));
-    EXPECT_EQ(found.count(), 8u);
+    EXPECT_EQ(found.count(), 10u);
     EXPECT_EQ(find_light_layers(std::vector<std::string>{"depth", "N"}).count(), 0u);
     EXPECT_EQ(find_light_layers(std::vector<std::string>{"light_a"}).count(), 1u);
     EXPECT_EQ(find_group_of_layer("light_key"), "key");

@@ -162,6 +162,23 @@ TEST_F(EngineTest, answers_rays_as_the_cpu_engine_does_from_several_threads) {
     }
 }
 
+TEST_F(EngineTest, renders_beside_other_engines_on_the_same_device) {
+    prepare();
+    Film alone = make_film();
+    engine_->render(alone, nullptr);
+    std::vector<Film> films;
+    for (int k = 0; k < 3; ++k) films.push_back(make_film());
+    std::vector<std::thread> threads;
+    for (Film& film : films)
+        threads.emplace_back([&] {
+            auto device = std::make_unique<Device>(
+                Device::Config{.index = get_test_device_index(), .is_validated = true});
+            make_engine_on(std::move(device), prepared_, settings_)->render(film, nullptr);
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (const Film& film : films) EXPECT_EQ(film.resolve().pixels, alone.resolve().pixels);
+}
+
 TEST_F(EngineTest, rays_with_nan_hit_nothing_and_do_not_affect_others) {
     prepare();
     std::vector<Ray> rays;
