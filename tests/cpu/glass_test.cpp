@@ -184,8 +184,8 @@ TEST(Glass, colors_what_lies_in_it) {
     EXPECT_NEAR(seen.y / seen.z, std::pow(0.6, 0.5), 0.01);
 }
 
-/// A lamp in a slab over a black floor, which ends all rays that have missed it.
-TEST(Glass, with_a_lamp_in_it_is_lit_alike_by_drawn_and_found_light) {
+/// A light in a slab over a black floor, which ends all rays that have missed it.
+TEST(Glass, with_a_light_in_it_is_lit_alike_by_drawn_and_found_light) {
     Material m = make_glass(0.5f);
     m.transmission_color = {0.3f, 0.5f, 1}, m.transmission_depth = 0.5f;
     Scene scene = make_slab(2, m);
@@ -238,13 +238,13 @@ TEST(ThinWalls, between_a_light_and_a_surface_take_their_part_of_it) {
     EXPECT_EQ(measure_floor({make_glass(0)}, sun, 0), 0) << "a body stops rays to lights";
 }
 
-/// A large lamp partly before and partly behind a tinted wall: drawn alone, and by both ways.
+/// A large light partly before and partly behind a tinted wall: drawn alone, and by both ways.
 TEST(ThinWalls, tint_alike_what_is_drawn_and_what_is_found) {
     Material wall = make_wall({1, 0.2f, 1});
     wall.ior = 1;
-    const Light lamp{.type = LightType::point, .position = {0, 14, 0}, .radius = 6, .strength = 50};
-    const double drawn = measure_floor({wall}, lamp, 0), both = measure_floor({wall}, lamp, 1);
-    const double bare = measure_floor({}, lamp, 0);
+    const Light light{.type = LightType::point, .position = {0, 14, 0}, .radius = 6, .strength = 50};
+    const double drawn = measure_floor({wall}, light, 0), both = measure_floor({wall}, light, 1);
+    const double bare = measure_floor({}, light, 0);
     EXPECT_LT(drawn, 0.95 * bare);
     EXPECT_NEAR(both / drawn, 1, 0.01);
 }
