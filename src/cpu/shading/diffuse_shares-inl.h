@@ -28,10 +28,8 @@ HWY_NOINLINE void find_diffuse_shares(const cpu::VertexBatch& batch, cpu::Vertex
         light = select(layered.has_layers, evaluate(to_light), light);
         bounce = select(layered.has_layers, evaluate(along_ray), bounce);
     }
-    if (v.has_glass & first_lanes(batch.count)) {
-        alignas(64) float marks[16];
-        for (size_t lane = 0; lane < 16; ++lane) marks[lane] = v.has_glass >> lane & 1 ? 1 : 0;
-        const Bool is_glass = is_set(marks);
+    if (const LaneMask glass = v.has_glass & first_lanes(batch.count)) {
+        const Bool is_glass = from_mask(glass);
         light = select(is_glass, make_grey(Float(0.0f)), light);
         bounce = select(is_glass, make_grey(Float(0.0f)), bounce);
     }

@@ -77,17 +77,10 @@ HWY_INLINE void reflect_path(const PointLanes& point, const GlassLanes& glass, c
 HWY_NOINLINE void reflect_glass(const cpu::VertexBatch& batch, const PointLanes& point, const Basis& basis,
                                 const Vec3& wo_local, const Bool& is_behind, cpu::VertexLanes& v) {
     const LaneMask lanes = v.has_glass & first_lanes(batch.count);
-    alignas(64) uint32_t index[16];
-    alignas(64) float marks[16];
-    for (size_t lane = 0; lane < 16; ++lane) {
-        const bool is_glass = lanes >> lane & 1;
-        index[lane] = is_glass ? v.glass[lane] : 0;
-        marks[lane] = is_glass ? 1 : 0;
-    }
     GlassLanes glass{.basis = basis, .wo_local = wo_local};
-    glass.bsdf =
-        make_glass_bsdf(gather_glass(batch.glass, Uint::load(index)), Float::load(v.roughness), is_behind);
-    glass.is_glass = is_set(marks);
+    glass.bsdf = make_glass_bsdf(gather_glass(batch.glass, load_indices(v.glass, lanes)),
+                                 Float::load(v.roughness), is_behind);
+    glass.is_glass = from_mask(lanes);
     reflect_light(point, glass, v);
     if (batch.pick_pairs)
         reflect_path(point, glass, load_pairs(batch.pick_pairs, batch.count).y,

@@ -107,18 +107,11 @@ HWY_INLINE void reflect_path(const PointLanes& point, const LayeredLanes& layere
 HWY_INLINE LayeredLanes make_layered_lanes(const cpu::VertexBatch& batch, const Basis& basis,
                                            const Vec3& wo_local, const cpu::VertexLanes& v) {
     const LaneMask lanes = v.has_layers & first_lanes(batch.count);
-    alignas(64) uint32_t index[16];
-    alignas(64) float marks[16];
-    for (size_t lane = 0; lane < 16; ++lane) {
-        const bool has_layers = lanes >> lane & 1;
-        index[lane] = has_layers ? v.layers[lane] : 0;
-        marks[lane] = has_layers ? 1 : 0;
-    }
     LayeredLanes layered{.basis = basis, .wo_local = wo_local};
     layered.table = {&batch.layers.entries->x, batch.layers.entry_count};
-    layered.has_layers = is_set(marks);
+    layered.has_layers = from_mask(lanes);
     LayeredSurface surface{load_vectors(v.base_color), Float::load(v.roughness),
-                           gather_layers(batch.layers.records, Uint::load(index))};
+                           gather_layers(batch.layers.records, load_indices(v.layers, lanes))};
     surface.layers.metallic = Float::load(v.layered_metallic);
     layered.bsdf = make_layered_bsdf(surface, layered.table, wo_local.z);
     return layered;

@@ -50,6 +50,20 @@ struct PointLanes {
     }
 };
 
+/// The other way round than to_mask().
+HWY_INLINE Bool from_mask(LaneMask lanes) {
+    alignas(64) float marks[16];
+    for (size_t lane = 0; lane < 16; ++lane) marks[lane] = lanes >> lane & 1 ? 1 : 0;
+    return is_set(marks);
+}
+
+/// Indices of records in the lanes that have one, 0 in the others.
+HWY_INLINE Uint load_indices(const uint32_t (&indices)[16], LaneMask lanes) {
+    alignas(64) uint32_t loaded[16];
+    for (size_t lane = 0; lane < 16; ++lane) loaded[lane] = lanes >> lane & 1 ? indices[lane] : 0;
+    return Uint::load(loaded);
+}
+
 /// Directions that sixteen rays came from.
 HWY_INLINE Vec3 load_viewers(const cpu::TraceRay* rays, size_t count) {
     static_assert(offsetof(cpu::TraceRay, direction) == 16);
