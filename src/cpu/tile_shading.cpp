@@ -5,6 +5,7 @@
 #include "base/timer.h"
 #include "cpu/glass_paths.h"
 #include "cpu/shading/normal_maps.h"
+#include "cpu/shading/terminator.h"
 #include "cpu/shading/vertex_access.h"
 #include "cpu/tile_tracer.h"
 #include "formulas/bounce_lod.h"
@@ -17,11 +18,14 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// `diffuse`: of light along `direction`. What comes from behind a surface is transmitted.
-scalar::LightShares find_shares(const VertexLanes& lanes, size_t lane, const float (&diffuse)[3][16],
-                                const Vec3f& direction) {
-    const bool is_behind = dot(get_lane(lanes.geometric_normal, lane), direction) < 0;
-    return {get_lane(diffuse, lane), is_behind ? scalar::kLobeTransmission : scalar::kLobeSpecular};
+/// Of light along `direction` to a surface.
+bool is_from_behind(const VertexLanes& lanes, size_t lane, const Vec3f& direction) {
+    return dot(get_lane(lanes.geometric_normal, lane), direction) < 0;
+}
+
+/// What comes from behind a surface is transmitted.
+scalar::LightShares make_shares(const Vec3f& diffuse, bool is_behind) {
+    return {diffuse, is_behind ? scalar::kLobeTransmission : scalar::kLobeSpecular};
 }
 
 } // namespace
@@ -167,6 +171,14 @@ uint32_t TileTracer::choose_body(size_t k, const VertexLanes& lanes, size_t lane
                            dot(get_lane(lanes.geometric_normal, lane), direction) < 0});
 }
 
+/// Of the light that was drawn for vertex n of a block, k of the wave.
+float TileTracer::find_lift(size_t k, size_t n) {
+    const PreparedScene& scene = tracer_.scene();
+    if (scene.terminators == Terminators::none || !(lights_drawn_[n].pdf > 0)) return 0;
+    return find_light_lift(scene, hits_[k], points_[k], {lights_drawn_[n].direction, receivers_[n].normal},
+                           scratch_.patches);
+}
+
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
     const PreparedScene& scene = tracer_.scene();
@@ -186,6 +198,7 @@ void TileTracer::reflect(size_t first, size_t count) {
         emissions_[n] = m.emission;
         set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
+        lanes.light_lift[lane] = m.glass == kNoIndex ? find_lift(k, n) : 0.0f;
     }
     for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
     const bool has_bounce = depth_ < settings_.image.bounces;
@@ -237,6 +250,18 @@ void TileTracer::add_emission(size_t k, const Vec3f& emission) {
                                   depth_);
 }
 
+/// Whether something is in the way up to where a shadow ray starts.
+bool TileTracer::is_covered(size_t k, float lift) {
+    const SurfacePoint& point = points_[k];
+    const Vec3f up = dot(point.geometric_normal, rays_[k].direction) > 0 ? -point.geometric_normal
+                                                                         : point.geometric_normal;
+    const TraceRay ray{tracer_.offset_origin(point, up), 0, up, lift, hits_[k].lod_bias};
+    TraceHit hit;
+    tracer_.continued_hits({&ray, 1}, {&hit, 1}, depth_);
+    if (footprints_) note_ray(paths_[active_[k]], ray, ray.t_max);
+    return hit.is_hit();
+}
+
 /// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
@@ -253,13 +278,16 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     if (has_glass_)
         if (const auto* body = find_body(choose_body(k, lanes, lane, ray.direction)))
             contribution = contribution * scalar::absorb_along(body->depth, ray.t_max);
+    path.result.cost += 1;
+    if (lanes.light_lift[lane] > 0 && is_covered(k, lanes.light_lift[lane])) return;
     shadow_rays_.push_back(ray);
     shadows_.push_back(
         {active_[k], scalar::clamp_indirect(contribution, settings_.image.clamp_indirect, uint32_t(depth_))});
-    if (path_lights_.is_on())
+    if (path_lights_.is_on()) {
+        const bool is_behind = lanes.light_lift[lane] == 0 && is_from_behind(lanes, lane, light.direction);
         path_lights_.add_shadow_ray(
-            {find_shares(lanes, lane, lanes.light_diffuse, light.direction), light.group});
-    path.result.cost += 1;
+            {make_shares(get_lane(lanes.light_diffuse, lane), is_behind), light.group});
+    }
 }
 
 bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next) {
@@ -276,7 +304,8 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     path.bsdf_pdf = lanes.bounce_pdf[lane];
     path.result.cost += 1;
     if (depth_ == 0)
-        path_lights_.set_shares(active_[k], find_shares(lanes, lane, lanes.bounce_diffuse, direction));
+        path_lights_.set_shares(active_[k], make_shares(get_lane(lanes.bounce_diffuse, lane),
+                                                        is_from_behind(lanes, lane, direction)));
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, direction, kInfinity, uint32_t(hits_[k].lod_bias)};
     // A body is left on the surface that it was entered on: between the two there would be no way out.

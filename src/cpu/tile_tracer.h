@@ -61,6 +61,8 @@ class TileTracer {
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     void reflect(size_t first, size_t count);
+    float find_lift(size_t k, size_t n);
+    bool is_covered(size_t k, float lift);
     const scalar::GlassParameters* find_body(uint32_t body) const {
         return body == kNoIndex ? nullptr : &tracer_.scene().glass.records[body];
     }

@@ -203,6 +203,17 @@ void add_tangents(PreparedScene& prepared) {
     });
 }
 
+/// Of surfaces that are not tessellated yet.
+Terminators find_terminators(const PreparedScene& scene) {
+    const auto has = [&](bool has_displacement) {
+        return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
+            return surface.has_displacement == has_displacement && !surface.frames.empty();
+        });
+    };
+    if (scene.levels.fixed_level >= 0 && has(true)) return Terminators::all;
+    return has(false) ? Terminators::polygons : Terminators::none;
+}
+
 } // namespace
 
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
@@ -267,6 +278,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     });
     for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
         prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
+    prepared->terminators = find_terminators(*prepared);
     if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(*prepared);
     if (settings.surface.mode == SurfaceMode::tessellated)
         tessellate_scene(*prepared, available_memory_bytes());

@@ -56,6 +56,11 @@ struct PreparedMap {
     const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
 };
 
+/// Triangles that let light through which comes from above the smooth surface that they stand for
+/// (formulas/terminator.h): polygons with normals; displaced patches too, whose triangles are as large as a
+/// fixed level makes them, while those of automatic levels are as small as pixels.
+enum class Terminators : uint32_t { none, polygons, all };
+
 struct PreparedScene {
     std::vector<Surface>
         surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
@@ -64,6 +69,7 @@ struct PreparedScene {
     std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
     bool has_cut_outs = false;       ///< some material is a cut-out or a clear wall
     bool has_normal_maps = false;    ///< some material has one
+    Terminators terminators = Terminators::none;
     MaterialLayers layers;           ///< of the materials
     MaterialGlass glass;             ///< of the materials
     std::vector<Light> lights;

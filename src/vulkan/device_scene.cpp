@@ -100,12 +100,14 @@ std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constan
 
 std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    const auto set = [&](uint32_t constant) {
+    const auto set = [&](uint32_t constant, uint32_t value) {
+        if (value == 0) return;
         constants.resize(std::max<size_t>(constants.size(), constant + 1));
-        constants[constant] = 1;
+        constants[constant] = value;
     };
-    if (has_layers_) set(scalar::kLayersConstant);
-    if (has_glass_) set(scalar::kGlassConstant);
+    set(scalar::kLayersConstant, has_layers_ ? 1 : 0);
+    set(scalar::kGlassConstant, has_glass_ ? 1 : 0);
+    set(scalar::kTerminatorsConstant, uint32_t(terminators_));
     return constants;
 }
 
@@ -131,6 +133,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     for (const Light& light : scene.lights) add(light.color_texture);
     has_layers_ = !scene.layers.empty();
     has_normal_maps_ = scene.has_normal_maps;
+    terminators_ = scene.terminators;
     has_glass_ = !scene.glass.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});

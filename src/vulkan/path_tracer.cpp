@@ -23,7 +23,7 @@ constexpr uint32_t kGroupSize = 64;
 
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
-static_assert(sizeof(scalar::PathData) == 80 && sizeof(scalar::SurfacePointData) == 68);
+static_assert(sizeof(scalar::PathData) == 96 && sizeof(scalar::SurfacePointData) == 68);
 static_assert(sizeof(scalar::FilmSumsData) == scalar::kFilmSumsWords * sizeof(uint32_t));
 static_assert(kLightKinds.size() == scalar::kKindCount);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
@@ -100,6 +100,10 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
     shadow_light_ = make_lighting_kernel("shadow_light");
     film_ = make_kernel(device, "film");
+    if (tracer.scene().terminators != Terminators::none) {
+        lifted_rays_.emplace(make_kernel(device, "lifted_rays"));
+        lift_rays_.emplace(make_kernel(device, "lift_rays"));
+    }
     if (tracer.scene().has_cut_outs) {
         cut_outs_.emplace(make_scattering_kernel("cut_outs"));
         saved_list_ = make_buffer<uint32_t>(device, "saved_list", capacity_);
@@ -352,8 +356,23 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
     return read_lists();
 }
 
+/// Shadow rays that start above their triangles bring nothing where something is in the way up there. The
+/// path list is free until the next depth.
+CastStatistics PathTracer::lift_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
+    if (!lifted_rays_) return {};
+    push.count = shadow_count;
+    push.count = list_rays(*lifted_rays_, push).path_count;
+    if (push.count == 0) return {};
+    const CastStatistics cast = tracer_.any_hits(path_list_, push.count);
+    Commands& commands = tracer_.commands();
+    commands.begin_stage(Stage::shade);
+    commands.dispatch(*lift_rays_, push.count, push);
+    return cast;
+}
+
 void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count) {
     if (shadow_count == 0) return;
+    const CastStatistics lifted = lift_shadow_rays(push, shadow_count);
     CastStatistics cast;
     if (cut_outs_) {
         cast = tracer_.closest_hits(shadow_list_, shadow_count);
@@ -363,6 +382,7 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
     } else {
         cast = tracer_.any_hits(shadow_list_, shadow_count);
     }
+    add_cast_work(cast, lifted);
     cast.depth = int(push.depth);
     add_cast(batch_casts_, cast);
     Commands& commands = tracer_.commands();

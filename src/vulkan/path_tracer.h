@@ -72,6 +72,7 @@ class PathTracer {
     NextRays list_rays(const Kernel& kernel, const scalar::PathPush& push);
     void clear_lists();
     NextRays read_lists();
+    CastStatistics lift_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void add_to_film(Film& film, const Buffer& sums, int sample_count);
     std::vector<uint32_t> download_first_hits(int sample_count) const;
@@ -86,8 +87,9 @@ class PathTracer {
     DeviceLights lights_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
         inner_hits_, shadow_light_, film_;
-    std::optional<Kernel> cut_outs_; ///< where the scene has some
-    Buffer saved_list_;              ///< where rays come from that pass them
+    std::optional<Kernel> cut_outs_;                ///< where the scene has some
+    std::optional<Kernel> lifted_rays_, lift_rays_; ///< where shadow rays may start above their triangles
+    Buffer saved_list_;                             ///< where rays come from that pass them
     Buffer paths_, points_, film_sums_, path_list_, next_path_list_, shadow_list_, pixel_list_;
     Buffer whole_sums_;                               ///< CPU devices only: the film sums of whole samples
     std::vector<uint32_t> pixels_;                    ///< of the current batch, pack_pixel()

@@ -29,6 +29,7 @@
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"
+#include "formulas/terminator.h"
 #include "formulas/tonemap.h"
 #include "formulas/warp.h"
 #include "vulkan/device/commands.h"

@@ -121,6 +121,12 @@ void use_many_linked_lights(Scene& scene, RenderSettings& settings) {
         (k % 4 == 0 ? scene.lights[k].link_includes : scene.lights[k].link_excludes) = {"c", "b"};
 }
 
+/// Whose corners, as those of the sphere, are far apart.
+void use_low_levels(Scene& scene, RenderSettings& settings) {
+    settings.surface.level = 1;
+    scene.displacements[0].autobump = false;
+}
+
 void use_cut_outs(Scene& scene, RenderSettings&) {
     float opacity = 0.3f;
     for (Material& material : scene.materials)
@@ -220,20 +226,20 @@ class PathTracerVariants : public PathTracerTest, public testing::WithParamInter
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, PathTracerVariants,
-    testing::Values(Variant{"with_everything", [](Scene&, RenderSettings&) {}},
-                    Variant{"in_a_constant_environment", use_constant_environment},
-                    Variant{"with_emitters_alone", use_emitters_alone},
-                    Variant{"in_the_dark", use_nothing_to_draw},
-                    Variant{"with_shaped_lights", use_shaped_lights},
-                    Variant{"with_shaped_lights_over_a_background", use_shaped_lights_over_a_background},
-                    Variant{"with_many_lights", use_many_lights},
-                    Variant{"with_textured_lights", use_textured_lights},
-                    Variant{"with_linked_lights", use_linked_lights},
-                    Variant{"with_many_linked_lights", use_many_linked_lights},
-                    Variant{"with_direct_light_alone", use_direct_light_alone},
-                    Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
-                    Variant{"with_cut_outs", use_cut_outs}, Variant{"with_glass", use_glass},
-                    Variant{"with_long_paths", use_long_paths}),
+    testing::Values(
+        Variant{"with_everything", [](Scene&, RenderSettings&) {}},
+        Variant{"in_a_constant_environment", use_constant_environment},
+        Variant{"with_emitters_alone", use_emitters_alone}, Variant{"in_the_dark", use_nothing_to_draw},
+        Variant{"with_shaped_lights", use_shaped_lights},
+        Variant{"with_shaped_lights_over_a_background", use_shaped_lights_over_a_background},
+        Variant{"with_many_lights", use_many_lights}, Variant{"with_textured_lights", use_textured_lights},
+        Variant{"with_linked_lights", use_linked_lights},
+        Variant{"with_many_linked_lights", use_many_linked_lights},
+        Variant{"with_direct_light_alone", use_direct_light_alone},
+        Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
+        Variant{"at_low_levels", use_low_levels},
+        Variant{"with_cut_outs", use_cut_outs}, Variant{"with_glass", use_glass},
+        Variant{"with_long_paths", use_long_paths}),
     [](const auto& info) { return info.param.name; });
 
 TEST_P(PathTracerVariants, takes_the_samples_of_the_cpu_engine) {

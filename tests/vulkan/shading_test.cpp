@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cpu/shading/terminator.h"
 #include "formulas/basis.h"
 #include "formulas/bsdf.h"
 #include "formulas/camera.h"
@@ -170,14 +171,23 @@ std::optional<ExpectedLight> expect_light(const ShadingBench& bench, const Shadi
     cpu::LightSample light;
     const uint32_t first = 0;
     bench.cpu_lights.draw({&at, 1}, {&random, 1}, {&light, 1});
-    if (!(light.pdf > 0) || dot(light.direction, v.point.geometric_normal) <= 0) return std::nullopt;
+    PatchSamplesCache patches;
+    const Vec3f& normal = v.point.geometric_normal;
+    const float lift =
+        light.pdf > 0 ? find_light_lift(*bench.prepared, c.hit, v.point, {light.direction, normal}, patches)
+                      : 0.0f;
+    if (!(light.pdf > 0) || (dot(light.direction, normal) <= 0 && lift == 0)) return std::nullopt;
     bench.cpu_lights.complete_weight({&light, 1}, {&first, 1});
     const scalar::BsdfValue bsdf = v.evaluate(scalar::to_local(v.basis, light.direction));
-    const Vec3f contribution =
-        c.path.throughput * bsdf.value * light.weight * scalar::power_heuristic(light.pdf, bsdf.pdf);
+    const Vec3f contribution = c.path.throughput * bsdf.value * light.weight *
+                               (lift > 0 ? 1 : scalar::power_heuristic(light.pdf, bsdf.pdf));
     if (contribution == Vec3f{} || !is_finite(contribution)) return std::nullopt;
-    scalar::RayData ray{bench.tracer.offset_origin(v.point, light.direction), 0, light.direction,
-                        light.distance, c.hit.lod_bias};
+    if (lift > 0) // the way up, at first
+        return ExpectedLight{
+            {v.point.position + normal * v.point.position_error, 0, normal, lift, c.hit.lod_bias},
+            contribution};
+    const Vec3f origin = bench.tracer.offset_origin(v.point, light.direction);
+    scalar::RayData ray{origin, 0, light.direction, light.distance, c.hit.lod_bias};
     if (light.emitter) {
         const Vec3f to = bench.tracer.offset_origin(*light.emitter, -light.direction) - ray.origin;
         ray.t_max = length(to);

@@ -105,6 +105,8 @@ const uint kDefaultGroupConstant = 15u;
 const uint kEnvironmentGroupConstant = 16u;
 // Of kernels that know of glass: not 0 where a material of the scene lets light through.
 const uint kGlassConstant = 17u;
+// Of the kernel that draws lights: PreparedScene::terminators.
+const uint kTerminatorsConstant = 18u;
 
 #include "formulas/end.h"
 #endif

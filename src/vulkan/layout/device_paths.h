@@ -20,6 +20,10 @@ struct PathData {
     Vec3 normal;       ///< at `previous`, of the side that the ray left to; where there is a light tree
     uint instance;     ///< that `previous` is on; where lights are linked
     uint body;         ///< of solid glass that its ray is in: a material; kNone: none
+    /// Of a shadow ray that starts above its triangle (terminator.glsl): until it is known that nothing is
+    /// in the way up there, its ray is that way. Distance 0: of all others.
+    Vec3 lifted_direction;
+    float lifted_distance;
 };
 
 /// A surface point for shading, world space; normals on the viewer's side.

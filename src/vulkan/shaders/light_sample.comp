@@ -6,6 +6,7 @@
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/light_sums.glsl"
+#include "vulkan/shaders/terminator.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -106,9 +107,12 @@ vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emis
     return clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
 }
 
-RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias) {
+/// `lift`: how far the ray starts above the triangle, where the light comes from below it.
+RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, uint lod_bias) {
     vec3 origin =
-        offset_origin(point.position, point.geometric_normal, point.position_error, drawn.light.direction);
+        lift > 0.0
+            ? point.position + point.geometric_normal * (point.position_error + lift)
+            : offset_origin(point.position, point.geometric_normal, point.position_error, drawn.light.direction);
     RayData ray = {origin, 0.0, drawn.light.direction, drawn.light.distance, lod_bias};
     if (drawn.is_surface) {
         vec3 to = drawn.end - origin;
@@ -119,24 +123,28 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
 }
 
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
-bool sample_light(uint path_index, PathData path, SurfacePointData point, uint instance) {
-    uint material_index = instances[instance].material;
+bool sample_light(uint path_index, PathData path, SurfacePointData point, HitData hit) {
+    uint material_index = instances[hit.instance].material;
     MaterialData material = materials[material_index];
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    DrawnLight drawn =
-        draw_light(point, instance, is_see_through(material), ray.lod_bias, vec2(pick.x, last.y), u);
+    bool is_open = is_see_through(material) || may_lift(hit);
+    DrawnLight drawn = draw_light(point, hit.instance, is_open, ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction, pick.y);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
-    if (kHasGlass != 0u && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
+    float lift = scattering.is_glass ? 0.0 : find_light_lift(hit, point, drawn.light.direction);
+    bool is_lifted = lift > 0.0;
+    if (is_open && !is_lifted && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
-    float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
+    // No bounce ray finds light from below the triangle.
+    bool is_alone = push.depth == push.last_depth || is_lifted;
+    float weight = is_alone ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
-    RayData shadow = make_shadow_ray(point, drawn, ray.lod_bias);
+    RayData shadow = make_shadow_ray(point, drawn, lift, ray.lod_bias);
     uint body = find_next_body(path, scattering, point, material_index, shadow.direction);
     if (kHasGlass != 0u && body != kNone) contribution *= absorb_along(materials[body].glass.depth, shadow.t_max);
     paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
@@ -144,6 +152,12 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, uint i
     if (kLightKinds != 0u && push.depth == 0u)
         store_light_shares(push.capacity, path_index, find_light_shares(scattering, wi, bsdf.value));
     store_light_group(push.capacity, path_index, drawn.group);
+    if (kTerminators != 0u) {
+        paths[path_index].lifted_direction = shadow.direction;
+        paths[path_index].lifted_distance = is_lifted ? shadow.t_max : 0.0;
+        vec3 origin = point.position + point.geometric_normal * point.position_error;
+        if (is_lifted) shadow = RayData(origin, 0.0, point.geometric_normal, lift, ray.lod_bias);
+    }
     rays[push.capacity + path_index] = shadow;
     return true;
 }
@@ -187,7 +201,7 @@ bool light_vertex(uint path_index, HitData hit) {
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);
-    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit.instance);
+    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit);
 }
 
 void main() {

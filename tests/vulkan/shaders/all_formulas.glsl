@@ -41,6 +41,7 @@
 #include "formulas/shading_normal.h"
 #include "formulas/sobol.h"
 #include "formulas/surface_point.h"
+#include "formulas/terminator.h"
 #include "formulas/texel.h"
 #include "formulas/texture.h"
 #include "formulas/tonemap.h"

@@ -106,7 +106,8 @@ struct AllStructs {
     FIELD(s.builds_per_group[2])
 #define FIELDS_PATH(s) \
     FIELD3(s.throughput) FIELD(s.bsdf_pdf) FIELD3(s.previous) FIELD(s.pixel_seed) FIELD3(s.radiance) \
-    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal) FIELD(s.instance) FIELD(s.body)
+    FIELD(s.cost) FIELD3(s.contribution) FIELD3(s.normal) FIELD(s.instance) FIELD(s.body) \
+    FIELD3(s.lifted_direction) FIELD(s.lifted_distance)
 #define FIELDS_POINT(s) \
     FIELD3(s.position) FIELD(s.position_error) FIELD3(s.geometric_normal) FIELD(s.area_per_uv) \
     FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)

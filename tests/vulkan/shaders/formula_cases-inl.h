@@ -85,6 +85,7 @@ struct SurfaceResults {
     float area_per_uv, error;
     Vec2 patch_uv, polygon_uv;
     Vec3 origin, oriented, plain, displaced;
+    float lift;
 };
 
 struct FormulaOutput {
@@ -398,5 +399,9 @@ FN SurfaceResults run_surface(FormulaInput from) {
     r.plain = make_plain_normal(interpolate_triangle(a, b, c, at), point.normal);
     r.displaced = make_displaced_normal(displace_derivative_through(along_u, frame, a * 0.1f, frame.n),
                                         displace_derivative(along_v, frame.n), frame.n);
+    Vec3 heights = make_triple(find_tangent_height(a - inside, frame.n, point.normal),
+                               find_tangent_height(b - inside, normalize(b), point.normal),
+                               is_lost_light(frame.t, point.normal, frame.n) ? 1.0f : 0.0f);
+    r.lift = blend_tangent_heights(heights, weigh_corners(place, 4.0f));
     return r;
 }
