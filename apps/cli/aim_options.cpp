@@ -55,6 +55,13 @@ std::string parse_background(const std::string& text) {
     return text;
 }
 
+/// A flag without a value is "true".
+Ground parse_ground(const std::string& text) {
+    if (text == "true") return Ground::plane;
+    if (text != "shadow") refuse_value("--ground", text, "--ground, or --ground=shadow");
+    return Ground::shadow;
+}
+
 float decode_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
 Vec3f decode_colour(const std::string& text) {
@@ -107,7 +114,10 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
     add(verb, "--light", "sun:AZ,EL",
         "a sun in place of the scene's; the environment stays. Azimuth from +z to +x, elevation, degrees",
         [&scene](const std::string& text) { scene.suns.push_back(parse_sun(text)); });
-    verb.add_flag("--ground", scene.has_ground, "a plane under the lowest point")->group(kGroup);
+    verb.add_flag("--ground", a.ground,
+                  "a plane under the lowest point; --ground=shadow: only the shadow on it, over --background")
+        ->group(kGroup)
+        ->each([&scene](const std::string& text) { scene.ground = parse_ground(text); });
 }
 
 void add_output_options(CLI::App& verb, AimArguments& a) {

@@ -20,6 +20,7 @@ struct DisplayArguments {
 
 struct AimArguments {
     AimOptions scene;
+    std::string ground;     ///< as it was given
     std::string background; ///< empty: the environment; "transparent"; "#rrggbb"
     DisplayArguments display;
     int turntable = 0; ///< pictures of one turn; 0: one picture that is not turned

@@ -159,6 +159,8 @@ constexpr Synonym kSynonyms[] = {
     {"key-light", "--light", "--light sun:AZ,EL"},
     {"floor", "--ground", "--ground"},
     {"plane", "--ground", "--ground"},
+    {"shadow", "--ground", "--ground=shadow"},
+    {"shadow-catcher", "--ground", "--ground=shadow"},
     {"ev", "--exposure", "--exposure EV"},
     {"brightness", "--exposure", "--exposure EV"},
     {"gamma", "--tonemap", "--tonemap NAME"},

@@ -12,12 +12,13 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 37> kOptions{{
+constexpr std::array<OptionName, 38> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
     {"image.clamp_indirect", "--clamp-indirect"},
     {"image.noise", "--noise"},
+    {"image.background", "--background"},
     {"image.time_limit_s", "--time-limit"},
     {"image.seed", "--seed"},
     {"image.crop", "--crop"},

@@ -20,6 +20,9 @@ struct SunDirection {
     friend bool operator==(const SunDirection&, const SunDirection&) = default;
 };
 
+/// A wide plane under the lowest point. `shadow`: one that only catches shadows.
+enum class Ground { none, plane, shadow };
+
 /// What is to be changed of a scene; all empty: nothing.
 struct AimOptions {
     std::optional<Vec3f> from, ///< not with view or frame_all
@@ -31,7 +34,7 @@ struct AimOptions {
     std::optional<float> rotate_degrees; ///< of the environment
     std::optional<float> strength;       ///< of the environment
     std::vector<SunDirection> suns;      ///< instead of the suns of the scene
-    bool has_ground = false;             ///< a wide plane under the lowest point
+    Ground ground = Ground::none;
 };
 
 /// Applies `options`. `aspect` is width / height of the picture: framed objects take about 85 % of its

@@ -220,6 +220,10 @@ struct Object {
     Affine world_from_object;
     uint32_t visibility_mask =
         kVisibleToAll; ///< not 0; Intersector rays whose mask shares no bit miss the object
+    /// In place of it the camera sees the shadow that it catches: black, with an alpha of the part that other
+    /// objects take from the light straight from lights on it. To all other rays it is like any object. Only
+    /// before a black ImageSettings::background, which makes films transparent.
+    bool is_shadow_catcher = false;
 };
 
 struct Camera {

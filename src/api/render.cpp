@@ -16,9 +16,10 @@
 
 namespace relief {
 
-RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer,
+RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* observer,
                     const Checkpoints& checkpoints) {
-    validate_settings(settings);
+    validate_settings(given);
+    const RenderSettings settings = complete_settings(given, scene);
     validate_method(settings, scene.camera);
     const uint64_t scene_hash = scene.hash;
     RenderResult result;

@@ -24,7 +24,8 @@ struct Session::Implementation {
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
 
     Implementation(Scene scene, const RenderSettings& given) : settings(given) {
-        validate_settings(settings);
+        validate_settings(given);
+        settings = complete_settings(given, scene);
         validate_method(settings, scene.camera);
         const Timer timer;
         mattes = make_instance_mattes(scene, settings.image.layers);

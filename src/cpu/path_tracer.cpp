@@ -4,6 +4,7 @@
 
 #include "base/timer.h"
 #include "cpu/tile_tracer.h"
+#include "formulas/bsdf.h"
 #include "formulas/sobol.h"
 #include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
@@ -25,6 +26,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       counters_(report.counters),
       footprints_(report.footprints),
       has_glass_(!scene.tracer.scene().glass.empty()),
+      has_catchers_(scene.tracer.scene().has_shadow_catchers),
       camera_(make_camera_frame(scene.tracer.scene())),
       bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)),
       path_lights_(film.light_layers(), scene.tracer.scene().light_groups, scene.settings.image) {
@@ -139,6 +141,18 @@ void TileTracer::pass_shadow_rays() {
     for (size_t n = 0; n < stopped_.size(); ++n) occluded_[stopped_[n]] = stoppers_[n].is_hit() ? 1 : 0;
 }
 
+/// What shadow ray `k` brings, which nothing is in the way of.
+void TileTracer::add_shadow_light(size_t k) {
+    const auto& [path, light] = shadows_[k];
+    FilmSample& result = paths_[path].result;
+    if (result.shadow.x > 0) { // of a shadow catcher
+        result.shadow.y += scalar::luminance(light);
+        return;
+    }
+    result.radiance += light;
+    if (path_lights_.is_on()) path_lights_.add_shadow_light(k, path, light, uint32_t(depth_));
+}
+
 void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
     tracer_.any_hits(shadow_rays_, occluded_, depth_);
@@ -147,10 +161,7 @@ void TileTracer::trace_shadow_rays() {
         for (size_t k = 0; k < shadows_.size(); ++k)
             note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);
     for (size_t k = 0; k < shadows_.size(); ++k)
-        if (!occluded_[k]) paths_[shadows_[k].path].result.radiance += shadows_[k].contribution;
-    for (size_t k = 0; path_lights_.is_on() && k < shadows_.size(); ++k)
-        if (!occluded_[k])
-            path_lights_.add_shadow_light(k, shadows_[k].path, shadows_[k].contribution, uint32_t(depth_));
+        if (!occluded_[k]) add_shadow_light(k);
     counters_.shadow_rays += shadow_rays_.size();
 }
 

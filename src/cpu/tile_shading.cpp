@@ -9,6 +9,7 @@
 #include "cpu/shading/vertex_access.h"
 #include "cpu/tile_tracer.h"
 #include "formulas/bounce_lod.h"
+#include "formulas/bsdf.h"
 #include "formulas/glass.h"
 #include "formulas/light.h"
 
@@ -17,6 +18,8 @@ namespace relief::cpu {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// What shadows are caught by: white and diffuse, so that nothing but light and its cosine counts.
+constexpr PointMaterial kCatcherMaterial{{1, 1, 1}, {0, 0, 0}, 1, 0, 1, kNoIndex, kNoIndex};
 
 /// Of light along `direction` to a surface.
 bool is_from_behind(const VertexLanes& lanes, size_t lane, const Vec3f& direction) {
@@ -56,8 +59,10 @@ void TileTracer::add_backgrounds() {
         count += hits_[k].is_hit() ? 0 : 1; // branchless: unpredictable
     }
     missed_.resize(count), directions_.resize(count), backgrounds_.resize(count);
-    if (depth_ == 0 && lights_.has_visible_lights())
+    if (depth_ == 0 && lights_.has_visible_lights()) {
         for (size_t k = 0; k < active_.size(); ++k) add_lights_before(k, paths_[active_[k]].throughput, {});
+        if (has_catchers_) cover_catchers();
+    }
     const auto add = [&](size_t n, const Vec3f& light) { add_background(active_[missed_[n]], light); };
     if (depth_ == 0 && settings_.image.background) {
         // Lights cover the background of the picture, which is none of the scene.
@@ -116,6 +121,17 @@ void TileTracer::pass_wall(size_t k, const Vec3f& left) {
         add_lights_before(k, whole - throughput, {});
 }
 
+/// Whether ray k of the camera has met a shadow catcher.
+bool TileTracer::is_catcher(size_t k) const {
+    return has_catchers_ && depth_ == 0 && tracer_.scene().instances[hits_[k].instance].is_shadow_catcher;
+}
+
+/// A light that the camera sees hides the shadows behind it, as it hides the background.
+void TileTracer::cover_catchers() {
+    for (size_t k = 0; k < active_.size(); ++k)
+        if (hits_[k].is_hit() && is_catcher(k) && paths_[active_[k]].result.alpha > 0) hits_[k] = {};
+}
+
 void TileTracer::drop_misses() {
     size_t kept = 0;
     for (size_t k = 0; k < active_.size(); ++k)
@@ -143,7 +159,7 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     for (size_t n = 0; n < lit_count; ++n)
         add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
     for (size_t n = 0; n < count; ++n)
-        if (lanes_[n / 16].has_bounce >> n % 16 & 1)
+        if ((lanes_[n / 16].has_bounce >> n % 16 & 1) && !is_catcher(first + n))
             next += continue_path(first + n, lanes_[n / 16], n % 16, next) ? 1 : 0;
     return next;
 }
@@ -185,7 +201,8 @@ void TileTracer::reflect(size_t first, size_t count) {
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
         const SurfacePoint& point = points_[k];
-        PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
+        PointMaterial m =
+            is_catcher(k) ? kCatcherMaterial : make_point_material(scene, hits_[k].instance, point.uv);
         if (has_glass_) {
             Path& path = paths_[active_[k]];
             const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
@@ -221,6 +238,10 @@ void TileTracer::reflect(size_t first, size_t count) {
 
 void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
     FilmSample& result = paths_[active_[k]].result;
+    if (is_catcher(k)) {
+        result.shadow.x = 1;
+        return;
+    }
     result.alpha = 1;
     result.depth = hits_[k].t;
     result.shading_normal = get_lane(lanes.shading_normal, lane);
@@ -262,11 +283,12 @@ bool TileTracer::is_covered(size_t k, float lift) {
     return hit.is_hit();
 }
 
-/// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
+/// Next-event estimation. At the last vertex, and on shadow catchers, no bounce ray can find the light too:
+/// full weight.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
-    const bool is_last = depth_ == settings_.image.bounces;
-    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
+    const bool is_alone = depth_ == settings_.image.bounces || is_catcher(k);
+    const float weight = is_alone ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
     Vec3f contribution = path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
     TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].lod_bias};
@@ -278,6 +300,7 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     if (has_glass_)
         if (const auto* body = find_body(choose_body(k, lanes, lane, ray.direction)))
             contribution = contribution * scalar::absorb_along(body->depth, ray.t_max);
+    if (is_catcher(k)) path.result.shadow.z += scalar::luminance(contribution);
     path.result.cost += 1;
     if (lanes.light_lift[lane] > 0 && is_covered(k, lanes.light_lift[lane])) return;
     shadow_rays_.push_back(ray);

@@ -55,6 +55,8 @@ class TileTracer {
     void add_background(uint32_t path, const Vec3f& light);
     void gather_lights();
     void add_lights_before(size_t k, const Vec3f& share, const EnvironmentLookup& behind);
+    bool is_catcher(size_t k) const;
+    void cover_catchers();
     void drop_misses();
     void draw_random();
     void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
@@ -73,6 +75,7 @@ class TileTracer {
     void add_emission(size_t k, const Vec3f& emission);
     void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);
     bool continue_path(size_t k, const VertexLanes& lanes, size_t lane, size_t next);
+    void add_shadow_light(size_t k);
     void trace_shadow_rays();
 
     static constexpr size_t kBlock = 64; ///< vertices that are at work at once: as many as a cache holds
@@ -83,7 +86,7 @@ class TileTracer {
     Film& film_;
     TileCounters& counters_;
     PictureFootprints* footprints_;
-    const bool has_glass_;
+    const bool has_glass_, has_catchers_;
     scalar::CameraFrame camera_;
     scalar::BounceLod bounce_lod_;
     uint32_t sample_index_ = 0;

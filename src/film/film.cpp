@@ -10,6 +10,7 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "image/cryptomatte.h"
+#include "image/shadow_alpha.h"
 #include "math/vec.h"
 #include "relief/error.h"
 
@@ -29,6 +30,7 @@ enum class Source {
     samples,
     variance,
     cost,
+    shadow,
     light_kind,
     light_group,
     objects,
@@ -48,7 +50,7 @@ constexpr LayerKind make_light_kind(size_t kind) {
 }
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 22> kLayerKinds{{
+constexpr std::array<LayerKind, 23> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
@@ -60,6 +62,7 @@ constexpr std::array<LayerKind, 22> kLayerKinds{{
     {"samples", Source::samples, {"Y", "", ""}, 0},
     {"variance", Source::variance, {"R", "G", "B"}, 3},
     {"cost", Source::cost, {"Y", "", ""}, 1},
+    {"shadow", Source::shadow, {"C", "L", "U"}, 3},
     make_light_kind(0),
     make_light_kind(1),
     make_light_kind(2),
@@ -126,6 +129,8 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::cost:
         sums[0] += added.cost;
         return;
+    case Source::shadow:
+        return add_to(sums, added.shadow);
     case Source::depth:
     case Source::id:
     case Source::samples:
@@ -168,6 +173,9 @@ void place_in_space(const PictureSpace& space, Source source, float* target) {
     target[0] = v.x, target[1] = v.y, target[2] = v.z;
 }
 
+/// Samples' worth of alpha of what shadow catchers showed.
+double sum_shadow_alpha(const double* sums) { return find_shadow_alpha(sums[0], sums[1], sums[2]); }
+
 /// Checked beforehand, since the system grants more memory than it has and ends the process later.
 void require_memory(double pixels, size_t bytes_per_pixel) {
     const double needed = pixels * double(bytes_per_pixel), available = double(available_memory_bytes());
@@ -205,6 +213,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         const bool is_needed = error == ErrorEstimate::on && kind.source == Source::variance;
         if (!is_requested && !is_needed) continue;
         if (is_needed) squares_offset_ = stride_;
+        if (kind.source == Source::shadow) shadow_offset_ = stride_;
         const auto light = std::ranges::find(kLightKinds, std::string_view(kind.name));
         add_layer({k, stride_, !is_requested, size_t(light - kLightKinds.begin())});
     }
@@ -266,7 +275,7 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     sums.radiance = sample.radiance, sums.cost = sample.cost;
     sums.squares = {square(sample.radiance.x), square(sample.radiance.y), square(sample.radiance.z)};
     sums.shading_normal = sample.shading_normal, sums.geometric_normal = sample.geometric_normal;
-    sums.albedo = sample.albedo;
+    sums.albedo = sample.albedo, sums.shadow = sample.shadow;
     if (is_hit) sums.position = sample.position, sums.uv = sample.uv;
     sums.depth = sample.depth, sums.id = sample.id;
     if (is_hit) sums.hit_ids = {&sample.id, 1};
@@ -371,6 +380,7 @@ void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& spa
     case Source::geometric_normal:
     case Source::albedo:
     case Source::cost:
+    case Source::shadow:
     case Source::light_kind:
     case Source::light_group:
         const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];
@@ -398,7 +408,10 @@ Image Film::resolve(const PictureSpace& space) const {
     parallel_for("resolve", counts_.size(), 1 << 14, [&](size_t begin, size_t end) {
         for (size_t p = begin; p < end; ++p) {
             float* target = image.pixels.data() + p * width;
-            write_means(sums_.data() + p * stride_, kRadianceSums, counts_[p], Source::albedo, target);
+            const double* sums = sums_.data() + p * stride_;
+            write_means(sums, kRadianceSums, counts_[p], Source::albedo, target);
+            if (shadow_offset_ && counts_[p] > 0)
+                target[3] = float((sums[3] + sum_shadow_alpha(sums + *shadow_offset_)) / counts_[p]);
             target += kRadianceSums;
             for (const Layer& layer : layers_) {
                 if (layer.is_hidden) continue;

@@ -27,6 +27,8 @@ struct FilmSample {
     Vec2f uv{};
     uint32_t id = 0; ///< 1 + instance; 0: background
     float cost = 0;  ///< rays traced for this sample
+    Vec3f shadow{};  ///< 1 where the camera ray met a shadow catcher; its light straight from lights as it
+                     ///< arrives, and if nothing were in its way
 };
 
 /// The same, summed over several samples of one pixel.
@@ -39,6 +41,7 @@ struct FilmSums {
     float cost = 0;
     Vec3f shading_normal{}, geometric_normal{}, position{}, albedo{};
     Vec2f uv{};
+    Vec3f shadow{};
     float depth = std::numeric_limits<float>::infinity(); ///< the least
     uint32_t id = 0; ///< at that depth, the lowest among equals; 0: no hit
     /// Of each sample that hit, in their order; only a film that needs_hit_ids() asks for them.
@@ -96,7 +99,7 @@ class Film {
     /// R G B A and the layers. Colour, alpha, light, N, Ng, P, albedo, uv and cost are means over the samples
     /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
     /// hit; variance is that of the mean; mattes are shares of the samples. Pixels without samples are 0,
-    /// depth infinity.
+    /// depth infinity. With the layer shadow, alpha holds what is missing of the light of shadow catchers.
     Image resolve(const PictureSpace& space = {}) const;
 
     /// The least and the greatest number of samples that a pixel has.
@@ -143,6 +146,7 @@ class Film {
     LightLayers light_layers_;
     std::vector<Layer> layers_;            ///< requested or needed, in the order of that table
     std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
+    std::optional<size_t> shadow_offset_;  ///< of those of the shadow layer
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
     std::vector<uint32_t> counts_;     ///< samples a pixel

@@ -10,6 +10,7 @@
 #include "base/text_difference.h"
 #include "image/cryptomatte.h"
 #include "image/sample_range.h"
+#include "image/shadow_alpha.h"
 #include "relief/error.h"
 #include "relief/image.h"
 
@@ -25,7 +26,7 @@ struct Part {
     const Image* image = nullptr;
     size_t index = 0; ///< position in the input, for messages
     int first = 0, last = 0;
-    std::optional<size_t> samples_channel, alpha_channel;
+    std::optional<size_t> samples_channel, alpha_channel, shadow_channel;
 };
 
 /// One pixel of one part.
@@ -43,8 +44,27 @@ enum class Rule { mean, mean_of_hits, direction, variance, samples, depth, id, m
     throw Error(ErrorKind::bad_input, {message, fmt::format("part {}", part + 1), hint});
 }
 
+/// First of the three of the layer shadow, which stand together.
+std::optional<size_t> find_shadow_channel(const Image& image) {
+    const std::optional<size_t> first = image.find_channel(kShadowChannels[0]);
+    if (!first) return std::nullopt;
+    for (size_t k = 1; k < std::size(kShadowChannels); ++k)
+        if (image.find_channel(kShadowChannels[k]) != *first + k) return std::nullopt;
+    return first;
+}
+
+double find_shadow(const float* values, size_t channel) {
+    return find_shadow_alpha(values[channel], values[channel + 1], values[channel + 2]);
+}
+
 Part make_part(const Image& image, size_t index) {
-    Part part{&image, index, 0, 0, image.find_channel("samples.Y"), image.find_channel("A")};
+    Part part{&image,
+              index,
+              0,
+              0,
+              image.find_channel("samples.Y"),
+              image.find_channel("A"),
+              find_shadow_channel(image)};
     std::tie(part.first, part.last) = read_sample_range(image, index);
     if (!part.samples_channel && image.metadata.contains(kInterruptedKey))
         throw_bad(
@@ -125,7 +145,8 @@ void gather(const std::vector<Part>& parts, int x, int y, std::vector<PartPixel>
         const float* values = image.pixels.data() + pixel * image.channels.size();
         const uint32_t count = part.samples_channel ? uint32_t(std::lround(values[*part.samples_channel]))
                                                     : uint32_t(part.last - part.first);
-        const double alpha = part.alpha_channel ? double(values[*part.alpha_channel]) : 1.0;
+        double alpha = part.alpha_channel ? double(values[*part.alpha_channel]) : 1.0;
+        if (part.shadow_channel) alpha -= find_shadow(values, *part.shadow_channel);
         if (count > 0) found.push_back({values, part.first, count, std::round(alpha * count), part.index});
     }
     std::ranges::stable_sort(found, [](const PartPixel& a, const PartPixel& b) { return a.first < b.first; });
@@ -186,7 +207,10 @@ float find_id(const std::vector<PartPixel>& pixels, std::optional<size_t> depth_
 
 /// Rule that combines a channel of the parts.
 struct ChannelRules {
-    explicit ChannelRules(const Image& image) : depth_channel(image.find_channel("depth.Z")) {
+    explicit ChannelRules(const Image& image)
+        : depth_channel(image.find_channel("depth.Z")),
+          alpha_channel(image.find_channel("A")),
+          shadow_channel(find_shadow_channel(image)) {
         for (size_t c = 0; c < image.channels.size(); ++c) {
             rules.push_back(find_rule(image.channels[c]));
             mean_channels.push_back(rules[c] == Rule::variance ? find_mean_channel(image, c) : c);
@@ -209,8 +233,21 @@ struct ChannelRules {
     std::vector<size_t> mean_channels;
     std::vector<size_t> direction_starts;          ///< first of three channels
     std::vector<std::vector<size_t>> matte_layers; ///< channels of each Cryptomatte layer, rank by rank
-    std::optional<size_t> depth_channel;
+    std::optional<size_t> depth_channel, alpha_channel, shadow_channel;
 };
+
+/// That of what was hit is a mean; that of shadows comes from means that are merged.
+double merge_alpha(const std::vector<PartPixel>& pixels, size_t alpha_channel, size_t shadow_channel) {
+    double hits = 0, weight = 0;
+    std::array<double, 3> shadow{};
+    for (const PartPixel& pixel : pixels) {
+        hits +=
+            (double(pixel.values[alpha_channel]) - find_shadow(pixel.values, shadow_channel)) * pixel.count;
+        weight += pixel.count;
+        for (size_t k = 0; k < 3; ++k) shadow[k] += double(pixel.values[shadow_channel + k]) * pixel.count;
+    }
+    return (hits + find_shadow_alpha(shadow[0], shadow[1], shadow[2])) / weight;
+}
 
 double merge_channel(const std::vector<PartPixel>& pixels, const ChannelRules& rules, size_t channel) {
     switch (rules.rules[channel]) {
@@ -259,6 +296,9 @@ void merge_mattes(const std::vector<PartPixel>& pixels, const std::vector<size_t
 void merge_pixel(const std::vector<PartPixel>& pixels, const ChannelRules& rules, float* target) {
     for (size_t c = 0; c < rules.rules.size(); ++c) target[c] = float(merge_channel(pixels, rules, c));
     if (pixels.size() == 1) return;
+    if (rules.alpha_channel && rules.shadow_channel)
+        target[*rules.alpha_channel] =
+            float(merge_alpha(pixels, *rules.alpha_channel, *rules.shadow_channel));
     for (const std::vector<size_t>& channels : rules.matte_layers) merge_mattes(pixels, channels, target);
     for (const size_t start : rules.direction_starts) {
         float* const v = target + start;

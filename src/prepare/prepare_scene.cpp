@@ -15,6 +15,7 @@
 #include "prepare/scene_warnings.h"
 #include "prepare/space_warnings.h"
 #include "prepare/tessellate.h"
+#include "prepare/validate_settings.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
 #include "surface/mesh/corner_tangents.h"
@@ -39,6 +40,7 @@ Instance make_instance(const Object& object, uint32_t surface, uint32_t default_
     instance.surface = surface;
     instance.material = object.material == kNoIndex ? default_material : object.material;
     instance.visibility_mask = object.visibility_mask;
+    instance.is_shadow_catcher = object.is_shadow_catcher;
     return instance;
 }
 
@@ -261,6 +263,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
         if (is_new) first_object.push_back(k);
         prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
     }
+    prepared->has_shadow_catchers = has_shadow_catchers(scene);
     const std::vector<Vec3f> taken_off = move_meshes_to_origin(scene);
     prepare_maps(scene, editable);
     make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);

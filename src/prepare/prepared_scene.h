@@ -40,6 +40,7 @@ struct Instance {
     uint32_t visibility_mask = kVisibleToAll; ///< of the object
     bool is_mirrored = false;                 ///< negative determinant: the winding is turned
     bool is_in_place = false;                 ///< object space is world space
+    bool is_shadow_catcher = false;           ///< of the object
     std::shared_ptr<const LevelField> levels;
 };
 
@@ -64,14 +65,15 @@ enum class Terminators : uint32_t { none, polygons, all };
 struct PreparedScene {
     std::vector<Surface>
         surfaces; ///< one a used (mesh, displacement) pair; one an object for world-space maps
-    std::vector<Instance> instances; ///< in the order of Scene::objects
-    std::vector<PreparedMap> maps;   ///< of all displacements
-    std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
-    bool has_cut_outs = false;       ///< some material is a cut-out or a clear wall
-    bool has_normal_maps = false;    ///< some material has one
+    std::vector<Instance> instances;  ///< in the order of Scene::objects
+    std::vector<PreparedMap> maps;    ///< of all displacements
+    std::vector<Material> materials;  ///< the last one is the default material; all of base_weight 1
+    bool has_cut_outs = false;        ///< some material is a cut-out or a clear wall
+    bool has_normal_maps = false;     ///< some material has one
+    bool has_shadow_catchers = false; ///< some instance is one
     Terminators terminators = Terminators::none;
-    MaterialLayers layers;           ///< of the materials
-    MaterialGlass glass;             ///< of the materials
+    MaterialLayers layers; ///< of the materials
+    MaterialGlass glass;   ///< of the materials
     std::vector<Light> lights;
     LightLinks links; ///< of the lights
     std::optional<Environment> environment;

@@ -114,4 +114,20 @@ void validate_method(const RenderSettings& s, const Camera& camera) {
             "aperture_radius 0, or experiment.method = compute or fragment");
 }
 
+bool has_shadow_catchers(const Scene& scene) {
+    return std::ranges::any_of(scene.objects, &Object::is_shadow_catcher);
+}
+
+RenderSettings complete_settings(RenderSettings s, const Scene& scene) {
+    if (!has_shadow_catchers(scene)) return s;
+    require(s.image.background == Vec3f{},
+            "a shadow catcher shows the shadow before a background that shines through, and there is none",
+            "image.background = transparent, or a colour for a .png");
+    require(s.image.noise == 0, "the noise of a shadow that a shadow catcher shows is not measured",
+            "image.noise = 0, or no shadow_catcher");
+    if (std::ranges::find(s.image.layers, "shadow") == s.image.layers.end())
+        s.image.layers.emplace_back("shadow");
+    return s;
+}
+
 } // namespace relief

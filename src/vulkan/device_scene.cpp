@@ -30,6 +30,13 @@ template <class T, class U> uint32_t append(std::vector<T>& target, const std::v
     return first;
 }
 
+/// Those that are 0 need not be told.
+void set_constant(std::vector<uint32_t>& constants, uint32_t number, uint32_t value) {
+    if (value == 0) return;
+    constants.resize(std::max<size_t>(constants.size(), number + 1));
+    constants[number] = value;
+}
+
 uint32_t pack_kind(uint32_t kind, uint32_t count) { return kind << scalar::kNodeKindShift | count; }
 
 } // namespace
@@ -84,30 +91,22 @@ uint32_t DeviceScene::texture_index(const Texture* texture) const {
 }
 
 std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) const {
-    if (!has_smooth_) return constants;
-    constants.resize(scalar::kSmoothConstant + 1);
-    constants[scalar::kSmoothConstant] = 1;
+    set_constant(constants, scalar::kSmoothConstant, has_smooth_ ? 1 : 0);
+    set_constant(constants, scalar::kShadowCatchersConstant, has_catchers_ ? 1 : 0);
     return constants;
 }
 
 std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    if (!has_normal_maps_) return constants;
-    constants.resize(scalar::kNormalMapsConstant + 1);
-    constants[scalar::kNormalMapsConstant] = 1;
+    set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);
     return constants;
 }
 
 std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    const auto set = [&](uint32_t constant, uint32_t value) {
-        if (value == 0) return;
-        constants.resize(std::max<size_t>(constants.size(), constant + 1));
-        constants[constant] = value;
-    };
-    set(scalar::kLayersConstant, has_layers_ ? 1 : 0);
-    set(scalar::kGlassConstant, has_glass_ ? 1 : 0);
-    set(scalar::kTerminatorsConstant, uint32_t(terminators_));
+    set_constant(constants, scalar::kLayersConstant, has_layers_ ? 1 : 0);
+    set_constant(constants, scalar::kGlassConstant, has_glass_ ? 1 : 0);
+    set_constant(constants, scalar::kTerminatorsConstant, uint32_t(terminators_));
     return constants;
 }
 
@@ -134,6 +133,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     has_layers_ = !scene.layers.empty();
     has_normal_maps_ = scene.has_normal_maps;
     terminators_ = scene.terminators;
+    has_catchers_ = scene.has_shadow_catchers;
     has_glass_ = !scene.glass.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
@@ -263,6 +263,7 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
                 arrays.levels.push_back(instance.levels->packed_at(patch));
         }
         if (instance.is_mirrored) data.levels |= scalar::kMirrored;
+        if (instance.is_shadow_catcher) data.levels |= scalar::kShadowCatcher;
         if (surface.has_displacement) add_tree_levels(surface, *instance.levels);
         tables_.instances.push_back(data);
     }

@@ -35,8 +35,8 @@ class DeviceScene {
     const Buffer& nodes() const { return nodes_; }
     /// Index into the table of textures; scalar::kNone for null.
     uint32_t texture_index(const Texture* texture) const;
-    /// Constants of a kernel that reads maps or textures, with scalar::kSmoothConstant where the scene needs
-    /// it.
+    /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant
+    /// and kShadowCatchersConstant where the scene needs them.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
     /// The same, and scalar::kNormalMapsConstant, for the kernel that finds shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
@@ -67,6 +67,7 @@ class DeviceScene {
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
     size_t node_count_ = 0;
     bool has_smooth_ = false, has_layers_ = false, has_normal_maps_ = false, has_glass_ = false;
+    bool has_catchers_ = false;
     Terminators terminators_ = Terminators::none;
     struct Binding {
         uint32_t number;

@@ -71,7 +71,7 @@ FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count, std::span
     sums.cost = data.cost;
     sums.shading_normal = data.shading_normal, sums.geometric_normal = data.geometric_normal;
     sums.position = data.position, sums.albedo = data.albedo;
-    sums.uv = data.uv;
+    sums.uv = data.uv, sums.shadow = data.shadow;
     sums.depth = data.depth, sums.id = data.id;
     sums.hit_ids = hit_ids;
     return sums;
@@ -115,10 +115,10 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
 }
 
 Kernel PathTracer::make_lighting_kernel(const char* shader) const {
-    return Kernel(tracer_.device(),
-                  {.shader = shader,
-                   .constants = add_light_layers(lights_.add_choice({kGroupSize}), light_layers_,
-                                                 tracer_.scene().light_groups)});
+    return Kernel(tracer_.device(), {.shader = shader,
+                                     .constants = add_light_layers(
+                                         lights_.add_choice(tracer_.device_scene().add_filter({kGroupSize})),
+                                         light_layers_, tracer_.scene().light_groups)});
 }
 
 Kernel PathTracer::make_scattering_kernel(const char* shader) const {

@@ -115,6 +115,30 @@ TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
     EXPECT_EQ(read_texture(folder_ / "deep.png").source_type, SampleType::uint16);
 }
 
+/// A bump floats above the ground, so that it has no shadow but from the sun.
+TEST_F(AimOptionsTest, a_ground_of_shadows_alone_shows_the_background) {
+    const std::vector<std::string> view = {"--from", "0,6,6", "--to", "0,0,0", "--light", "sun:60,40"};
+    const auto render_ground = [&](const std::string& output, std::vector<std::string> more) {
+        more.insert(more.end(), view.begin(), view.end());
+        return render(output, more);
+    };
+    const Image none = render_ground("none.exr", {"--background", "transparent"});
+    const Image film = render_ground("film.exr", {"--background", "transparent", "--ground=shadow"});
+    EXPECT_GT(count_covered(film), 1.05f * count_covered(none));
+    EXPECT_LT(count_covered(film), 0.9f * float(film.width * film.height));
+    const Image white = render_ground("white.png", {"--background", "white", "--ground=shadow"});
+    const Image plain = render_ground("plain.png", {"--background", "white"});
+    float darkened = 0;
+    for (size_t k = 0; k < white.pixels.size(); ++k)
+        darkened += plain.pixels[k] == 1 && white.pixels[k] < 0.9f;
+    EXPECT_GT(darkened, 10);
+    render_ground("a.exr", {"--background", "transparent", "--ground=shadow", "--save-scene", "caught.json"});
+    ASSERT_EQ(run({"render", "caught.json", "--background", "transparent", "-o", "b.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "a.exr", "b.exr"}).exit_code, 0);
+    EXPECT_NE(refuse({"--ground=shadow"}).find("--background transparent"), std::string::npos);
+    EXPECT_NE(refuse({"--ground=moon"}).find("--ground=shadow"), std::string::npos);
+}
+
 TEST_F(AimOptionsTest, what_cannot_be_is_refused_before_the_render) {
     EXPECT_NE(refuse({"--view", "fornt"}).find("did you mean 'front'"), std::string::npos);
     EXPECT_NE(refuse({"--from", "1,2"}).find("x,y,z"), std::string::npos);

@@ -146,6 +146,10 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
         sums.position += hit.position, sums.albedo += hit.albedo;
         sums.uv = sums.uv + hit.uv;
     }
+    FilmSample caught;
+    caught.shadow = {1, 0.5f, 2};
+    one_by_one.add_sample(1, 0, caught);
+    ++sums.count, sums.shadow += caught.shadow;
     sums.depth = 4, sums.id = 8, sums.hit_ids = hit_ids;
     FilmSample miss;
     miss.radiance = {0.5f, 0, 2}, miss.cost = 1;
@@ -160,8 +164,26 @@ TEST(Film, takes_sums_of_samples_like_the_samples_themselves) {
     missed.light_count = 1;
     summed.add_sums(1, 0, missed);
     const Image image = summed.resolve();
-    EXPECT_FLOAT_EQ(image.at(1, 0, image.find_channel("A").value()), 4 / 5.0f);
+    EXPECT_FLOAT_EQ(image.at(1, 0, image.find_channel("A").value()), 4.75f / 6);
     EXPECT_EQ(summed.resolve().pixels, one_by_one.resolve().pixels);
+}
+
+TEST(Film, finds_the_alpha_of_shadows_from_sums_of_light) {
+    Film film(2, 1, {}, {"shadow"});
+    FilmSample miss, caught;
+    film.add_sample(0, 0, make_hit(1, 1, 1)), film.add_sample(0, 0, miss);
+    for (const Vec3f& shadow : {Vec3f{1, 0, 6}, Vec3f{1, 3, 3}, Vec3f{1, 0, 0}}) { // 1/3 of the light arrives
+        caught.shadow = shadow;
+        film.add_sample(0, 0, caught);
+    }
+    caught.shadow = {1, 0, 0};
+    film.add_sample(1, 0, caught);
+    const Image image = film.resolve();
+    EXPECT_FLOAT_EQ(value(image, 0, 0, "A"), (1 + 3 * 2 / 3.0f) / 5);
+    EXPECT_FLOAT_EQ(value(image, 0, 0, "shadow.C"), 3 / 5.0f);
+    EXPECT_FLOAT_EQ(value(image, 0, 0, "shadow.L"), 3 / 5.0f);
+    EXPECT_FLOAT_EQ(value(image, 0, 0, "shadow.U"), 9 / 5.0f);
+    EXPECT_EQ(value(image, 1, 0, "A"), 0) << "no light, no shadow";
 }
 
 /// Ids and samples, of 1024, of the ranks of pixel (0, 0).

@@ -61,6 +61,32 @@ Image make_part(std::array<int, 4> window, int first, int last) {
     return image;
 }
 
+/// One pixel: hits, then the samples that met a shadow catcher and their light.
+Image make_shadow_part(int first, int count, int hits, const std::array<float, 3>& shadow) {
+    Image image;
+    image.width = image.height = image.full_width = image.full_height = 1;
+    image.channels = {"R", "G", "B", "A", "P.X", "shadow.C", "shadow.L", "shadow.U"};
+    image.metadata = {{"relief:samples", std::to_string(first) + ":" + std::to_string(first + count)},
+                      {"relief:seed", "1"},
+                      {"relief:scene_hash", "abcd"}};
+    const float n = float(count), alpha = shadow[0] * (1 - shadow[1] / shadow[2]);
+    image.pixels = {
+        0, 0, 0, (float(hits) + alpha) / n, float(hits), shadow[0] / n, shadow[1] / n, shadow[2] / n};
+    return image;
+}
+
+TEST(MergeImages, finds_the_alpha_of_shadows_from_the_light_of_all_parts) {
+    // Each part by itself says 3/4 and 0; of all light one part in two arrives.
+    const std::vector<Image> parts{make_shadow_part(0, 4, 1, {2, 1, 4}),
+                                   make_shadow_part(4, 6, 3, {3, 2, 2})};
+    const Image merged = merge_images(parts);
+    EXPECT_NEAR(merged.pixels[3], (4 + 5 * 0.5) / 10, 1e-6);
+    EXPECT_NEAR(merged.pixels[5], 0.5, 1e-6);
+    EXPECT_NEAR(merged.pixels[4], (1 * 1 + 3 * 3) / 4.0, 1e-6)
+        << "a mean over hits, which shadows are none of";
+    EXPECT_EQ(merge_images({parts.data(), 1}).pixels, parts[0].pixels);
+}
+
 TEST(MergeImages, joins_tiles_and_sample_ranges_to_the_whole_picture) {
     const Image whole = make_part({0, 0, kWidth, kHeight}, 0, 12);
     const std::vector<Image> parts{make_part({0, 0, 4, kHeight}, 5, 12),

@@ -160,7 +160,7 @@ TEST_F(Aim, the_ground_lies_under_the_lowest_point) {
     Scene scene = make_two_boxes();
     scene.hash = 7;
     AimOptions options;
-    options.has_ground = true;
+    options.ground = Ground::plane;
     aim_scene(scene, options, 1);
     ASSERT_EQ(scene.objects.size(), 3u);
     for (const Vec3f& p : scene.meshes[scene.objects[2].mesh].positions) {
@@ -211,7 +211,7 @@ TEST_F(Aim, a_copy_of_a_mesh_scene_names_its_files_and_reads_back) {
     options.subdivision = "catmark", options.subdivision_level = 1;
     Scene scene = load_mesh_scene(folder_ / "plane.obj", options);
     AimOptions aim;
-    aim.view = View::left, aim.has_ground = true, aim.suns = {{10, 20}};
+    aim.view = View::left, aim.ground = Ground::plane, aim.suns = {{10, 20}};
     aim_scene(scene, aim, 1);
     scene.picture.width = 64;
     const std::filesystem::path file = folder_ / "copies" / "s.json";
@@ -307,7 +307,7 @@ TEST_F(Aim, a_ground_takes_no_name_and_no_file_of_others) {
         "meshes": {"ground": {"file": "plane.obj"}},
         "objects": [{"name": "ground", "mesh": "ground", "material": "ground"}]})");
     AimOptions aim;
-    aim.has_ground = true;
+    aim.ground = Ground::plane;
     Scene scene = load_scene(input);
     aim_scene(scene, aim, 1);
     const std::filesystem::path file = folder_ / "copy.json";

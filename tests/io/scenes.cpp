@@ -161,6 +161,7 @@ TEST_F(SceneFiles, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": "big"})")), "objects[0].transform.scale");
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"scale": [1, 0, 1]})")), "singular");
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"matrix": [1, 2]})")), "16 numbers");
+    EXPECT_HAS(error_of(with_object(R"(, "shadow_catcher": "yes")")), "objects[0].shadow_catcher");
     EXPECT_HAS(error_of(R"({"camera": {"fov_degrees": 200}})"), "camera.fov_degrees: must be in");
     EXPECT_HAS(error_of(R"({"render": {"width": 0}})"), "render.width");
     EXPECT_HAS(error_of(R"({"render": {"spp": -4}})"), "render.spp");
@@ -277,7 +278,7 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
                                 "lengths": "relative", "filter": "cubic"}},
         "meshes": {"p/q": {"file": "plane.obj"}}, "lights": [{"type": "point", "strength": 0.3}],
         "objects": [{"mesh": "p/q", "displacement": "a", "material": "m n",
-                     "transform": {"rotate_degrees": [10, 20, 30], "scale": 0.3}}, {"mesh": "p/q", "displacement": "z"}]})");
+                     "transform": {"rotate_degrees": [10, 20, 30], "scale": 0.3}}, {"mesh": "p/q", "displacement": "z", "shadow_catcher": true}]})");
     scene.meshes[0].positions[0] = {0.1f, 1e-20f, 12345.678f};
     save_scene(scene, folder_ / "out");
     const Scene read = load_scene(folder_ / "out" / "scene.json");
@@ -309,6 +310,7 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
     for (size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(read.objects.at(i).world_from_object, scene.objects[i].world_from_object);
         EXPECT_EQ(read.objects[i].material, scene.objects[i].material);
+        EXPECT_EQ(read.objects[i].is_shadow_catcher, i == 1);
     }
     const Material &material = read.materials.at(0), &given = scene.materials[0];
     EXPECT_EQ(material.base_color_filter, MapFilter::bspline);

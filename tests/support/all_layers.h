@@ -19,6 +19,7 @@ inline std::vector<std::string> list_all_layers(const std::string& light_layer) 
             "samples",
             "variance",
             "cost",
+            "shadow",
             "diffuse_direct",
             "emission",
             "background",

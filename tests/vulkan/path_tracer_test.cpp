@@ -127,6 +127,15 @@ void use_low_levels(Scene& scene, RenderSettings& settings) {
     scene.displacements[0].autobump = false;
 }
 
+/// A floor of layers, before it lights that are seen, above it a cut-out.
+void use_shadow_catchers(Scene& scene, RenderSettings& settings) {
+    use_shaped_lights(scene, settings);
+    settings.image.background = Vec3f{};
+    scene.environment.emplace();
+    scene.objects[2].is_shadow_catcher = true;
+    scene.materials[0].opacity = 0.5f;
+}
+
 void use_cut_outs(Scene& scene, RenderSettings&) {
     float opacity = 0.3f;
     for (Material& material : scene.materials)
@@ -237,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"with_many_linked_lights", use_many_linked_lights},
         Variant{"with_direct_light_alone", use_direct_light_alone},
         Variant{"with_clamped_indirect_light", use_clamped_indirect_light},
-        Variant{"at_low_levels", use_low_levels},
+        Variant{"at_low_levels", use_low_levels}, Variant{"with_shadow_catchers", use_shadow_catchers},
         Variant{"with_cut_outs", use_cut_outs}, Variant{"with_glass", use_glass},
         Variant{"with_long_paths", use_long_paths}),
     [](const auto& info) { return info.param.name; });

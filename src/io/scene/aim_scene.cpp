@@ -89,7 +89,6 @@ void replace_suns(Scene& scene, const std::vector<SunDirection>& suns) {
     }
 }
 
-/// A quad under the lowest point, so wide that its rim is far away.
 /// "ground", or with a number where something is called so.
 template <class Named> std::string name_ground(const std::vector<Named>& others) {
     const auto is_taken = [&](const std::string& name) {
@@ -100,7 +99,8 @@ template <class Named> std::string name_ground(const std::vector<Named>& others)
     return name;
 }
 
-void add_ground(Scene& scene) {
+/// A quad under the lowest point, so wide that its rim is far away.
+void add_ground(Scene& scene, Ground ground) {
     require_objects(scene);
     const Box box = measure_scene(scene);
     const Vec3f size = box.extent(), middle = box.center();
@@ -120,13 +120,14 @@ void add_ground(Scene& scene) {
     Object object;
     object.name = name_ground(scene.objects);
     object.mesh = uint32_t(scene.meshes.size()), object.material = uint32_t(scene.materials.size());
+    object.is_shadow_catcher = ground == Ground::shadow;
     scene.meshes.push_back(std::move(plane));
     scene.materials.push_back(std::move(material));
     scene.objects.push_back(std::move(object));
 }
 
 /// What the options left in the scene.
-uint64_t hash_aimed(const Scene& scene, bool has_ground) {
+uint64_t hash_aimed(const Scene& scene, Ground ground) {
     ContentHash hash(scene.hash);
     const auto add = [&](const Vec3f& v) { hash.add(fmt::format("{} {} {};", v.x, v.y, v.z)); };
     const Camera& camera = scene.camera;
@@ -134,7 +135,8 @@ uint64_t hash_aimed(const Scene& scene, bool has_ground) {
     add({camera.fov_degrees, camera.aperture_radius, camera.focus_distance});
     if (scene.environment) add({scene.environment->strength, scene.environment->rotate_degrees, 0});
     for (const Light& light : scene.lights) add(light.direction);
-    if (has_ground) hash.add("ground");
+    if (ground != Ground::none) hash.add("ground");
+    if (ground == Ground::shadow) hash.add("shadow");
     return hash.value();
 }
 
@@ -143,15 +145,15 @@ uint64_t hash_aimed(const Scene& scene, bool has_ground) {
 void aim_scene(Scene& scene, const AimOptions& options, float aspect) {
     const bool is_changed = options.from || options.to || options.fov_degrees || options.view ||
                             options.frame_all || options.rotate_degrees || options.strength ||
-                            !options.suns.empty() || options.has_ground;
+                            !options.suns.empty() || options.ground != Ground::none;
     if (!is_changed) return;
     validate_scene(scene); // framing follows the indices of the meshes and the uvs into the maps
     aim_camera(scene, options, aspect);
     aim_environment(scene, options);
     replace_suns(scene, options.suns);
-    if (options.has_ground) add_ground(scene);
+    if (options.ground != Ground::none) add_ground(scene, options.ground);
     validate_scene(scene);
-    if (scene.hash != 0) scene.hash = hash_aimed(scene, options.has_ground);
+    if (scene.hash != 0) scene.hash = hash_aimed(scene, options.ground);
 }
 
 Camera turn_camera(const Camera& camera, float degrees) {

@@ -117,7 +117,9 @@ void add_ground(const Scene& scene, const fs::path& file, Json& root) {
     root["materials"][material.name] = {{"base_color", to_json(material.base_color)},
                                         {"roughness", to_json(material.roughness)}};
     root["meshes"][mesh.name]["file"] = mesh_file.string();
-    root["objects"].push_back({{"name", object.name}, {"mesh", mesh.name}, {"material", material.name}});
+    Json node = {{"name", object.name}, {"mesh", mesh.name}, {"material", material.name}};
+    if (object.is_shadow_catcher) node["shadow_catcher"] = true;
+    root["objects"].push_back(std::move(node));
 }
 
 /// What options may have changed.

@@ -40,7 +40,7 @@ inline constexpr auto kDisplacement =
 inline constexpr auto kMesh = make_keys("file", "uv_set", "subdivision");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
 inline constexpr auto kObject =
-    make_keys("name", "mesh", "displacement", "material", "transform", "instances");
+    make_keys("name", "mesh", "displacement", "material", "transform", "instances", "shadow_catcher");
 inline constexpr auto kInstances = make_keys("file", "materials");
 inline constexpr auto kTransform = make_keys("translate", "rotate_degrees", "scale", "matrix");
 inline constexpr auto kSun =

@@ -80,6 +80,7 @@ Object read_object(const JsonNode& node, const ObjectNames& names) {
         object.displacement = find_named(*found, names.displacements, "displacement");
     if (const auto found = node.find("material"))
         object.material = find_named(*found, names.materials, "material");
+    if (const auto found = node.find("shadow_catcher")) object.is_shadow_catcher = found->as_bool();
     if (const auto found = node.find("transform")) object.world_from_object = read_transform(*found);
     return object;
 }

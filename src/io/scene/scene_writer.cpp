@@ -231,6 +231,7 @@ class SceneWriter {
             if (object.displacement != kNoIndex)
                 node["displacement"] = displacement_names_.at(object.displacement);
             if (object.material != kNoIndex) node["material"] = material_names_.at(object.material);
+            if (object.is_shadow_catcher) node["shadow_catcher"] = true;
             const Affine& m = object.world_from_object;
             if (!(m == Affine{})) {
                 Json matrix = Json::array();

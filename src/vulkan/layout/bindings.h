@@ -107,6 +107,8 @@ const uint kEnvironmentGroupConstant = 16u;
 const uint kGlassConstant = 17u;
 // Of the kernel that draws lights: PreparedScene::terminators.
 const uint kTerminatorsConstant = 18u;
+// Of kernels that shade: not 0 where the scene has shadow catchers.
+const uint kShadowCatchersConstant = 19u;
 
 #include "formulas/end.h"
 #endif

@@ -39,7 +39,8 @@ struct SurfacePointData {
     uint is_flipped; ///< the viewer is on the side opposite to the winding
 };
 
-/// Sums over the samples of one pixel in one launch. All but radiance, squares and cost refer to first hits.
+/// Sums over the samples of one pixel in one launch. All but radiance, squares, cost and shadow refer to
+/// first hits.
 struct FilmSumsData {
     Vec3 radiance;
     Vec3 squares; ///< of radiance
@@ -47,12 +48,13 @@ struct FilmSumsData {
     float hit_count;
     float light_count; ///< of samples that hit nothing, but met a light that they see
     Vec3 shading_normal, geometric_normal, position, albedo;
+    Vec3 shadow; ///< of FilmSample
     Vec2 uv;
     float depth; ///< minimum
     uint id;     ///< of the nearest hit: 1 + instance, the lowest among ties; 0: no hit
 };
 
-const uint kFilmSumsWords = 25u; ///< of FilmSumsData
+const uint kFilmSumsWords = 28u; ///< of FilmSumsData
 /// Of a path, in the film's buffer behind all sums of light: LightShares of the light that was drawn at its
 /// first vertex and of what comes there; the group of the light that was drawn last.
 const uint kPathLightWords = 9u;

@@ -14,7 +14,8 @@ struct AffineData {
 
 /// Of InstanceData::levels. A million instances have to fit into a buffer of 128 MiB.
 const uint kManyLevels = 0x80000000u;
-const uint kMirrored = 0x40000000u; ///< winding reversed
+const uint kMirrored = 0x40000000u;      ///< winding reversed
+const uint kShadowCatcher = 0x20000000u; ///< see Object::is_shadow_catcher
 
 struct InstanceData {
     AffineData object_from_origin, world_from_object;
@@ -23,7 +24,7 @@ struct InstanceData {
     uint surface;  ///< index into surfaces
     uint material; ///< index into materials
     uint root;     ///< node of the surface's tree; kNone: the surface is empty
-    uint levels;   ///< packed ones of all patches, or kManyLevels and an index into levels; and kMirrored
+    uint levels;   ///< packed ones of all patches, or kManyLevels and an index into levels; and the others
     uint visibility_mask;
 };
 

@@ -36,7 +36,10 @@ void main() {
     // Less than 1 of rays that came through clear walls.
     vec3 share = kHasGlass != 0u ? paths[path_index].throughput : vec3(1.0);
     bool is_met = see_lights(path_index, share, distance);
-    if (is_hit(hit)) return;
+    // They hide the shadows behind them, as they hide the background.
+    bool is_covered = is_met && is_hit(hit) && is_catcher(hit, push.depth);
+    if (is_covered) hits[path_index].instance = kNone;
+    if (is_hit(hit) && !is_covered) return;
     // Lights cover the background of the picture, which is none of the scene.
     if (is_met) film[path_index].light_count += 1.0;
     if (is_met && push.has_background != 0u) return;

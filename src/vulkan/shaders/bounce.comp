@@ -50,7 +50,8 @@ void main() {
     if (index >= push.count) return;
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
-    uint count = is_hit(hit) && continue_path(path_index, hit) ? 1u : 0u;
+    bool goes_on = is_hit(hit) && !is_catcher(hit, push.depth) && continue_path(path_index, hit);
+    uint count = goes_on ? 1u : 0u;
     uint place = atomicAdd(counters.path_count, count);
     if (count > 0u) next_path_list[place] = path_index;
 }

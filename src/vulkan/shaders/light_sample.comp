@@ -122,10 +122,21 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, ui
     return ray;
 }
 
-/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
+/// Shadow catchers are white and diffuse, so that nothing but light and its cosine counts.
+MaterialData load_material(HitData hit) {
+    MaterialData material = materials[instances[hit.instance].material];
+    if (!is_catcher(hit, push.depth)) return material;
+    material.emission = vec3(0.0);
+    material.ior = 1.0;
+    material.has_layers = material.has_glass = 0u;
+    return material;
+}
+
+/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex and on shadow catchers: no
+/// bounce ray follows.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, HitData hit) {
     uint material_index = instances[hit.instance].material;
-    MaterialData material = materials[material_index];
+    MaterialData material = load_material(hit);
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
@@ -140,13 +151,15 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, HitDat
     if (is_open && !is_lifted && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
     // No bounce ray finds light from below the triangle.
-    bool is_alone = push.depth == push.last_depth || is_lifted;
+    bool is_caught = is_catcher(hit, push.depth);
+    bool is_alone = push.depth == push.last_depth || is_lifted || is_caught;
     float weight = is_alone ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
     RayData shadow = make_shadow_ray(point, drawn, lift, ray.lod_bias);
     uint body = find_next_body(path, scattering, point, material_index, shadow.direction);
     if (kHasGlass != 0u && body != kNone) contribution *= absorb_along(materials[body].glass.depth, shadow.t_max);
+    if (is_caught) film[path_index].shadow.z += luminance(contribution);
     paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
     paths[path_index].cost = path.cost + 1.0;
     if (kLightKinds != 0u && push.depth == 0u)
@@ -196,8 +209,9 @@ bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
     uint material_index = instances[hit.instance].material;
-    if (kHasGlass != 0u) path = meet_glass(path_index, path, hit, point, material_index);
-    MaterialData material = materials[material_index];
+    if (kHasGlass != 0u && !is_catcher(hit, push.depth))
+        path = meet_glass(path_index, path, hit, point, material_index);
+    MaterialData material = load_material(hit);
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);

@@ -44,6 +44,13 @@ layout(constant_id = kLightLinksConstant) const uint kHasLightLinks = 0;
 layout(constant_id = kLightTexturesConstant) const uint kHasLightTextures = 0;
 layout(constant_id = kGlassConstant) const uint kHasGlass = 0;
 
+layout(constant_id = kShadowCatchersConstant) const uint kHasShadowCatchers = 0;
+
+/// Whether what a ray has met after `depth` bounces is a shadow catcher that the camera sees.
+bool is_catcher(HitData hit, uint depth) {
+    return kHasShadowCatchers != 0u && depth == 0u && (instances[hit.instance].levels & kShadowCatcher) != 0u;
+}
+
 /// The BSDF for one outgoing direction, in a local frame: one of the three.
 struct Scattering {
     Basis basis;

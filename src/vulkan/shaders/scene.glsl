@@ -80,7 +80,7 @@ uint load_mips(SurfaceData s, uint patch_index) {
 
 /// Packed levels of a patch of an instance, without LOD bias.
 uint find_levels(InstanceData instance, uint patch_index) {
-    uint levels = instance.levels & ~(kManyLevels | kMirrored);
+    uint levels = instance.levels & ~(kManyLevels | kMirrored | kShadowCatcher);
     if ((instance.levels & kManyLevels) == 0u) return levels;
     return texelFetch(field_levels, int(levels + patch_index)).x;
 }

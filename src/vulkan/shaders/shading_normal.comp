@@ -76,12 +76,14 @@ void main() {
     vec3 geometric_normal = points[path_index].geometric_normal;
     bool is_flipped = points[path_index].is_flipped != 0u;
     Appearance appearance = find_appearance(hit, is_flipped ? -geometric_normal : geometric_normal, is_flipped);
+    bool is_caught = is_catcher(hit, push.depth);
+    if (is_caught) appearance.base_color = vec3(1.0), appearance.roughness = 1.0, appearance.metallic = 0.0;
     points[path_index].bent_normal =
         bend_normal(appearance.shading_normal, geometric_normal, -rays[path_index].direction);
     points[path_index].base_color = appearance.base_color;
     points[path_index].roughness = appearance.roughness;
     points[path_index].metallic = appearance.metallic;
-    if (push.depth > 0u) return;
+    if (push.depth > 0u || is_caught) return;
     film[path_index].shading_normal += appearance.shading_normal;
     film[path_index].albedo += appearance.base_color;
     film[path_index].uv += appearance.uv;

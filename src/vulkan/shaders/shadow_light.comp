@@ -12,6 +12,10 @@ void main() {
     uint path_index = ray_index - push.capacity;
     if (is_hit(hits[ray_index])) return;
     vec3 light = paths[path_index].contribution;
+    if (is_catcher(hits[path_index], push.depth)) {
+        film[path_index].shadow.y += luminance(light);
+        return;
+    }
     paths[path_index].radiance += light;
     add_shadow_light(push.capacity, path_index, light, push.depth);
 }

@@ -38,5 +38,9 @@ void main() {
     HitData hit = hits[path_index];
     if (!is_hit(hit)) return;
     make_point(path_index, hit);
-    if (push.depth == 0u) record_first_hit(path_index, hit);
+    if (push.depth > 0u) return;
+    if (is_catcher(hit, push.depth))
+        film[path_index].shadow.x += 1.0;
+    else
+        record_first_hit(path_index, hit);
 }

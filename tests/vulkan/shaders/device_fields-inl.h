@@ -113,7 +113,8 @@ struct AllStructs {
     FIELD3(s.bent_normal) FIELD(s.roughness) FIELD3(s.base_color) FIELD(s.metallic) FIELD(s.is_flipped)
 #define FIELDS_FILM(s) \
     FIELD3(s.radiance) FIELD3(s.squares) FIELD(s.cost) FIELD(s.hit_count) FIELD(s.light_count) FIELD3(s.shading_normal) \
-    FIELD3(s.geometric_normal) FIELD3(s.position) FIELD3(s.albedo) FIELD2(s.uv) FIELD(s.depth) FIELD(s.id)
+    FIELD3(s.geometric_normal) FIELD3(s.position) FIELD3(s.albedo) FIELD3(s.shadow) FIELD2(s.uv) FIELD(s.depth) \
+    FIELD(s.id)
 #define FIELDS_EMITTER(s) \
     FIELD(s.end) FIELD(s.probability)
 #define FIELDS_LIGHT(s) \
