@@ -12,6 +12,7 @@
 #include "prepare/light_links.h"
 #include "prepare/material_glass.h"
 #include "prepare/material_layers.h"
+#include "prepare/textured_materials.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 #include "surface/map/gutter.h"
@@ -64,6 +65,7 @@ struct PreparedScene {
     std::vector<Material> materials; ///< the last one is the default material; all of base_weight 1
     bool has_cut_outs = false;       ///< some material is a cut-out or a clear wall
     bool has_normal_maps = false;    ///< some material has one
+    TexturedMaterials textured;      ///< of the materials
     MaterialLayers layers;           ///< of the materials
     MaterialGlass glass;             ///< of the materials
     std::vector<Light> lights;

@@ -30,6 +30,11 @@ template <class T, class U> uint32_t append(std::vector<T>& target, const std::v
     return first;
 }
 
+void set_constant(uint32_t constant, std::vector<uint32_t>& constants) {
+    constants.resize(std::max<size_t>(constants.size(), constant + 1));
+    constants[constant] = 1;
+}
+
 uint32_t pack_kind(uint32_t kind, uint32_t count) { return kind << scalar::kNodeKindShift | count; }
 
 } // namespace
@@ -92,20 +97,16 @@ std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) c
 
 std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    if (!has_normal_maps_) return constants;
-    constants.resize(scalar::kNormalMapsConstant + 1);
-    constants[scalar::kNormalMapsConstant] = 1;
+    if (has_normal_maps_) set_constant(scalar::kNormalMapsConstant, constants);
+    if (has_input_textures_) set_constant(scalar::kInputTexturesConstant, constants);
     return constants;
 }
 
 std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
-    const auto set = [&](uint32_t constant) {
-        constants.resize(std::max<size_t>(constants.size(), constant + 1));
-        constants[constant] = 1;
-    };
-    if (has_layers_) set(scalar::kLayersConstant);
-    if (has_glass_) set(scalar::kGlassConstant);
+    if (has_layers_) set_constant(scalar::kLayersConstant, constants);
+    if (has_glass_) set_constant(scalar::kGlassConstant, constants);
+    if (has_input_textures_) set_constant(scalar::kInputTexturesConstant, constants);
     return constants;
 }
 
@@ -132,6 +133,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     has_layers_ = !scene.layers.empty();
     has_normal_maps_ = scene.has_normal_maps;
     has_glass_ = !scene.glass.empty();
+    has_input_textures_ = !scene.textured.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }

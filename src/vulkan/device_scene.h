@@ -38,10 +38,11 @@ class DeviceScene {
     /// Constants of a kernel that reads maps or textures, with scalar::kSmoothConstant where the scene needs
     /// it.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
-    /// The same, and scalar::kNormalMapsConstant, for the kernel that finds shading normals.
+    /// The same, and scalar::kNormalMapsConstant and kInputTexturesConstant, for the kernel that finds
+    /// shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
-    /// That of add_filter, and scalar::kLayersConstant and kGlassConstant, for a kernel that knows what
-    /// scatters.
+    /// That of add_filter, and scalar::kLayersConstant, kGlassConstant and kInputTexturesConstant, for a
+    /// kernel that knows what scatters.
     std::vector<uint32_t> add_layers(std::vector<uint32_t> constants) const;
 
   private:
@@ -67,6 +68,7 @@ class DeviceScene {
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
     size_t node_count_ = 0;
     bool has_smooth_ = false, has_layers_ = false, has_normal_maps_ = false, has_glass_ = false;
+    bool has_input_textures_ = false;
     struct Binding {
         uint32_t number;
         Buffer buffer;

@@ -35,6 +35,8 @@ struct SurfacePointData {
     uint is_flipped; ///< the viewer is on the side opposite to the winding
 };
 
+const uint kSurfacePointWords = 17u; ///< of SurfacePointData
+
 /// Sums over the samples of one pixel in one launch. All but radiance, squares and cost refer to first hits.
 struct FilmSumsData {
     Vec3 radiance;

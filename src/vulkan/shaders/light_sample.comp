@@ -6,6 +6,7 @@
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/light_sums.glsl"
+#include "vulkan/shaders/material_inputs.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -40,10 +41,16 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     vec3 to = point.triangle.position - position;
     float pdf =
         emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
-    DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0), kNone};
+    MaterialData material = materials[instance.material];
+    if (has_input_textures(material)) {
+        vec2 at = is_polygon ? square_to_triangle(u) : u;
+        InputNumbers numbers = find_inputs_at(material_inputs[material.inputs], instance, patch_index, at);
+        material.emission = get_input_color(numbers, kInputEmission);
+    }
+    DrawnLight result = {draw_emitter(material.emission, to, pdf), true, vec3(0.0), kNone};
     result.end =
         offset_origin(point.triangle.position, point.triangle.normal, point.position_error, -result.light.direction);
-    result.group = materials[instance.material].light_group;
+    result.group = material.light_group;
     return result;
 }
 
@@ -121,13 +128,13 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, uint instance) {
     uint material_index = instances[instance].material;
-    MaterialData material = materials[material_index];
+    VertexMaterial material = load_vertex_material(material_index, push.capacity, path_index);
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
     DrawnLight drawn =
-        draw_light(point, instance, is_see_through(material), ray.lod_bias, vec2(pick.x, last.y), u);
+        draw_light(point, instance, is_see_through(material.numbers), ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction, pick.y);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
@@ -150,7 +157,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, uint i
 
 /// Takes what a body took on the way, and what goes with the choice between glass and the rest.
 PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointData point, uint material_index) {
-    MaterialData material = materials[material_index];
+    MaterialData material = load_vertex_material(material_index, push.capacity, path_index).numbers;
     vec3 factor = vec3(1.0);
     if (material.has_glass != 0u && material.glass.kind == kSolidGlass) {
         if (point.is_flipped != 0u) path.body = material_index;
@@ -183,7 +190,7 @@ bool light_vertex(uint path_index, HitData hit) {
     SurfacePointData point = points[path_index];
     uint material_index = instances[hit.instance].material;
     if (kHasGlass != 0u) path = meet_glass(path_index, path, hit, point, material_index);
-    MaterialData material = materials[material_index];
+    MaterialData material = load_vertex_material(material_index, push.capacity, path_index).numbers;
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);
