@@ -147,7 +147,7 @@ enum class MaterialInput : uint8_t {
     base_diffuse_roughness,
     metallic,
     roughness,
-    specular_weight,
+    specular_weight, ///< not of glass
     specular_color,
     coat_weight,
     coat_color,
@@ -156,8 +156,8 @@ enum class MaterialInput : uint8_t {
     fuzz_weight,
     fuzz_color,
     fuzz_roughness,
-    transmission_weight, ///< not together with a depth: transmission_color; of glass neither: specular_weight
-    transmission_color,
+    transmission_weight,
+    transmission_color, ///< not of a body with a transmission_depth
     emission,
     emission_luminance, ///< times all channels of Material::emission
     opacity,

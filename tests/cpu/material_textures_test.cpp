@@ -157,9 +157,9 @@ TEST(MaterialTextures, lie_where_scale_offset_wrap_and_tiles_put_them) {
     InputTexture texture = make_input_texture(MaterialInput::opacity, {0.1f, 0.2f, 0.3f, 0.4f});
     EXPECT_FLOAT_EQ(find_opacity_at(texture, {0.25f, 0.75f}), 0.1f);
     EXPECT_FLOAT_EQ(find_opacity_at(texture, {1.75f, -0.75f}), 0.4f) << "repeats";
-    texture.uv_scale = {2, -1}, texture.uv_offset = {-0.25f, 1};
-    EXPECT_FLOAT_EQ(find_opacity_at(texture, {0.25f, 0.25f}), 0.1f);
-    EXPECT_FLOAT_EQ(find_opacity_at(texture, {0.5f, 0.75f}), 0.4f);
+    texture.uv_scale = {2, -1}, texture.uv_offset = {-0.25f, 1.5f};
+    EXPECT_FLOAT_EQ(find_opacity_at(texture, {0.25f, 0.25f}), 0.3f);
+    EXPECT_FLOAT_EQ(find_opacity_at(texture, {0.5f, 0.75f}), 0.2f);
     texture.uv_scale = {1, 1}, texture.uv_offset = {0, 0};
     for (const MapFilter filter : {MapFilter::none, MapFilter::bspline}) {
         texture.filter = filter;
