@@ -138,10 +138,48 @@ struct Displacement {
     std::vector<MapTile> tiles;
 };
 
+/// What a texture of a material is for. Colours are multiplied by its first three channels, numbers by the
+/// first one; the values of all but `emission` and `emission_luminance` end at 1, that of a normal is a
+/// direction, as in Material::normal_texture.
+enum class MaterialInput : uint8_t {
+    base_color,
+    base_weight,
+    base_diffuse_roughness,
+    metallic,
+    roughness,
+    specular_weight, ///< not of glass
+    specular_color,
+    coat_weight,
+    coat_color,
+    coat_roughness,
+    coat_darkening,
+    fuzz_weight,
+    fuzz_color,
+    fuzz_roughness,
+    transmission_weight,
+    transmission_color, ///< not of a body with a transmission_depth
+    emission,
+    emission_luminance, ///< times all channels of Material::emission
+    opacity,
+    normal,
+};
+inline constexpr size_t kMaterialInputCount = 20;
+
+/// A texture of one input of a material, with its place on the uv plane: read at uv_scale uv + uv_offset.
+struct InputTexture {
+    MaterialInput input = MaterialInput::base_color;
+    std::vector<MapTile> tiles; ///< one, unless is_udim; finite values
+    bool is_udim = false; ///< tiles are selected by floor(u), floor(v); where there is none, the input's
+                          ///< number counts alone
+    MapFilter filter = MapFilter::none; ///< not mip
+    WrapMode wrap = WrapMode::repeat;   ///< outside [0, 1]^2; each tile of several ends with its own texels
+    Vec2f uv_scale{1, 1}, uv_offset{0, 0};
+};
+
 /// OpenPBR 1.1 without subsurface and anisotropy: fuzz over a coat over a base, which is metal, a diffuse
 /// body under a clear dielectric surface, glass, or a mix of them. With what comes after the filters as it
 /// is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a texture
-/// is v = 1, wrap mode is repeat.
+/// is v = 1, wrap mode of those that are members is repeat.
 struct Material {
     std::string name;
     Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
@@ -186,10 +224,18 @@ struct Material {
     float normal_scale = 1;                    ///< [0, kMaxNormalScale], of x and y of the direction
     bool normal_flip_y = false;                ///< +Y of the map points against v, as in DirectX
     std::string light_group;                   ///< of what the surface emits; see is_light_group_name()
+    /// Of any inputs, one each; not of one whose texture is a member.
+    std::vector<InputTexture> textures;
 };
 
-/// Calls visit(name, texture, filter) for each texture that a material may have, also where it has none.
-template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& material, const Visit& visit) {
+/// The name of an input in scene files and messages.
+const char* get_input_name(MaterialInput input);
+
+/// Null: the material has no texture of that input, or one that is a member.
+const InputTexture* find_input_texture(const Material& material, MaterialInput input);
+
+/// Calls visit(name, texture, filter) for each texture that is a member, also where the material has none.
+template <class AnyMaterial, class Visit> void visit_own_textures(AnyMaterial& material, const Visit& visit) {
     visit("base_color_texture", material.base_color_texture, material.base_color_filter);
     visit("roughness_texture", material.roughness_texture, material.roughness_filter);
     visit("metallic_texture", material.metallic_texture, material.metallic_filter);
@@ -197,8 +243,22 @@ template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& mater
     visit("normal_texture", material.normal_texture, material.normal_filter);
 }
 
+/// The same, and for the tiles of Material::textures.
+template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& material, const Visit& visit) {
+    visit_own_textures(material, visit);
+    for (auto& placed : material.textures)
+        for (auto& tile : placed.tiles) visit(get_input_name(placed.input), tile.texture, placed.filter);
+}
+
 /// Whether some rays pass through a surface of the material as if it were not there.
-inline bool is_cut_out(const Material& material) { return material.opacity < 1 || material.opacity_texture; }
+inline bool is_cut_out(const Material& material) {
+    return material.opacity < 1 || material.opacity_texture ||
+           find_input_texture(material, MaterialInput::opacity);
+}
+
+inline bool has_normal_map(const Material& material) {
+    return material.normal_texture || find_input_texture(material, MaterialInput::normal);
+}
 
 /// Roughness up to which thin walls are clear.
 inline constexpr float kClearRoughness = 0.03f;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cpu/shading/point_material.h"
+#include "cpu/shading/material_inputs.h"
 #include "formulas/glass_vertex.h"
 #include "prepare/prepared_scene.h"
 
@@ -40,12 +40,10 @@ bool passes(const Crossing& crossing, uint32_t k, const SurfacePoint& point) {
     const PreparedScene& scene = crossing.tracer.scene();
     const CutOutPaths& paths = crossing.paths;
     const uint32_t index = find_material(scene, crossing.hits[k]);
-    const Material& material = scene.materials[index];
-    const float opacity = find_opacity(material, point.uv);
-    const scalar::GlassParameters* wall = find_clear_wall(scene, index);
-    if (!wall) return paths.draw(k, crossing.round) >= opacity;
+    const WallNumbers wall = find_wall_numbers(scene, index, point.uv);
+    if (!find_clear_wall(scene, index)) return paths.draw(k, crossing.round) >= wall.opacity;
     const float cosine = std::fabs(dot(point.geometric_normal, crossing.rays[k].direction));
-    const Vec3f left = scalar::pass_clear_wall(*wall, find_metallic(material, point.uv), opacity, cosine);
+    const Vec3f left = scalar::pass_clear_wall(wall.glass, wall.metallic, wall.opacity, cosine);
     const float share = scalar::largest_component(left);
     const bool is_by_weight = paths.rule == WallRule::by_weight;
     if (is_by_weight ? !(share > 0) : paths.draw(k, crossing.round) < 1 - share) return false;

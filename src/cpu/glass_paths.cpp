@@ -17,8 +17,8 @@ Vec3f meet_glass(const MaterialGlass& glass, const GlassArrival& arrival, uint32
     Vec3f factor{1, 1, 1};
     if (body != kNoIndex) factor = scalar::absorb_along(glass.records[body].depth, arrival.distance);
     if (!is_glass) return factor;
-    const scalar::GlassDraw drawn =
-        scalar::draw_glass(glass.records[material.glass], material.metallic, std::fabs(arrival.height), u);
+    const scalar::GlassDraw drawn = scalar::draw_glass(arrival.numbers[material.glass_numbers],
+                                                       material.metallic, std::fabs(arrival.height), u);
     material.metallic = drawn.metallic;
     u = drawn.u;
     if (!drawn.is_glass) material.glass = kNoIndex;

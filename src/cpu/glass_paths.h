@@ -13,6 +13,7 @@ namespace relief::cpu {
 struct GlassArrival {
     float height;   ///< of its direction over the surface, on the side of the winding: > 0 from within
     float distance; ///< that it came
+    const scalar::GlassParameters* numbers; ///< that PointMaterial::glass_numbers refers to
 };
 
 /// Changes `material` to what the surface is here, and `u`, a random number in [0, 1), to another one. `body`

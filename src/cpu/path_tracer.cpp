@@ -29,6 +29,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
       has_catchers_(scene.tracer.scene().has_shadow_catchers),
       camera_(make_camera_frame(scene.tracer.scene())),
       bounce_lod_(make_bounce_lod(scene.tracer.scene(), scene.settings)),
+      vertex_inputs_(scene.tracer.scene(), kBlock),
       path_lights_(film.light_layers(), scene.tracer.scene().light_groups, scene.settings.image) {
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kPacketEdge)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)

@@ -19,7 +19,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// What shadows are caught by: white and diffuse, so that nothing but light and its cosine counts.
-constexpr PointMaterial kCatcherMaterial{{1, 1, 1}, {0, 0, 0}, 1, 0, 1, kNoIndex, kNoIndex};
+constexpr PointMaterial kCatcherMaterial{{1, 1, 1}, {0, 0, 0}, 1, 0, 1, kNoIndex, kNoIndex, kNoIndex};
 
 /// Of light along `direction` to a surface.
 bool is_from_behind(const VertexLanes& lanes, size_t lane, const Vec3f& direction) {
@@ -181,7 +181,8 @@ void TileTracer::draw_lights(size_t first, size_t count) {
 /// Of solid glass that a ray from a vertex goes into.
 uint32_t TileTracer::choose_body(size_t k, const VertexLanes& lanes, size_t lane,
                                  const Vec3f& direction) const {
-    const uint32_t record = lanes.has_glass >> lane & 1 ? lanes.glass[lane] : kNoIndex;
+    const uint32_t record =
+        lanes.has_glass >> lane & 1 ? vertex_inputs_.find_glass_record(lanes.glass[lane]) : kNoIndex;
     return find_next_body(tracer_.scene().glass,
                           {paths_[active_[k]].body, record, dot(points_[k].geometric_normal, direction),
                            dot(get_lane(lanes.geometric_normal, lane), direction) < 0});
@@ -203,9 +204,11 @@ void TileTracer::reflect(size_t first, size_t count) {
         const SurfacePoint& point = points_[k];
         PointMaterial m =
             is_catcher(k) ? kCatcherMaterial : make_point_material(scene, hits_[k].instance, point.uv);
+        if (!is_catcher(k)) vertex_inputs_.set(n, hits_[k].instance, point.uv, m);
         if (has_glass_) {
             Path& path = paths_[active_[k]];
-            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
+            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,
+                                       vertex_inputs_.glass()};
             path.throughput = path.throughput *
                               meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
         }
@@ -219,8 +222,6 @@ void TileTracer::reflect(size_t first, size_t count) {
     }
     for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
     const bool has_bounce = depth_ < settings_.image.bounces;
-    const MaterialLayers& found = scene.layers;
-    const LayerView layers{found.records.data(), found.entries.data(), uint32_t(found.entries.size())};
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
         tracer_.shading_kernels().reflect(
@@ -229,8 +230,8 @@ void TileTracer::reflect(size_t first, size_t count) {
              .rays = &rays_[k],
              .pick_pairs = has_bounce ? &random_[scalar::kPickPair][k] : nullptr,
              .bsdf_pairs = has_bounce ? &random_[scalar::kBsdfPair][k] : nullptr,
-             .layers = layers,
-             .glass = scene.glass.records.data(),
+             .layers = vertex_inputs_.layers(),
+             .glass = vertex_inputs_.glass(),
              .wants_diffuse_shares = depth_ == 0 && path_lights_.has_kinds()},
             lanes_[n / 16]);
     }

@@ -12,6 +12,7 @@
 #include "cpu/path_lights.h"
 #include "cpu/path_tracer.h"
 #include "cpu/shading/shading_kernels.h"
+#include "cpu/shading/vertex_inputs.h"
 #include "formulas/camera.h"
 #include "formulas/glass_parameters.h"
 #include "formulas/light_tree.h"
@@ -107,6 +108,7 @@ class TileTracer {
     std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
 
     std::array<VertexLanes, kBlock / 16> lanes_{};
+    VertexInputs vertex_inputs_;
     std::array<Vec3f, kBlock> emissions_;
     std::array<LightSet::Receiver, kBlock> receivers_;
     std::array<LightSet::RandomNumbers, kBlock> light_random_;

@@ -272,7 +272,9 @@ SurfacePoint Tracer::make_surface_point(const TraceHit& hit) const {
 SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const {
     const TraceHit hit = locate_hit(*scene_, instance, patch, uv, lod_bias);
     const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
-    return make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
+    SurfacePoint point = make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
+    if (!scene_->textured.empty()) point.uv = find_uv(*scene_, hit); // an emitter may have a texture
+    return point;
 }
 
 void Tracer::make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,

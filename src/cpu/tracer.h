@@ -124,7 +124,8 @@ class Tracer {
     void make_surface_points(std::span<const TraceHit> hits, std::span<SurfacePoint> points,
                              PointScratch& scratch) const;
 
-    /// Point (u, v) of a patch on surface M_bias, to sample lights. Shading normal and uv are left out.
+    /// Point (u, v) of a patch on surface M_bias, to sample lights. The shading normal is left out,
+    /// the uv where no input of a material has a texture.
     SurfacePoint evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv, uint32_t lod_bias) const;
 
     /// Origin for a ray that leaves `point` into `direction`: moved off the surface by point.position_error,

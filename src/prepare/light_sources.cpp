@@ -187,6 +187,35 @@ void add_tree(const PreparedScene& scene, const EmitterTable& emitters, LightTab
     }
 }
 
+/// Mean factor of its tiles.
+Vec3f find_mean_factor(const PlacedTexture& texture) {
+    Vec3<double> sum{};
+    double count = 0;
+    const auto add = [&](const Vec3f& color) {
+        sum.x += double(color.x), sum.y += double(color.y), sum.z += double(color.z), count += 1;
+    };
+    for (const auto& tile : texture.tiles)
+        for (uint32_t y = 0; tile && y < tile->height; ++y)
+            for (uint32_t x = 0; x < tile->width; ++x) {
+                const std::array<float, 4> texel = read_channels(*tile, x, y);
+                const uint32_t channels = texture.is_number ? 1 : tile->channel_count;
+                const Vec3f color = scalar::make_texture_color(channels, {texel[0], texel[1], texel[2]});
+                add(max(color, Vec3f{}));
+            }
+    if (texture.is_udim) add({1, 1, 1}); // where there is no tile
+    return {float(sum.x / count), float(sum.y / count), float(sum.z / count)};
+}
+
+/// Of its surface: an estimate, where it has textures.
+Vec3f find_mean_emission(const PreparedScene& scene, uint32_t material) {
+    Vec3f emission = scene.materials[material].emission;
+    const TexturedMaterial* textured = scene.textured.find(material);
+    if (!textured || emission == Vec3f{}) return emission;
+    for (const PlacedTexture& texture : textured->textures)
+        if (texture.place.first == scalar::kInputEmission) emission = emission * find_mean_factor(texture);
+    return emission;
+}
+
 } // namespace
 
 EmitterTable make_emitter_table(const PreparedScene& scene) {
@@ -196,7 +225,7 @@ EmitterTable make_emitter_table(const PreparedScene& scene) {
     Box box;
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        const float brightness = scalar::luminance(scene.materials[instance.material].emission);
+        const float brightness = scalar::luminance(find_mean_emission(scene, instance.material));
         if (!(brightness > 0)) continue;
         const Surface& surface = scene.surfaces[instance.surface];
         table.first_of_instance[i] = table.size();

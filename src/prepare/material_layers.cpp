@@ -1,34 +1,30 @@
 #include "prepare/material_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "formulas/layer_block.h"
 #include "formulas/layered_bsdf.h"
 #include "formulas/sobol.h"
+#include "scene/material_inputs.h"
 
 namespace relief {
 
 namespace {
 
 constexpr uint32_t kColumns = scalar::kLayerColumnCount;
-constexpr uint32_t kRows = 16;     ///< where a texture changes the roughness; else one
-constexpr uint32_t kSamples = 512; ///< of each lobe
+constexpr uint32_t kRows = 16;         ///< where a texture changes the roughness; else one
+constexpr uint32_t kSamples = 512;     ///< of each lobe
+constexpr uint32_t kGridSamples = 128; ///< the same where there are hundreds of rows
+constexpr uint32_t kFuzzRows = 33;     ///< where a texture changes the roughness of the fuzz; else one
+/// Nodes of a grid of so many axes, in each of them.
+constexpr std::array<uint32_t, scalar::kMaxLayerAxes + 1> kNodes{1, 17, 9, 7, 5};
 constexpr float kLeastCosine = 1e-4f;
 constexpr Vec3f kWhite{1, 1, 1};
 
-/// Fresnel's reflection at normal incidence between two indices of refraction.
-float find_f0(float ratio) {
-    const float root = (ratio - 1) / (ratio + 1);
-    return root * root;
-}
-
-/// As in make_general_bsdf: the surface fades out together with its reflection at normal incidence.
-float find_f90(float f0) { return std::min(1.0f, 50 * f0); }
-
 uint32_t count_rows(const Material& material) { return material.roughness_texture ? kRows : 1; }
-
-uint32_t count_entries(const Material& material) { return count_rows(material) * (kColumns + 1) + kColumns; }
 
 /// -log2 of the square root of a colour: straight down and up again makes the colour itself.
 Vec3f find_depth(const Vec3f& color) {
@@ -43,11 +39,12 @@ scalar::LayerParameters make_record(const Material& material) {
     l.metallic = material.metallic;
     // Under a coat the light comes from its medium (OpenPBR 1.1, "Coat": refraction).
     const float medium = 1 + material.coat_weight * (material.coat_ior - 1);
-    l.dielectric_f0 = material.specular_weight * find_f0(material.ior / medium);
-    l.dielectric_f90 = find_f90(l.dielectric_f0);
+    l.dielectric_f0 = material.specular_weight * scalar::find_normal_reflection(material.ior / medium);
+    l.dielectric_f90 = scalar::find_grazing_reflection(l.dielectric_f0);
     l.diffuse_roughness = material.base_diffuse_roughness;
     l.coat_weight = material.coat_weight, l.coat_roughness = material.coat_roughness;
-    l.coat_f0 = find_f0(material.coat_ior), l.coat_f90 = find_f90(l.coat_f0);
+    l.coat_f0 = scalar::find_normal_reflection(material.coat_ior),
+    l.coat_f90 = scalar::find_grazing_reflection(l.coat_f0);
     l.coat_inverse_ior2 = 1 / (material.coat_ior * material.coat_ior);
     l.coat_depth = find_depth(material.coat_color);
     l.coat_darkening = material.coat_darkening;
@@ -91,22 +88,23 @@ void fill_fuzz(scalar::LayerParameters& l, Vec2f* entries) {
         most = std::max(most, entries[k].x);
     }
     l.fuzz_scale = 1 / most;
-    for (uint32_t k = 0; k < kColumns; ++k) entries[k].x /= most;
+    for (uint32_t k = 0; k < kColumns; ++k) entries[k].x /= most, entries[k].y = l.fuzz_scale;
 }
 
 /// Mean weight of directions of the lobe that `u_lobe` selects.
-double average_lobe(const scalar::LayeredBsdf& bsdf, scalar::LayerTable table, const Vec3f& wo,
-                    float u_lobe) {
+double average_lobe(const scalar::LayeredBsdf& bsdf, scalar::LayerTable table, const Vec3f& wo, float u_lobe,
+                    uint32_t samples) {
     double sum = 0;
-    for (uint32_t k = 0; k < kSamples; ++k)
+    for (uint32_t k = 0; k < samples; ++k)
         sum += double(
             scalar::sample_layered_bsdf(bsdf, table, wo, u_lobe, scalar::sobol_pair(1, k, 0)).weight.x);
-    return sum / kSamples;
+    return sum / samples;
 }
 
 /// What all lobes of a white stack scatter once. The table holds no rests yet. Each lobe is drawn from by
 /// itself, and counts by its share: which of them is drawn next adds no noise.
-float measure_albedo(const scalar::LayeredSurface& white, scalar::LayerTable table, float cosine) {
+float measure_albedo(const scalar::LayeredSurface& white, scalar::LayerTable table, float cosine,
+                     uint32_t samples) {
     const scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(white, table, cosine);
     const Vec3f wo = make_direction(cosine);
     const scalar::LobeShares& shares = bsdf.shares;
@@ -114,7 +112,8 @@ float measure_albedo(const scalar::LayeredSurface& white, scalar::LayerTable tab
     float first = 0;
     for (const float end :
          {shares.base, shares.base + shares.coat, shares.base + shares.coat + shares.fuzz, 1.0f}) {
-        if (end > first) sum += double(end - first) * average_lobe(bsdf, table, wo, 0.5f * (first + end));
+        if (end > first)
+            sum += double(end - first) * average_lobe(bsdf, table, wo, 0.5f * (first + end), samples);
         first = end;
     }
     return float(sum);
@@ -145,65 +144,180 @@ Vec2f average_row(const Vec2f* row) {
 }
 
 /// A row of rests; `block` has those of the fuzz.
-void fill_row(const scalar::LayerParameters& layers, float roughness, const Vec2f* block, Vec2f* row) {
+void fill_row(const scalar::LayerParameters& layers, float roughness, uint32_t samples, const Vec2f* block,
+              Vec2f* row) {
     scalar::LayerParameters alone = layers;
     alone.first_entry = 0;
     for (uint32_t k = 0; k < kColumns; ++k) {
         const float cosine = column_cosine(k);
         const auto rest = [&](float metallic) {
-            return std::max(0.0f, 1 - measure_albedo(whiten(alone, roughness, metallic), {block}, cosine));
+            const scalar::LayeredSurface white = whiten(alone, roughness, metallic);
+            return std::max(0.0f, 1 - measure_albedo(white, {block}, cosine, samples));
         };
         row[k] = {rest(0), rest(1)};
     }
 }
 
-/// A row of a material.
-struct Row {
-    uint32_t record, row;
-    float roughness;
+/// A block of the table.
+struct Block {
+    uint32_t record;
+    const Material* material;
+    const TexturedMaterial* textured; ///< null: no grid
+    scalar::InputNumbers least{};     ///< those of the first row of a grid
+    uint32_t fuzz_rows = 1;
 };
+
+/// A row of a block.
+struct Row {
+    uint32_t block, row;
+};
+
+/// The range of a number with textures; of one point: without.
+FactorRange find_range(const Material& material, const MaterialInputKind& kind) {
+    FactorRange range;
+    if (const InputTexture* texture = find_input_texture(material, kind.input))
+        range = find_factors(*texture);
+    else if (kind.input == MaterialInput::roughness && material.roughness_texture)
+        range = find_factors({.input = kind.input, .tiles = {{1001, material.roughness_texture}}});
+    const float number = material.*kind.number;
+    return {std::clamp(number * range.lower, 0.0f, 1.0f), std::clamp(number * range.upper, 0.0f, 1.0f)};
+}
+
+/// Sets block.least too.
+scalar::LayerGrid make_grid(Block& block) {
+    scalar::LayerGrid grid{};
+    block.least = block.textured->numbers;
+    std::array<FactorRange, scalar::kMaxLayerAxes> ranges;
+    for (const MaterialInputKind& kind : list_material_inputs()) {
+        if (!kind.is_layered) continue;
+        const FactorRange range = find_range(*block.material, kind);
+        const uint32_t place = find_input_place(kind.input).first;
+        block.least.word[place] = range.lower;
+        if (range.upper > range.lower) grid.place[grid.axis_count] = place, ranges[grid.axis_count++] = range;
+        if (kind.input != MaterialInput::fuzz_roughness) continue;
+        grid.fuzz_lower = range.lower;
+        if (!(range.upper > range.lower)) continue;
+        grid.fuzz_last = kFuzzRows - 1, grid.fuzz_scale = grid.fuzz_last / (range.upper - range.lower);
+        block.fuzz_rows = kFuzzRows;
+    }
+    const uint32_t nodes = kNodes[grid.axis_count];
+    grid.row_count = 1;
+    for (uint32_t k = 0; k < grid.axis_count; ++k) {
+        grid.lower[k] = ranges[k].lower, grid.last[k] = float(nodes - 1);
+        grid.scale[k] = grid.last[k] / (ranges[k].upper - ranges[k].lower);
+        grid.stride[k] = grid.row_count;
+        grid.row_count *= nodes;
+    }
+    return grid;
+}
+
+scalar::InputNumbers find_node(const Block& block, const scalar::LayerGrid& grid, uint32_t row) {
+    scalar::InputNumbers numbers = block.least;
+    for (uint32_t k = 0; k < grid.axis_count; ++k) {
+        const auto node = float(row / grid.stride[k] % uint32_t(grid.last[k] + 1));
+        numbers.word[grid.place[k]] = grid.lower[k] + node / grid.scale[k];
+    }
+    return scalar::limit_inputs(numbers);
+}
+
+void fill_grid_row(const Block& block, const MaterialLayers& result, uint32_t row, const Vec2f* fuzz,
+                   Vec2f* target) {
+    const scalar::LayerGrid& grid = result.grids[block.record];
+    const scalar::LayerParameters& record = result.records[block.record];
+    const scalar::InputNumbers numbers = find_node(block, grid, row);
+    scalar::LayerParameters l = scalar::set_layer_inputs(record, numbers, block.textured->constants);
+    std::array<Vec2f, kVertexEntries> alone;
+    fill_vertex_block({fuzz}, grid, numbers, l, alone.data());
+    fill_row(l, numbers.word[scalar::kInputRoughness], grid.axis_count > 1 ? kGridSamples : kSamples,
+             alone.data(), target);
+}
+
+/// With its record and grid, and its place in the table.
+void add_block(Block block, std::vector<Block>& blocks, MaterialLayers& result) {
+    block.record = uint32_t(result.records.size());
+    scalar::LayerParameters l = make_record(*block.material);
+    scalar::LayerGrid grid{};
+    grid.row_count = count_rows(*block.material);
+    if (block.textured) {
+        grid = make_grid(block);
+        l.row_scale = 0;
+    }
+    l.first_entry = uint32_t(result.entries.size());
+    result.entries.resize(result.entries.size() + grid.row_count * (kColumns + 1) +
+                          block.fuzz_rows * kColumns);
+    result.records.push_back(l), result.grids.push_back(grid), blocks.push_back(block);
+}
+
+/// Of the table and of `fuzz`, a copy of it that will have no rests.
+void fill_fuzz_row(const Block& block, uint32_t row, MaterialLayers& result, std::vector<Vec2f>& fuzz) {
+    scalar::LayerParameters& l = result.records[block.record];
+    if (!(l.fuzz_weight > 0)) return;
+    const scalar::LayerGrid& grid = result.grids[block.record];
+    const uint32_t first = l.first_entry + grid.row_count * (kColumns + 1) + row * kColumns;
+    if (block.textured) {
+        scalar::LayerParameters of_row = l;
+        const float roughness = grid.fuzz_lower + (row > 0 ? float(row) / grid.fuzz_scale : 0.0f);
+        of_row.fuzz_exponent = 1 / std::max(roughness, 0.07f);
+        fill_fuzz(of_row, &fuzz[first]);
+    } else {
+        fill_fuzz(l, &fuzz[first]);
+    }
+    std::copy_n(&fuzz[first], kColumns, &result.entries[first]);
+}
+
+/// A row and its average.
+void fill_rests(const Block& block, uint32_t row, const std::vector<Vec2f>& fuzz, MaterialLayers& result) {
+    const scalar::LayerParameters& l = result.records[block.record];
+    const uint32_t count = result.grids[block.record].row_count;
+    Vec2f* const first = &result.entries[l.first_entry];
+    Vec2f* const target = first + row * kColumns;
+    if (block.textured)
+        fill_grid_row(block, result, row, fuzz.data(), target);
+    else
+        fill_row(l, count == 1 ? block.material->roughness : float(row) / float(count - 1), kSamples,
+                 &fuzz[l.first_entry], target);
+    first[count * kColumns + row] = average_row(target);
+}
 
 } // namespace
 
 bool is_layered(const Material& material) {
     return material.base_diffuse_roughness > 0 || material.specular_weight != 1 ||
-           !(material.specular_color == kWhite) || material.coat_weight > 0 || material.fuzz_weight > 0;
+           !(material.specular_color == kWhite) || material.coat_weight > 0 || material.fuzz_weight > 0 ||
+           find_input_texture(material, MaterialInput::specular_weight) ||
+           find_input_texture(material, MaterialInput::specular_color);
 }
 
-MaterialLayers make_material_layers(const std::vector<Material>& materials) {
+void fill_vertex_block(scalar::GridTable table, const scalar::LayerGrid& grid,
+                       const scalar::InputNumbers& numbers, scalar::LayerParameters& layers, Vec2f* block) {
+    const scalar::LayerPlace place = scalar::place_layers(grid, layers.first_entry, numbers);
+    for (uint32_t i = 0; i < kVertexEntries; ++i) block[i] = scalar::blend_layer_block(table, place, i);
+    layers.fuzz_scale = block[kColumns + 1].y;
+    layers.row_scale = 0;
+}
+
+MaterialLayers make_material_layers(const std::vector<Material>& materials,
+                                    const TexturedMaterials& textured) {
     MaterialLayers result;
-    std::vector<Row> rows;
-    std::vector<uint32_t> sizes;
-    for (const Material& material : materials) {
+    std::vector<Block> blocks;
+    std::vector<Row> rows, fuzz_rows;
+    for (uint32_t k = 0; k < materials.size(); ++k) {
+        const Material& material = materials[k];
         const bool has_layers = is_layered(material);
         result.record_of_material.push_back(has_layers ? uint32_t(result.records.size()) : kNoIndex);
-        if (!has_layers) continue;
-        const uint32_t count = count_rows(material);
-        for (uint32_t k = 0; k < count; ++k)
-            rows.push_back({uint32_t(result.records.size()), k,
-                            count == 1 ? material.roughness : float(k) / float(count - 1)});
-        result.records.push_back(make_record(material));
-        result.records.back().first_entry = uint32_t(result.entries.size());
-        sizes.push_back(count_entries(material));
-        result.entries.resize(result.entries.size() + sizes.back());
+        if (has_layers) add_block({.material = &material, .textured = textured.find(k)}, blocks, result);
+    }
+    for (const Block& block : blocks) {
+        for (uint32_t k = 0; k < result.grids[block.record].row_count; ++k) rows.push_back({block.record, k});
+        for (uint32_t k = 0; k < block.fuzz_rows; ++k) fuzz_rows.push_back({block.record, k});
     }
     std::vector<Vec2f> fuzz = result.entries; // without rests, which are measured beside them
-    parallel_for("fuzz", result.records.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            scalar::LayerParameters& l = result.records[k];
-            const uint32_t first = l.first_entry + sizes[k] - kColumns;
-            if (l.fuzz_weight > 0) fill_fuzz(l, &fuzz[first]);
-            std::copy_n(&fuzz[first], kColumns, &result.entries[first]);
-        }
+    parallel_for("fuzz", fuzz_rows.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k)
+            fill_fuzz_row(blocks[fuzz_rows[k].block], fuzz_rows[k].row, result, fuzz);
     });
     parallel_for("layers", rows.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            const scalar::LayerParameters& l = result.records[rows[k].record];
-            Vec2f* const block = &result.entries[l.first_entry];
-            Vec2f* const row = block + rows[k].row * kColumns;
-            fill_row(l, rows[k].roughness, &fuzz[l.first_entry], row);
-            block[uint32_t(l.row_scale + 1) * kColumns + rows[k].row] = average_row(row);
-        }
+        for (size_t k = begin; k < end; ++k) fill_rests(blocks[rows[k].block], rows[k].row, fuzz, result);
     });
     return result;
 }

@@ -4,15 +4,20 @@
 
 #include <vector>
 
+#include "formulas/layer_grid.h"
 #include "formulas/layer_parameters.h"
+#include "formulas/layer_table.h"
 #include "math/vec.h"
+#include "prepare/textured_materials.h"
 #include "relief/scene.h"
 
 namespace relief {
 
 struct MaterialLayers {
     std::vector<scalar::LayerParameters> records;
-    std::vector<Vec2f> entries;               ///< blocks of the records (formulas/layer_table.h)
+    std::vector<Vec2f> entries; ///< blocks of the records (formulas/layer_table.h)
+    /// Of the blocks of records whose inputs have textures; one a record.
+    std::vector<scalar::LayerGrid> grids;
     std::vector<uint32_t> record_of_material; ///< kNoIndex: without layers
 
     bool empty() const { return records.empty(); }
@@ -22,6 +27,16 @@ struct MaterialLayers {
 bool is_layered(const Material& material);
 
 /// In parallel; the table is measured by sampling, with the same bits whatever the number of threads.
-MaterialLayers make_material_layers(const std::vector<Material>& materials);
+/// `textured`: what make_textured_materials makes of them.
+MaterialLayers make_material_layers(const std::vector<Material>& materials,
+                                    const TexturedMaterials& textured = {});
+
+/// Of a block with one row.
+inline constexpr uint32_t kVertexEntries = 2 * scalar::kLayerColumnCount + 1;
+
+/// Such a block for one point of a material whose inputs have textures, from the table that the numbers of
+/// `layers` refer to; they then have to refer to the block.
+void fill_vertex_block(scalar::GridTable table, const scalar::LayerGrid& grid,
+                       const scalar::InputNumbers& numbers, scalar::LayerParameters& layers, Vec2f* block);
 
 } // namespace relief

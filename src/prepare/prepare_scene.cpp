@@ -94,12 +94,19 @@ class SplineCache {
 /// Textures of materials with a smooth filter become coefficients.
 void prepare_textures(std::vector<Material>& materials) {
     SplineCache splines;
-    for (Material& material : materials)
-        visit_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
+    for (Material& material : materials) {
+        for (InputTexture& placed : material.textures) {
+            SplineForm form = make_spline_form(placed.filter);
+            form.wrap = placed.is_udim ? WrapMode::clamp : placed.wrap;
+            for (MapTile& tile : placed.tiles) tile.texture = splines.get_or_make(tile.texture, form);
+            if (is_smooth(placed.filter)) placed.filter = MapFilter::bspline;
+        }
+        visit_own_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
             if (!is_smooth(filter)) return;
             texture = splines.get_or_make(texture, make_spline_form(filter));
             filter = MapFilter::bspline;
         });
+    }
 }
 
 /// Lists the maps and their smaller copies, dilated, smooth ones as coefficients: in copies, since textures
@@ -195,7 +202,7 @@ void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_o
 void add_tangents(PreparedScene& prepared) {
     std::set<uint32_t> mapped;
     for (const Instance& instance : prepared.instances)
-        if (prepared.materials[instance.material].normal_texture) mapped.insert(instance.surface);
+        if (has_normal_map(prepared.materials[instance.material])) mapped.insert(instance.surface);
     const std::vector<uint32_t> list(mapped.begin(), mapped.end());
     parallel_for("tangents", list.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
@@ -240,9 +247,9 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
         material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
     prepared->has_cut_outs = std::ranges::any_of(
         prepared->materials, [](const Material& m) { return is_cut_out(m) || is_clear_wall(m); });
-    prepared->has_normal_maps = std::ranges::any_of(
-        prepared->materials, [](const Material& material) { return !!material.normal_texture; });
-    prepared->layers = make_material_layers(prepared->materials);
+    prepared->has_normal_maps = std::ranges::any_of(prepared->materials, has_normal_map);
+    prepared->textured = make_textured_materials(prepared->materials);
+    prepared->layers = make_material_layers(prepared->materials, prepared->textured);
     prepared->glass = make_material_glass(prepared->materials);
     prepared->links = make_light_links(scene);
     prepared->lights = std::move(scene.lights);

@@ -12,6 +12,7 @@
 #include "prepare/light_links.h"
 #include "prepare/material_glass.h"
 #include "prepare/material_layers.h"
+#include "prepare/textured_materials.h"
 #include "relief/render.h"
 #include "relief/scene.h"
 #include "surface/map/gutter.h"
@@ -72,7 +73,8 @@ struct PreparedScene {
     bool has_normal_maps = false;     ///< some material has one
     bool has_shadow_catchers = false; ///< some instance is one
     Terminators terminators = Terminators::none;
-    MaterialLayers layers; ///< of the materials
+    TexturedMaterials textured; ///< of the materials
+    MaterialLayers layers;      ///< of the materials
     MaterialGlass glass;   ///< of the materials
     std::vector<Light> lights;
     LightLinks links; ///< of the lights

@@ -14,6 +14,7 @@
 #include "math/box.h"
 #include "relief/error.h"
 #include "relief/scene.h"
+#include "scene/check_input_textures.h"
 #include "scene/displacement_conventions.h"
 #include "scene/object_names.h"
 
@@ -230,6 +231,7 @@ void check_material(const Material& material, size_t index) {
     check_range(where, "fuzz_color", material.fuzz_color, 0, 1);
     check_range(where, "coat_ior", material.coat_ior, 1, kHuge);
     check_range(where, "scale of normal_texture", material.normal_scale, 0, kMaxNormalScale);
+    check_input_textures(material, where);
     visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
         if (filter == MapFilter::mip || filter > MapFilter::bspline)
             fail(where, "a filter of its textures is neither none, cubic nor bspline");
@@ -276,7 +278,7 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
              fmt::format("{} has no uvs, which its displacement needs",
                          describe("mesh", mesh.name, object.mesh)),
              "export the mesh with texture coordinates");
-    if (object.material != kNoIndex && scene.materials[object.material].normal_texture &&
+    if (object.material != kNoIndex && has_normal_map(scene.materials[object.material]) &&
         mesh.uv_indices.empty())
         fail(where,
              fmt::format("{} has no uvs, which the normal_texture of its material needs",

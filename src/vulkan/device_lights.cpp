@@ -11,6 +11,7 @@
 #include "formulas/light_tree.h"
 #include "prepare/environment_distribution.h"
 #include "prepare/light_sources.h"
+#include "vulkan/device_inputs.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_paths.h"
 #include "vulkan/layout/device_scene.h"
@@ -54,7 +55,8 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           0,
                           {},
                           0,
-                          {}});
+                          {},
+                          scalar::kNone});
     for (size_t k = 0; k < result.size(); ++k) {
         const scalar::GlassParameters* glass = scene.glass.find(uint32_t(k));
         if (!glass) continue;
@@ -124,7 +126,8 @@ std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table, const 
 } // namespace
 
 DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene)
-    : materials_(make_table(device, "materials", TexelFormat::none, make_materials(scene, device_scene))) {
+    : materials_(make_table(device, "materials", TexelFormat::none,
+                            join_inputs(make_materials(scene, device_scene), scene, device_scene))) {
     EnvironmentDistribution distribution;
     if (scene.environment) {
         distribution = make_environment_distribution(*scene.environment);

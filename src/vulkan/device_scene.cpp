@@ -99,6 +99,7 @@ std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) c
 std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
     set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);
+    set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
     return constants;
 }
 
@@ -107,6 +108,7 @@ std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) c
     set_constant(constants, scalar::kLayersConstant, has_layers_ ? 1 : 0);
     set_constant(constants, scalar::kGlassConstant, has_glass_ ? 1 : 0);
     set_constant(constants, scalar::kTerminatorsConstant, uint32_t(terminators_));
+    set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
     return constants;
 }
 
@@ -135,6 +137,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     terminators_ = scene.terminators;
     has_catchers_ = scene.has_shadow_catchers;
     has_glass_ = !scene.glass.empty();
+    has_input_textures_ = !scene.textured.empty();
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }

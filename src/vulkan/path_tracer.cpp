@@ -13,6 +13,7 @@
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_paths.h"
 #include "vulkan/layout/device_rays.h"
+#include "vulkan/layout/device_scene.h"
 #include "vulkan/work_statistics.h"
 
 namespace relief::vulkan {
@@ -24,6 +25,8 @@ constexpr uint32_t kGroupSize = 64;
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathData) == 96 && sizeof(scalar::SurfacePointData) == 68);
+static_assert(sizeof(scalar::SurfacePointData) == scalar::kSurfacePointWords * sizeof(uint32_t));
+static_assert(sizeof(scalar::InputNumbers) == scalar::kInputWords * sizeof(uint32_t));
 static_assert(sizeof(scalar::FilmSumsData) == scalar::kFilmSumsWords * sizeof(uint32_t));
 static_assert(kLightKinds.size() == scalar::kKindCount);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
@@ -59,6 +62,12 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
     return Buffer(device, {.name = name,
                            .bytes = std::max<uint64_t>(count * sizeof(T), least_bytes),
                            .purpose = Purpose::ray_buffers});
+}
+
+/// Of points and the numbers of textured materials behind them, as material_inputs.glsl has it.
+uint64_t find_number_bytes(uint64_t capacity) {
+    constexpr uint64_t point = sizeof(scalar::SurfacePointData), numbers = sizeof(scalar::InputNumbers);
+    return (capacity * point / numbers + 1 + capacity) * numbers;
 }
 
 /// `hit_ids` outlives the sums.
@@ -133,8 +142,10 @@ void PathTracer::make_buffers() {
     // Rasterised first hits reuse buffers that only shading needs.
     const bool is_lent = settings_.experiment.method == RenderMethod::hybrid;
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
-    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_,
-                                                    is_lent ? RasterBuffers::kLeastVertexBytes : 0);
+    uint64_t least_point_bytes = is_lent ? RasterBuffers::kLeastVertexBytes : 0;
+    if (!tracer_.scene().textured.empty())
+        least_point_bytes = std::max(least_point_bytes, find_number_bytes(capacity_));
+    points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_, least_point_bytes);
     film_sums_ = make_buffer<std::byte>(
         device, "film_sums", find_first_hits(0) + (notes_first_hits_ ? kFirstHitBytes : 0) * capacity_);
     if (device.is_cpu())

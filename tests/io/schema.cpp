@@ -14,6 +14,7 @@
 #include "io/scene/subdivision_json.h"
 #include "relief/scene.h"
 #include "scene/displacement_conventions.h"
+#include "scene/material_inputs.h"
 #include "scene/words.h"
 
 namespace relief {
@@ -72,6 +73,9 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
          {"/properties/materials/additionalProperties/properties/normal_texture/oneOf/1",
           "/properties/materials/additionalProperties/properties/geometry_normal/oneOf/1"})
         expect_keys(texture, scene_keys::kNormalTexture);
+    for (const char* texture : {"/$defs/number_texture", "/$defs/color_texture", "/$defs/emission_texture",
+                                "/$defs/luminance_texture"})
+        expect_keys(texture, scene_keys::kInputTexture);
     expect_keys("/properties/meshes/additionalProperties", scene_keys::kMesh);
     expect_keys("/properties/meshes/additionalProperties/properties/subdivision", scene_keys::kSubdivision);
     expect_keys("/properties/objects/items", scene_keys::kObject);
@@ -86,7 +90,27 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     for (const json& choice : at(schema, "/properties/objects/items/properties/transform/oneOf"))
         transform.merge(get_keys(choice));
     EXPECT_EQ(transform, make_names(scene_keys::kTransform));
-    EXPECT_EQ(count_closed_objects(schema), 23u) << "an object of the schema is compared with nothing";
+    EXPECT_EQ(count_closed_objects(schema), 27u) << "an object of the schema is compared with nothing";
+}
+
+TEST(Schema, has_a_texture_for_each_input_that_may_have_one) {
+    const json schema = load_schema();
+    const json& keys = at(schema, "/properties/materials/additionalProperties/properties");
+    Names with_texture;
+    for (const auto& [name, value] : keys.items())
+        if (value.contains("oneOf") && value["oneOf"].at(1).contains("$ref")) {
+            with_texture.insert(name);
+            const std::string target = value["oneOf"][1]["$ref"];
+            EXPECT_EQ(target.find("#/$defs/"), 0u);
+            EXPECT_TRUE(schema.at("$defs").contains(target.substr(8))) << name;
+        }
+    Names expected;
+    for (const MaterialInputKind& kind : list_material_inputs()) {
+        if (kind.input == MaterialInput::normal) continue;
+        expected.insert(kind.name);
+        if (kind.alias) expected.insert(kind.alias);
+    }
+    EXPECT_EQ(with_texture, expected);
 }
 
 TEST(Schema, names_only_what_the_reader_takes) {

@@ -1,4 +1,5 @@
 #include "cpu/shading/lights.h"
+#include "cpu/shading/material_inputs.h"
 #include "formulas/constants.h"
 #include "formulas/glass.h"
 #include "formulas/light.h"
@@ -134,8 +135,8 @@ void LightSet::draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u
     const Vec2f uv = is_triangle ? scalar::square_to_triangle(u) : u;
     const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.lod_bias);
     const float pdf = emitter_density(emitter, at.position, point);
-    static_cast<scalar::LightDraw&>(drawn) =
-        scalar::draw_emitter(scene.materials[instance.material].emission, point.position - at.position, pdf);
+    static_cast<scalar::LightDraw&>(drawn) = scalar::draw_emitter(
+        find_emission(scene, instance.material, point.uv), point.position - at.position, pdf);
     drawn.emitter = point;
     const std::vector<uint32_t>& groups = scene.light_groups.of_material;
     if (!groups.empty()) drawn.group = groups[instance.material];

@@ -1,6 +1,6 @@
 #include "cpu/shading/normal_maps.h"
 
-#include "cpu/shading/textures.h"
+#include "cpu/shading/material_inputs.h"
 #include "formulas/normal_map.h"
 #include "surface/mesh/corner_tangents.h"
 
@@ -8,10 +8,12 @@ namespace relief::cpu {
 
 namespace {
 
-Vec3f map_shading_normal(const Instance& instance, const Surface& surface, const Material& material,
-                         const TraceHit& hit, const SurfacePoint& point) {
+Vec3f map_shading_normal(const PreparedScene& scene, const Instance& instance, const TraceHit& hit,
+                         const SurfacePoint& point) {
+    const Surface& surface = scene.surfaces[instance.surface];
+    const Material& material = scene.materials[instance.material];
     const Vec2f at{hit.u, hit.v};
-    const Vec3f texel = fetch_texture(*material.normal_texture, material.normal_filter, point.uv);
+    const Vec3f texel = find_normal_texel(scene, instance.material, point.uv);
     const float scale = material.normal_scale;
     const Vec3f direction =
         scalar::decode_normal({texel.x, texel.y, texel.z}, {scale, material.normal_flip_y ? -scale : scale});
@@ -33,10 +35,8 @@ void map_shading_normals(const PreparedScene& scene, std::span<const TraceHit> h
                          std::span<SurfacePoint> points) {
     for (size_t k = 0; k < hits.size(); ++k) {
         const Instance& instance = scene.instances[hits[k].instance];
-        const Material& material = scene.materials[instance.material];
-        if (!material.normal_texture) continue;
-        points[k].shading_normal =
-            map_shading_normal(instance, scene.surfaces[instance.surface], material, hits[k], points[k]);
+        if (!has_normal_map(scene.materials[instance.material])) continue;
+        points[k].shading_normal = map_shading_normal(scene, instance, hits[k], points[k]);
     }
 }
 

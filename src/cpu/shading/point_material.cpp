@@ -16,7 +16,9 @@ PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance,
                     find_metallic(material, uv),
                     material.ior,
                     scene.layers.empty() ? kNoIndex : scene.layers.record_of_material[index],
-                    scene.glass.empty() ? kNoIndex : scene.glass.record_of_material[index]};
+                    scene.glass.empty() ? kNoIndex : scene.glass.record_of_material[index],
+                    kNoIndex};
+    m.glass_numbers = m.glass;
     if (material.base_color_texture)
         m.base_color =
             m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);

@@ -12,14 +12,15 @@ namespace relief::cpu {
 struct PointMaterial {
     Vec3f base_color, emission;
     float roughness, metallic, ior;
-    uint32_t layers; ///< record of PreparedScene::layers; kNoIndex: none
-    uint32_t glass;  ///< record of PreparedScene::glass; kNoIndex: none
+    uint32_t layers;        ///< record of PreparedScene::layers; kNoIndex: none
+    uint32_t glass;         ///< record of PreparedScene::glass; kNoIndex: none
+    uint32_t glass_numbers; ///< its place where vertices have numbers of their own (VertexInputs::glass)
 };
 
-/// Of the material of an instance.
+/// Of the material of an instance; without Material::textures.
 PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv);
 
-/// In [0, 1], with its texture.
+/// In [0, 1], with its texture, unless that is one of Material::textures.
 float find_opacity(const Material& material, const Vec2f& uv);
 float find_metallic(const Material& material, const Vec2f& uv);
 

@@ -51,7 +51,7 @@ struct VertexLanes {
     alignas(64) uint32_t layers[16];  ///< of such a lane, its record
     alignas(64) float layered_metallic[16]; ///< of such a lane, in place of the record's
     uint32_t has_glass;             ///< bits of lanes that are glass; metallic 0 and ior 1 save work in them
-    alignas(64) uint32_t glass[16]; ///< of such a lane, its record
+    alignas(64) uint32_t glass[16]; ///< of such a lane, its place in VertexBatch::glass
     // Found. Normals are on the viewer's side; origins are moved off the surface.
     alignas(64) float geometric_normal[3][16], shading_normal[3][16];
     alignas(64) float light_reflected[3][16]; ///< BSDF times cosine

@@ -124,6 +124,10 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
     return point;
 }
 
+Vec2f find_uv(const PreparedScene& scene, const TraceHit& hit) {
+    return interpolate_uv(scene.surfaces[scene.instances[hit.instance].surface], hit.patch, hit.u, hit.v);
+}
+
 SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit,
                                 const PatchSamples* samples) {
     const Instance& instance = scene.instances[hit.instance];

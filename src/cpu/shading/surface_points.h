@@ -35,6 +35,8 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
 /// The same with shading normal and uv.
 SurfacePoint make_shading_point(const PreparedScene& scene, const TraceHit& hit, const PatchSamples* samples);
 
+Vec2f find_uv(const PreparedScene& scene, const TraceHit& hit);
+
 /// Points of all hits, many at once where that can be; points[k] belongs to hits[k].
 void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
                  std::span<SurfacePoint> points, PointScratch& scratch);

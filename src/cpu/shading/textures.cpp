@@ -65,6 +65,22 @@ Vec3f fetch_spline(const Texture& texture, const Vec2f& uv) {
     return make_color(texture, filter_spline(read, at.x - whole_x, at.y - whole_y));
 }
 
+Vec3f fetch_wrapped(const Texture& texture, MapFilter filter, WrapMode wrap, const Vec2f& uv) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
+    const Vec2f at = scalar::locate_wrapped_uv(uv, size_of(texture));
+    const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
+    const auto read = [&](int64_t i, int64_t j) {
+        const int64_t x = wrap_index(int64_t(whole_x) + i, texture.width, wrap);
+        const int64_t y = wrap_index(int64_t(whole_y) + j, texture.height, wrap);
+        return x < 0 || y < 0 ? std::array<float, 4>{} : read_channels(texture, x, y);
+    };
+    const float fx = at.x - whole_x, fy = at.y - whole_y;
+    if (!is_smooth(filter))
+        return make_color(texture, filter_channels(read(0, 0), read(1, 0), read(0, 1), read(1, 1), fx, fy));
+    const auto read_around = [&](size_t i, size_t j) { return read(int64_t(i) - 1, int64_t(j) - 1); };
+    return make_color(texture, filter_spline(read_around, fx, fy));
+}
+
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position) {
     return fetch_bilinear(texture, find_latlong(texture, position));
 }

@@ -18,6 +18,10 @@ inline Vec3f fetch_texture(const Texture& texture, MapFilter filter, const Vec2f
     return is_smooth(filter) ? fetch_spline(texture, uv) : fetch_texture(texture, uv);
 }
 
+/// What `texture` is at uv where it does not repeat; not for WrapMode::repeat. 0 outside with
+/// WrapMode::black.
+Vec3f fetch_wrapped(const Texture& texture, MapFilter filter, WrapMode wrap, const Vec2f& uv);
+
 /// Bilinear value of a latitude-longitude image at [0, 1]^2 from the top left: repeated in x, clamped in y.
 Vec3f fetch_latlong(const Texture& texture, const Vec2f& position);
 

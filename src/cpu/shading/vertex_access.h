@@ -18,7 +18,7 @@ inline void set_material(const PointMaterial& m, size_t lane, VertexLanes& lanes
     if (lane == 0) lanes.has_layers = lanes.has_glass = 0;
     if (m.glass != kNoIndex) {
         lanes.has_glass |= 1u << lane;
-        lanes.glass[lane] = m.glass;
+        lanes.glass[lane] = m.glass_numbers;
         set_plain(lane, lanes);
     } else if (m.layers != kNoIndex) {
         lanes.has_layers |= 1u << lane;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
 #include "io/picture/colour_space.h"
 #include "io/scene/tile_names.h"
@@ -49,6 +50,24 @@ void move_first(Texture& texture, uint32_t channel) {
         for (size_t i = 0; i < texels.size(); i += 4) std::swap(texels[i], texels[i + channel]);
     };
     move(texture.floats), move(texture.halves);
+}
+
+float find_luminance(const Texture& texture, size_t texel) {
+    if (texture.channel_count < 3) return texture.floats[texel];
+    return scalar::luminance({texture.floats[texel], texture.floats[texel + 1], texture.floats[texel + 2]});
+}
+
+/// One channel is left, which counts for red, green and blue.
+void pick_channel(Texture& texture, uint32_t channel) {
+    if (channel == kLuminanceChannel) {
+        for (const uint16_t bits : texture.halves) texture.floats.push_back(half_to_float(bits));
+        texture.halves.clear();
+        for (size_t i = 0; i < texture.floats.size(); i += 4) texture.floats[i] = find_luminance(texture, i);
+    } else if (channel > 0) {
+        move_first(texture, channel);
+    }
+    texture.channel_count = 1;
+    spread_grey(texture);
 }
 
 bool lift_negatives(Texture& texture) {
@@ -98,6 +117,12 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel, space}];
     if (cached) return cached;
     auto texture = std::make_shared<Texture>(read_texture(path));
+    if (use == TextureUse::number) {
+        check_finite(*texture, 0);
+        if (!space.empty()) decode_texture(space, *texture);
+        pick_channel(*texture, channel);
+        return cached = std::move(texture);
+    }
     if (channel > 0) move_first(*texture, channel);
     if (use != TextureUse::data) {
         check_finite(*texture, 0);
@@ -110,10 +135,11 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     return cached = std::move(texture);
 }
 
-std::vector<MapTile> AssetCache::load_displacement(const std::string& file) {
+std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse use, uint32_t channel,
+                                            const std::string& space) {
     std::vector<MapTile> tiles;
     if (!has_tile_token(file)) {
-        tiles.push_back({1001, load(file, TextureUse::data)});
+        tiles.push_back({1001, load(file, use, channel, space)});
         if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
             warnings_.push_back(
                 fmt::format("{}: is one tile of several, and the only one read; name them all "
@@ -122,7 +148,7 @@ std::vector<MapTile> AssetCache::load_displacement(const std::string& file) {
         return tiles;
     }
     for (const auto& [udim, path] : find_tiles(resolve(file)))
-        tiles.push_back({udim, load(fs::absolute(path).string(), TextureUse::data)});
+        tiles.push_back({udim, load(fs::absolute(path).string(), use, channel, space)});
     return tiles;
 }
 

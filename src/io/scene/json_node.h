@@ -49,6 +49,7 @@ class JsonNode {
     /// Three numbers, or one that stands for all.
     Vec3f as_vec3_or_number() const;
     bool is_array() const { return value_->is_array(); }
+    bool is_object() const { return value_->is_object(); }
     bool is_string() const { return value_->is_string(); }
 
     /// Calls `read`; an Error from it is thrown again with this place in front.

@@ -7,6 +7,7 @@
 
 #include "base/suggest.h"
 #include "io/scene/displacement_reader.h"
+#include "io/scene/input_texture_reader.h"
 #include "io/scene/scene_keys.h"
 #include "math/affine.h"
 #include "scene/displacement_conventions.h"
@@ -53,24 +54,6 @@ std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::strin
     return found->with_place([&] { return assets.load(file, use, channel, space); });
 }
 
-/// Which of a texel's values is the number.
-uint32_t read_channel(const JsonNode& node) {
-    constexpr std::string_view kNames[] = {"r", "g", "b", "a"};
-    const std::string name = node.as_string();
-    const auto found = std::find(std::begin(kNames), std::end(kNames), name);
-    if (found == std::end(kNames)) node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a");
-    return uint32_t(found - std::begin(kNames));
-}
-
-/// `auto` and none are the same.
-std::string read_space(const JsonNode& node) {
-    const auto space = node.find("color_space");
-    if (!space) return {};
-    const std::string name = space->as_string();
-    if (name.empty()) space->fail("a color space needs a name", "auto, linear, srgb, acescg, ...");
-    return name == "auto" ? std::string() : name;
-}
-
 struct FilteredTexture {
     std::shared_ptr<const Texture> texture;
     MapFilter filter = MapFilter::none;
@@ -92,14 +75,12 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
     else
         found->check_keys(scene_keys::kDataTexture);
     FilteredTexture result;
-    if (const auto filter = found->find("filter")) {
-        const std::string name = filter->as_string();
-        result.filter = filter->with_place([&] { return parse_texture_filter(name); });
-    }
+    result.filter = read_texture_filter(*found);
     found->get("file");
     const auto channel = found->find("channel");
+    if (channel && read_channel(*channel) == kLuminanceChannel) use = TextureUse::number;
     result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0,
-                                      use == TextureUse::colour ? read_space(*found) : std::string());
+                                      use == TextureUse::colour ? read_color_space(*found) : std::string());
     return result;
 }
 
@@ -268,7 +249,8 @@ Light read_light(const JsonNode& node, AssetCache& assets) {
 Environment read_environment(const JsonNode& node, AssetCache& assets) {
     node.check_keys(scene_keys::kEnvironment);
     Environment environment;
-    environment.texture = read_texture_key(node, "file", TextureUse::radiance, assets, 0, read_space(node));
+    environment.texture =
+        read_texture_key(node, "file", TextureUse::radiance, assets, 0, read_color_space(node));
     if (const auto space = node.find("color_space"); space && !environment.texture)
         space->fail("is that of a file, and there is none", "color is linear Rec.709");
     read_vec3(node, "color", environment.color, 0);
@@ -279,6 +261,23 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
 }
 
 namespace {
+
+/// The number that a texture multiplies is in its object.
+void read_factor(const JsonNode& node, std::string_view key, float& value) {
+    const auto found = node.find(key);
+    if (!found || !found->is_object()) return read_float(node, key, value, 0, 1);
+    value = 1;
+    read_float(*found, "factor", value, 0, 1);
+}
+
+void read_color_factor(const JsonNode& node, std::string_view key, Vec3f& value, double high = 1) {
+    const auto found = node.find(key);
+    if (!found || !found->is_object()) return read_vec3(node, key, value, 0, high);
+    value = {1, 1, 1};
+    const auto factor = found->find("factor");
+    if (factor && factor->is_array()) value = factor->as_vec3(0, high);
+    if (factor && !factor->is_array()) value = value * factor->as_float(0, high);
+}
 
 /// The key under one of two names.
 const char* choose_key(const JsonNode& node, const char* key, const char* open_pbr) {
@@ -292,15 +291,20 @@ const char* choose_key(const JsonNode& node, const char* key, const char* open_p
 void read_emission(const JsonNode& node, Vec3f& emission) {
     choose_key(node, "emission", "emission_luminance");
     choose_key(node, "emission", "emission_color");
-    read_vec3(node, "emission", emission, 0);
+    read_color_factor(node, "emission", emission, FLT_MAX);
     const auto color = node.find("emission_color");
     const auto luminance = node.find("emission_luminance");
     if (color && !luminance)
         color->fail("is multiplied by emission_luminance, which is not there", "give both, or 'emission'");
     if (!luminance) return;
     Vec3f scale{1, 1, 1};
-    read_vec3(node, "emission_color", scale, 0, 1);
-    emission = scale * luminance->as_float(0);
+    read_color_factor(node, "emission_color", scale);
+    float factor = 1;
+    if (luminance->is_object())
+        read_float(*luminance, "factor", factor, 0);
+    else
+        factor = luminance->as_float(0);
+    emission = scale * factor;
 }
 
 void read_layers(const JsonNode& node, Material& material) {
@@ -313,12 +317,12 @@ void read_layers(const JsonNode& node, Material& material) {
                                      std::pair("fuzz_weight", &material.fuzz_weight),
                                      std::pair("transmission_weight", &material.transmission_weight),
                                      std::pair("fuzz_roughness", &material.fuzz_roughness)})
-        read_float(node, key, *value, 0, 1);
-    read_vec3(node, "specular_color", material.specular_color, 0, 1);
-    read_vec3(node, "coat_color", material.coat_color, 0, 1);
-    read_vec3(node, "fuzz_color", material.fuzz_color, 0, 1);
+        read_factor(node, key, *value);
+    read_color_factor(node, "specular_color", material.specular_color);
+    read_color_factor(node, "coat_color", material.coat_color);
+    read_color_factor(node, "fuzz_color", material.fuzz_color);
     read_float(node, "coat_ior", material.coat_ior, 1);
-    read_vec3(node, "transmission_color", material.transmission_color, 0, 1);
+    read_color_factor(node, "transmission_color", material.transmission_color);
     read_float(node, "transmission_depth", material.transmission_depth, 0);
     read_optional(node, "geometry_thin_walled", material.is_thin_walled,
                   [](const JsonNode& n) { return n.as_bool(); });
@@ -326,9 +330,10 @@ void read_layers(const JsonNode& node, Material& material) {
 
 void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& material) {
     const char* key = choose_key(node, "normal_texture", "geometry_normal");
-    read_filtered_texture(node, key, TextureUse::vector, assets)
-        .move_to(material.normal_texture, material.normal_filter);
     const auto found = node.find(key);
+    if (found && !is_placed_texture(*found))
+        read_filtered_texture(node, key, TextureUse::vector, assets)
+            .move_to(material.normal_texture, material.normal_filter);
     if (!found || found->is_string()) return;
     read_float(*found, "scale", material.normal_scale, 0, double(kMaxNormalScale));
     if (const auto flip = found->find("flip_y")) material.normal_flip_y = flip->as_bool();
@@ -342,22 +347,25 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
             found->fail("this input of OpenPBR is not rendered",
                         "leave it out; docs/decisions/openpbr.md lists what is");
     node.check_keys(scene_keys::kMaterial);
+    refuse_input_textures(node);
     Material material;
     material.name = name;
-    read_vec3(node, "base_color", material.base_color, 0, 1);
-    read_float(node, choose_key(node, "roughness", "specular_roughness"), material.roughness, 0, 1);
-    read_float(node, choose_key(node, "metallic", "base_metalness"), material.metallic, 0, 1);
+    read_color_factor(node, "base_color", material.base_color);
+    read_factor(node, choose_key(node, "roughness", "specular_roughness"), material.roughness);
+    read_factor(node, choose_key(node, "metallic", "base_metalness"), material.metallic);
     read_float(node, choose_key(node, "ior", "specular_ior"), material.ior, 1);
-    read_float(node, choose_key(node, "opacity", "geometry_opacity"), material.opacity, 0, 1);
+    read_factor(node, choose_key(node, "opacity", "geometry_opacity"), material.opacity);
     read_emission(node, material.emission);
     read_light_group(node, material.light_group);
     read_layers(node, material);
-    visit_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
+    visit_own_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
         if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);
+        if (const auto found = node.find(key); found && is_placed_texture(*found)) return;
         const bool is_colour = &texture == &material.base_color_texture;
         read_filtered_texture(node, key, is_colour ? TextureUse::colour : TextureUse::data, assets)
             .move_to(texture, filter);
     });
+    read_input_textures(node, assets, material);
     return material;
 }
 

@@ -1,6 +1,11 @@
 #include "io/scene/scene_values.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
+
+#include "scene/words.h"
 
 namespace relief {
 
@@ -49,9 +54,45 @@ void write_layers(const Material& material, Json& node) {
     if (material.is_thin_walled) node["geometry_thin_walled"] = true;
 }
 
+Json write_placement(const InputTexture& texture) {
+    const InputTexture plain;
+    Json node = Json::object();
+    const auto write_pair = [&](const char* key, const Vec2f& value, const Vec2f& usual) {
+        if (!(value == usual)) node[key] = {to_json(value.x), to_json(value.y)};
+    };
+    if (texture.filter != plain.filter) node["filter"] = get_word(texture.filter);
+    if (texture.wrap != plain.wrap && !texture.is_udim) node["wrap"] = get_word(texture.wrap);
+    write_pair("uv_scale", texture.uv_scale, plain.uv_scale);
+    write_pair("uv_offset", texture.uv_offset, plain.uv_offset);
+    return node;
+}
+
+void write_emission(const Material& material, Json& node) {
+    const Vec3f& emission = material.emission;
+    const bool has_luminance = node.contains("emission_luminance");
+    if (!has_luminance && !node.contains("emission_color")) {
+        node["emission"] = to_json(emission);
+        return;
+    }
+    if (!has_luminance) {
+        node["emission"] = std::move(node["emission_color"]);
+        node.erase("emission_color");
+        node["emission"]["factor"] = to_json(emission);
+        return;
+    }
+    // A luminance goes with a colour in [0, 1].
+    const float most = std::max({emission.x, emission.y, emission.z, 1e-30f});
+    const Json color = to_json(Vec3f{emission.x / most, emission.y / most, emission.z / most});
+    node["emission_luminance"]["factor"] = to_json(most);
+    if (node.contains("emission_color"))
+        node["emission_color"]["factor"] = color;
+    else
+        node["emission_color"] = color;
+}
+
 void write_normal_options(const Material& material, Json& node) {
     const Material plain;
-    if (!material.normal_texture) return;
+    if (!has_normal_map(material)) return;
     if (material.normal_scale == plain.normal_scale && !material.normal_flip_y) return;
     Json& texture = node["normal_texture"];
     if (texture.is_string()) texture = Json{{"file", texture}};

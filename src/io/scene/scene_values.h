@@ -17,6 +17,10 @@ Json write_light(const Light& light);
 /// What of base, coat, fuzz and glass differs from a material that only has a base colour, roughness,
 /// metallic and ior.
 void write_layers(const Material& material, Json& node);
+/// What a texture of Material::textures says beside its file and, unless it is one of normals, its factor.
+Json write_placement(const InputTexture& texture);
+/// What the emission of a material is multiplied by: into its keys, one of which may be a texture already.
+void write_emission(const Material& material, Json& node);
 /// Adds what the entry of the normal map, which is there already, says beside file and filter.
 void write_normal_options(const Material& material, Json& node);
 /// All but its picture.

@@ -15,6 +15,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "scene/displacement_conventions.h"
+#include "scene/material_inputs.h"
 #include "scene/object_names.h"
 #include "scene/words.h"
 
@@ -161,27 +162,40 @@ class SceneWriter {
             node["roughness"] = to_json(material.roughness);
             node["metallic"] = to_json(material.metallic);
             node["ior"] = to_json(material.ior);
-            node["emission"] = to_json(material.emission);
             if (!material.light_group.empty()) node["light_group"] = material.light_group;
             if (material.opacity != 1) node["opacity"] = to_json(material.opacity);
             write_layers(material, node);
-            visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
+            visit_own_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
                 std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
                 if (input == "base_color") input = "color"; // files have had this name from the first
                 if (texture)
                     node[name] =
                         add_texture(texture, filter, fmt::format("{}_{}", material_names_.back(), input));
             });
+            for (const InputTexture& texture : material.textures) add_input(material, texture, node);
+            write_emission(material, node);
             write_normal_options(material, node);
         }
     }
 
-    std::string add_displacement_maps(const Displacement& map, const std::string& name) {
-        if (!map.is_udim) return add_map(map.tiles.front().texture, name);
+    std::string add_tiles(const std::vector<MapTile>& tiles, bool is_udim, const std::string& name) {
+        if (!is_udim) return add_map(tiles.front().texture, name);
         const std::string stem = "maps/" + map_names_.make_unique(make_file_stem(name));
-        for (const MapTile& tile : map.tiles)
+        for (const MapTile& tile : tiles)
             write_counted(*tile.texture, folder_ / fmt::format("{}.{}.exr", stem, tile.udim));
         return stem + ".<UDIM>.exr";
+    }
+
+    /// A texture in place of its number, which becomes its factor.
+    void add_input(const Material& material, const InputTexture& texture, Json& node) {
+        const MaterialInputKind& kind = get_input_kind(texture.input);
+        const bool is_emission = kind.color == &Material::emission;
+        Json& entry = node[kind.alias && !is_emission ? kind.alias : kind.name];
+        entry = {{"file", add_tiles(texture.tiles, texture.is_udim,
+                                    fmt::format("{}_{}", material_names_.back(), kind.name))}};
+        if (kind.number) entry["factor"] = to_json(material.*kind.number);
+        if (kind.color && !is_emission) entry["factor"] = to_json(material.*kind.color);
+        entry.update(write_placement(texture));
     }
 
     void add_displacements() {
@@ -190,7 +204,7 @@ class SceneWriter {
             displacement_names_.push_back(namer.make_unique(map.name));
             Json& node = root_["displacements"][displacement_names_.back()];
             node["type"] = get_word(map.type);
-            node["file"] = add_displacement_maps(map, displacement_names_.back());
+            node["file"] = add_tiles(map.tiles, map.is_udim, displacement_names_.back());
             node["space"] = get_word(map.space);
             node["axes"] = format_axes(map.axes, map.space);
             node["frame"] = get_word(map.frame);

@@ -9,7 +9,7 @@ const uint kBindInstances = 0u;     ///< InstanceData
 const uint kBindSurfaces = 1u;      ///< SurfaceData
 const uint kBindMaps = 2u;          ///< MapData
 const uint kBindTextures = 3u;      ///< TextureData
-const uint kBindMaterials = 4u;     ///< MaterialData
+const uint kBindMaterials = 4u;     ///< MaterialData; then MaterialInputData, InputTextureData, uint: tiles
 const uint kBindSources = 5u;       ///< LightSourceData; behind all of them LightNodeData, then sets of bits
 const uint kBindTileRecords = 6u;   ///< TileRecord: tiles of patches above level 5
 const uint kBindRays = 7u;          ///< RayData
@@ -30,7 +30,7 @@ const uint kBindBuilds = 21u;       ///< uint: trees to be built, binned by size
 const uint kBindArguments = 22u;    ///< uint: sizes of indirect launches, kArgumentWords each
 const uint kBindRequests = 23u;     ///< RequestData: patches whose tiles are requested
 const uint kBindPaths = 24u;        ///< PathData
-const uint kBindPoints = 25u;       ///< SurfacePointData
+const uint kBindPoints = 25u;       ///< SurfacePointData; then InputNumbers
 const uint kBindFilm = 26u;         ///< FilmSumsData; then uint: light_sums.glsl, first hits
 const uint kBindPathList = 27u;     ///< uint: active paths
 const uint kBindNextPathList = 28u; ///< uint: paths active at the next depth
@@ -109,6 +109,8 @@ const uint kGlassConstant = 17u;
 const uint kTerminatorsConstant = 18u;
 // Of kernels that shade: not 0 where the scene has shadow catchers.
 const uint kShadowCatchersConstant = 19u;
+// Of kernels that know of materials: not 0 where inputs of one have textures (MaterialInputData).
+const uint kInputTexturesConstant = 20u;
 
 #include "formulas/end.h"
 #endif

@@ -39,6 +39,8 @@ struct SurfacePointData {
     uint is_flipped; ///< the viewer is on the side opposite to the winding
 };
 
+const uint kSurfacePointWords = 17u; ///< of SurfacePointData
+
 /// Sums over the samples of one pixel in one launch. All but radiance, squares, cost and shadow refer to
 /// first hits.
 struct FilmSumsData {

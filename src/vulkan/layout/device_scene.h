@@ -3,7 +3,9 @@
 #ifndef RELIEF_DEVICE_SCENE_H
 #define RELIEF_DEVICE_SCENE_H
 #include "formulas/glass_parameters.h"
+#include "formulas/layer_grid.h"
 #include "formulas/layer_parameters.h"
+#include "formulas/material_inputs.h"
 
 #include "formulas/begin.h"
 
@@ -82,6 +84,28 @@ struct MaterialData {
     LayerParameters layers;
     uint has_glass;
     GlassParameters glass;
+    uint inputs; ///< entry of MaterialInputData; kNone: no textures but those above
+};
+
+/// Of a material whose inputs have textures of their own. Entries lie behind all materials, in the same
+/// buffer, as its words are counted: from the next whole one on. So do those of the textures behind them.
+struct MaterialInputData {
+    InputNumbers numbers;
+    InputConstants constants;
+    LayerGrid grid;
+    uint has_normal; ///< one of the textures is a normal map
+    uint first_texture, texture_count;
+};
+
+struct InputTextureData {
+    uint place, count; ///< words of the numbers
+    uint is_number;    ///< the first channel counts alone
+    uint is_udim;
+    uint wrap;
+    Vec2 uv_scale, uv_offset;
+    uint
+        first_tile; ///< word of the buffer; tiles are indices into textures, with kSplineTexture; kNone: none
+    uint tile_count;
 };
 
 /// A tile of a patch above level 5: its tree index = number of all patches + its index among tile records.

@@ -15,7 +15,8 @@ bool continue_path(uint path_index, HitData hit) {
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
     uint material = instances[hit.instance].material;
-    Scattering scattering = make_scattering(point, materials[material], -ray.direction, pick.y);
+    Scattering scattering = make_scattering(
+        point, load_vertex_material(material, push.capacity, path_index), -ray.direction, pick.y);
     BsdfSample drawn = sample_scattering(scattering, u);
     vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
     if (drawn.weight == vec3(0.0) || !is_on_one_side(scattering, point, direction, drawn.direction)) return false;

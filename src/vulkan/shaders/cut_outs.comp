@@ -4,13 +4,24 @@
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
+#include "vulkan/shaders/material_inputs.glsl"
 
 layout(scalar, push_constant) uniform Push { CutOutPush push; };
 
 #include "vulkan/shaders/met_lights.glsl"
 
-/// Opacity, and metallic where clear walls ask for it.
-vec2 find_opacity(HitData hit, MaterialData material) {
+/// The same of a material whose inputs have textures: of opacity and metallic so far.
+vec2 apply_inputs(HitData hit, vec2 numbers_before, inout MaterialData material) {
+    MaterialInputData inputs = material_inputs[material.inputs];
+    inputs.numbers.word[kInputOpacity] = numbers_before.x;
+    inputs.numbers.word[kInputMetallic] = numbers_before.y;
+    InputNumbers numbers = find_inputs_at(inputs, instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v));
+    material.glass = set_glass_inputs(material.glass, numbers, inputs.constants);
+    return vec2(numbers.word[kInputOpacity], numbers.word[kInputMetallic]);
+}
+
+/// Opacity, and metallic where clear walls ask for it; of these their textures change the glass as well.
+vec2 find_opacity(HitData hit, inout MaterialData material) {
     InstanceData instance = instances[hit.instance];
     uint indices[2] = {material.opacity_texture, kHasGlass != 0u ? material.metallic_texture : kNone};
     vec2 factors = vec2(1.0);
@@ -21,7 +32,8 @@ vec2 find_opacity(HitData hit, MaterialData material) {
         for (int k = 0; k < 2; ++k)
             if (indices[k] != kNone) factors[k] = fetch_texture(indices[k], uv).x;
     }
-    return clamp(vec2(material.opacity, material.metallic) * factors, 0.0, 1.0);
+    vec2 found = clamp(vec2(material.opacity, material.metallic) * factors, 0.0, 1.0);
+    return has_input_textures(material) ? apply_inputs(hit, found, material) : found;
 }
 
 /// Cosine of a ray to the geometric normal.

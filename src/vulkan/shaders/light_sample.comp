@@ -7,6 +7,7 @@
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/light_sums.glsl"
 #include "vulkan/shaders/terminator.glsl"
+#include "vulkan/shaders/material_inputs.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -41,10 +42,16 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     vec3 to = point.triangle.position - position;
     float pdf =
         emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
-    DrawnLight result = {draw_emitter(materials[instance.material].emission, to, pdf), true, vec3(0.0), kNone};
+    MaterialData material = materials[instance.material];
+    if (has_input_textures(material)) {
+        vec2 at = is_polygon ? square_to_triangle(u) : u;
+        InputNumbers numbers = find_inputs_at(material_inputs[material.inputs], instance, patch_index, at);
+        material.emission = get_input_color(numbers, kInputEmission);
+    }
+    DrawnLight result = {draw_emitter(material.emission, to, pdf), true, vec3(0.0), kNone};
     result.end =
         offset_origin(point.triangle.position, point.triangle.normal, point.position_error, -result.light.direction);
-    result.group = materials[instance.material].light_group;
+    result.group = material.light_group;
     return result;
 }
 
@@ -123,25 +130,28 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, ui
 }
 
 /// Shadow catchers are white and diffuse, so that nothing but light and its cosine counts.
-MaterialData load_material(HitData hit) {
-    MaterialData material = materials[instances[hit.instance].material];
-    if (!is_catcher(hit, push.depth)) return material;
-    material.emission = vec3(0.0);
-    material.ior = 1.0;
-    material.has_layers = material.has_glass = 0u;
-    return material;
+VertexMaterial load_material(uint path_index, HitData hit) {
+    uint index = instances[hit.instance].material;
+    if (!is_catcher(hit, push.depth)) return load_vertex_material(index, push.capacity, path_index);
+    VertexMaterial white;
+    white.numbers = materials[index];
+    white.numbers.emission = vec3(0.0);
+    white.numbers.ior = 1.0;
+    white.numbers.has_layers = white.numbers.has_glass = 0u;
+    white.table = make_layer_table(kGridTable);
+    return white;
 }
 
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex and on shadow catchers: no
 /// bounce ray follows.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, HitData hit) {
     uint material_index = instances[hit.instance].material;
-    MaterialData material = load_material(hit);
+    VertexMaterial material = load_material(path_index, hit);
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
     vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    bool is_open = is_see_through(material) || may_lift(hit);
+    bool is_open = is_see_through(material.numbers) || may_lift(hit);
     DrawnLight drawn = draw_light(point, hit.instance, is_open, ray.lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
     Scattering scattering = make_scattering(point, material, -ray.direction, pick.y);
@@ -177,7 +187,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, HitDat
 
 /// Takes what a body took on the way, and what goes with the choice between glass and the rest.
 PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointData point, uint material_index) {
-    MaterialData material = materials[material_index];
+    MaterialData material = load_vertex_material(material_index, push.capacity, path_index).numbers;
     vec3 factor = vec3(1.0);
     if (material.has_glass != 0u && material.glass.kind == kSolidGlass) {
         if (point.is_flipped != 0u) path.body = material_index;
@@ -211,7 +221,7 @@ bool light_vertex(uint path_index, HitData hit) {
     uint material_index = instances[hit.instance].material;
     if (kHasGlass != 0u && !is_catcher(hit, push.depth))
         path = meet_glass(path_index, path, hit, point, material_index);
-    MaterialData material = load_material(hit);
+    MaterialData material = load_material(path_index, hit).numbers;
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);

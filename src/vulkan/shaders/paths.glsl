@@ -31,6 +31,7 @@ layout(scalar, set = 0, binding = kBindHits) buffer Hits { HitData hits[]; };
 layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData counters; };
 layout(scalar, set = 0, binding = kBindPaths) buffer Paths { PathData paths[]; };
 layout(scalar, set = 0, binding = kBindPoints) buffer Points { SurfacePointData points[]; };
+layout(scalar, set = 0, binding = kBindPoints) buffer PointNumbers { InputNumbers point_numbers[]; };
 layout(scalar, set = 0, binding = kBindFilm) buffer FilmSums { FilmSumsData film[]; };
 layout(scalar, set = 0, binding = kBindPathList) buffer PathList { uint path_list[]; };
 layout(scalar, set = 0, binding = kBindNextPathList) buffer NextPathList { uint next_path_list[]; };
@@ -51,6 +52,39 @@ bool is_catcher(HitData hit, uint depth) {
     return kHasShadowCatchers != 0u && depth == 0u && (instances[hit.instance].levels & kShadowCatcher) != 0u;
 }
 
+/// What the textures of a path's material made of its numbers, if it has some; behind all points.
+uint find_point_numbers(uint capacity, uint path_index) {
+    return capacity * kSurfacePointWords / kInputWords + 1u + path_index;
+}
+
+/// A material at a vertex.
+struct VertexMaterial {
+    MaterialData numbers;
+    LayerTable table; ///< of layers
+};
+
+layout(scalar, set = 0, binding = kBindMaterials) readonly buffer VertexInputs { MaterialInputData vertex_inputs[]; };
+
+VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) {
+    VertexMaterial material;
+    material.numbers = materials[index];
+    material.table = make_layer_table(kGridTable);
+    if (kHasInputTextures == 0u || material.numbers.inputs == kNone) return material;
+    MaterialInputData inputs = vertex_inputs[material.numbers.inputs];
+    InputNumbers numbers = point_numbers[find_point_numbers(capacity, path_index)];
+    material.numbers.emission = get_input_color(numbers, kInputEmission);
+    material.numbers.glass = set_glass_inputs(material.numbers.glass, numbers, inputs.constants);
+    if (kHasLayers == 0u || material.numbers.has_layers == 0u) return material;
+    LayerParameters layers = set_layer_inputs(material.numbers.layers, numbers, inputs.constants);
+    material.table.is_block = true;
+    material.table.place = place_layers(inputs.grid, layers.first_entry, numbers);
+    layers.fuzz_scale = read_layer_entry(material.table, kLayerColumnCount + 1u).y;
+    layers.first_entry = 0u;
+    layers.row_scale = 0.0;
+    material.numbers.layers = layers;
+    return material;
+}
+
 /// The BSDF for one outgoing direction, in a local frame: one of the three.
 struct Scattering {
     Basis basis;
@@ -60,6 +94,7 @@ struct Scattering {
     bool is_glass;   ///< false wherever kHasGlass is 0, likewise
     Bsdf bsdf;
     LayeredBsdf layered;
+    LayerTable table;
     GlassBsdf glass;
 };
 
@@ -74,8 +109,10 @@ GlassDraw draw_vertex_glass(SurfacePointData point, MaterialData material, vec3 
 }
 
 /// `u_pick`: a random number in [0, 1), the same for all that is asked of a vertex.
-Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 wo, float u_pick) {
+Scattering make_scattering(SurfacePointData point, VertexMaterial at, vec3 wo, float u_pick) {
+    MaterialData material = at.numbers;
     Scattering result;
+    result.table = at.table;
     result.basis = make_basis(point.bent_normal);
     result.wo_local = lift_viewer(to_local(result.basis, wo));
     result.u_lobe = u_pick;
@@ -94,7 +131,7 @@ Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 w
     if (result.has_layers) {
         LayeredSurface surface = {point.base_color, point.roughness, material.layers};
         surface.layers.metallic = point.metallic;
-        result.layered = make_layered_bsdf(surface, kLayerTable, result.wo_local.z);
+        result.layered = make_layered_bsdf(surface, result.table, result.wo_local.z);
         return result;
     }
     BsdfParameters parameters = {point.base_color, point.roughness, point.metallic, material.ior};
@@ -104,7 +141,7 @@ Scattering make_scattering(SurfacePointData point, MaterialData material, vec3 w
 
 BsdfValue evaluate_scattering(Scattering scattering, vec3 wi) {
     if (scattering.is_glass) return evaluate_glass_bsdf(scattering.glass, scattering.wo_local, wi);
-    if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, wi);
+    if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, scattering.table, scattering.wo_local, wi);
     return evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
 }
 
@@ -113,7 +150,7 @@ LightShares find_light_shares(Scattering scattering, vec3 wi, vec3 whole) {
     LightShares shares = {vec3(0.0), wi.z < 0.0 ? kLobeTransmission : kLobeSpecular};
     if (scattering.is_glass) return shares;
     vec3 diffuse = scattering.has_layers
-                       ? evaluate_layered_diffuse(scattering.layered, kLayerTable, scattering.wo_local, wi)
+                       ? evaluate_layered_diffuse(scattering.layered, scattering.table, scattering.wo_local, wi)
                        : evaluate_diffuse(scattering.bsdf, scattering.wo_local, wi);
     shares.diffuse = find_shares(diffuse, whole);
     return shares;
@@ -123,7 +160,7 @@ BsdfSample sample_scattering(Scattering scattering, vec2 u) {
     float u_lobe = scattering.u_lobe;
     if (scattering.is_glass) return sample_glass_bsdf(scattering.glass, scattering.wo_local, u_lobe, u);
     if (scattering.has_layers)
-        return sample_layered_bsdf(scattering.layered, kLayerTable, scattering.wo_local, u_lobe, u);
+        return sample_layered_bsdf(scattering.layered, scattering.table, scattering.wo_local, u_lobe, u);
     return sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
 }
 

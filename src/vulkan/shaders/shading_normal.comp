@@ -3,6 +3,7 @@
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
+#include "vulkan/shaders/material_inputs.glsl"
 #include "vulkan/shaders/shading_normal.glsl"
 #include "formulas/normal_map.h"
 
@@ -16,7 +17,30 @@ struct Appearance {
     vec3 base_color;
     float roughness, metallic;
     vec3 normal_texel; ///< where the material has a normal map
+    bool has_normal_texel;
+    bool has_numbers; ///< false wherever kHasInputTextures is 0
+    InputNumbers numbers;
 };
+
+/// What textures of other inputs, and those with a place of their own, add.
+void apply_inputs(MaterialInputData inputs, inout Appearance appearance) {
+    InputNumbers numbers = inputs.numbers;
+    numbers.word[kInputBaseColor] = appearance.base_color.x;
+    numbers.word[kInputBaseColor + 1u] = appearance.base_color.y;
+    numbers.word[kInputBaseColor + 2u] = appearance.base_color.z;
+    numbers.word[kInputRoughness] = appearance.roughness;
+    numbers.word[kInputMetallic] = appearance.metallic;
+    numbers = find_inputs(inputs, numbers, appearance.uv);
+    appearance.base_color = get_input_color(numbers, kInputBaseColor);
+    appearance.roughness = numbers.word[kInputRoughness];
+    appearance.metallic = numbers.word[kInputMetallic];
+    if (inputs.has_normal != 0u) {
+        appearance.normal_texel = get_input_color(numbers, kInputNormal);
+        appearance.has_normal_texel = true;
+    }
+    appearance.has_numbers = true;
+    appearance.numbers = numbers;
+}
 
 void apply_material(MaterialData material, inout Appearance appearance) {
     uint indices[4] = {material.color_texture, material.roughness_texture, material.metallic_texture,
@@ -29,6 +53,9 @@ void apply_material(MaterialData material, inout Appearance appearance) {
     appearance.roughness = clamp(material.roughness * values[1].x, 0.0, 1.0);
     appearance.metallic = clamp(material.metallic * values[2].x, 0.0, 1.0);
     appearance.normal_texel = values[3];
+    appearance.has_normal_texel = material.normal_texture != kNone;
+    appearance.has_numbers = false;
+    if (has_input_textures(material)) apply_inputs(material_inputs[material.inputs], appearance);
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
@@ -61,7 +88,7 @@ Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) 
     appearance.uv = interpolate_uv(s, corners, at);
     MaterialData material = materials[instance.material];
     apply_material(material, appearance);
-    if (kHasNormalMaps != 0u && material.normal_texture != kNone)
+    if (kHasNormalMaps != 0u && appearance.has_normal_texel)
         normal = apply_normal_map(material, instance, hit, corners.quad, appearance.normal_texel, normal);
     appearance.shading_normal = is_flipped ? -normal : normal;
     return appearance;
@@ -83,6 +110,8 @@ void main() {
     points[path_index].base_color = appearance.base_color;
     points[path_index].roughness = appearance.roughness;
     points[path_index].metallic = appearance.metallic;
+    if (kHasInputTextures != 0u && appearance.has_numbers)
+        point_numbers[find_point_numbers(push.capacity, path_index)] = appearance.numbers;
     if (push.depth > 0u || is_caught) return;
     film[path_index].shading_normal += appearance.shading_normal;
     film[path_index].albedo += appearance.base_color;

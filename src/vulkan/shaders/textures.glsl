@@ -53,6 +53,43 @@ vec3 fetch_texture(uint index, vec2 uv) {
     return fetch_bilinear(source, at, kWrapRepeat);
 }
 
+/// A texel, or 0 outside with kWrapBlack.
+vec3 load_wrapped(TextureData source, int x, int y, uint wrap) {
+    int column = wrap_texel(x, int(source.width), wrap);
+    int row = wrap_texel(y, int(source.height), wrap);
+    return column < 0 || row < 0 ? vec3(0.0) : load_texel(source, uint(column), uint(row)).xyz;
+}
+
+vec3 blend_texels(vec3 a, vec3 b, float f) {
+    return vec3(blend(a.x, b.x, f), blend(a.y, b.y, f), blend(a.z, b.z, f));
+}
+
+/// As fetch_texture, by any way to go on outside [0, 1]^2.
+vec3 fetch_wrapped(uint index, vec2 uv, uint wrap) {
+    TextureData source = textures[index & ~kSplineTexture];
+    if (!is_finite(vec3(uv, 0.0))) return make_texture_color(source.channel_count, load_texel(source, 0u, 0u).xyz);
+    vec2 size = vec2(source.width, source.height);
+    vec2 at = wrap == kWrapRepeat ? locate_texture_uv(uv, size) : locate_wrapped_uv(uv, size);
+    ivec2 whole = ivec2(floor_texel(at.x), floor_texel(at.y));
+    vec2 f = at - vec2(whole);
+    bool is_spline = kHasSmooth != 0 && (index & kSplineTexture) != 0u;
+    int first = is_spline ? -1 : 0;
+    int count = is_spline ? 4 : 2;
+    vec3 row[4];
+    for (int j = 0; j < count; ++j) {
+        vec3 texel[4];
+        for (int i = 0; i < count; ++i)
+            texel[i] = load_wrapped(source, whole.x + first + i, whole.y + first + j, wrap);
+        if (is_spline)
+            row[j] = blend_cubic_vectors(texel[0], texel[1], texel[2], texel[3], weigh_spline(f.x));
+        else
+            row[j] = blend_texels(texel[0], texel[1], f.x);
+    }
+    vec3 value = is_spline ? blend_cubic_vectors(row[0], row[1], row[2], row[3], weigh_spline(f.y))
+                           : blend_texels(row[0], row[1], f.y);
+    return make_texture_color(source.channel_count, value);
+}
+
 /// Value at a position in [0, 1]^2 from the top left corner: repeated in x, clamped in y.
 vec3 fetch_latlong(uint index, vec2 position) {
     TextureData source = textures[index];

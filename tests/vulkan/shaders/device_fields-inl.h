@@ -5,6 +5,8 @@ struct AllStructs {
     MapData map;
     TextureData texture;
     MaterialData material;
+    MaterialInputData material_input;
+    InputTextureData input_texture;
     TileRecord tile;
     RayData ray;
     HitData hit;
@@ -72,7 +74,21 @@ struct AllStructs {
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
     FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers) \
-    FIELD(s.has_glass) FIELDS_GLASS(s.glass)
+    FIELD(s.has_glass) FIELDS_GLASS(s.glass) FIELD(s.inputs)
+#define FIELD4(s) FIELD(s[0]) FIELD(s[1]) FIELD(s[2]) FIELD(s[3])
+#define FIELDS_WORDS(s, k) FIELD(s.word[k]) FIELD(s.word[k + 1]) FIELD(s.word[k + 2]) FIELD(s.word[k + 3])
+#define FIELDS_NUMBERS(s) \
+    FIELDS_WORDS(s, 0) FIELDS_WORDS(s, 4) FIELDS_WORDS(s, 8) FIELDS_WORDS(s, 12) FIELDS_WORDS(s, 16) FIELDS_WORDS(s, 20) \
+    FIELDS_WORDS(s, 24) FIELDS_WORDS(s, 28)
+#define FIELDS_GRID(s) \
+    FIELD(s.axis_count) FIELD4(s.place) FIELD4(s.stride) FIELD4(s.lower) FIELD4(s.scale) FIELD4(s.last) \
+    FIELD(s.row_count) FIELD(s.fuzz_lower) FIELD(s.fuzz_scale) FIELD(s.fuzz_last)
+#define FIELDS_MATERIAL_INPUT(s) \
+    FIELDS_NUMBERS(s.numbers) FIELD(s.constants.ior) FIELD(s.constants.coat_ior) FIELD(s.constants.is_absorbing) \
+    FIELDS_GRID(s.grid) FIELD(s.has_normal) FIELD(s.first_texture) FIELD(s.texture_count)
+#define FIELDS_INPUT_TEXTURE(s) \
+    FIELD(s.place) FIELD(s.count) FIELD(s.is_number) FIELD(s.is_udim) FIELD(s.wrap) FIELD2(s.uv_scale) \
+    FIELD2(s.uv_offset) FIELD(s.first_tile) FIELD(s.tile_count)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
@@ -180,6 +196,8 @@ struct AllStructs {
     FIELDS_MAP(s.map) \
     FIELDS_TEXTURE(s.texture) \
     FIELDS_MATERIAL(s.material) \
+    FIELDS_MATERIAL_INPUT(s.material_input) \
+    FIELDS_INPUT_TEXTURE(s.input_texture) \
     FIELDS_TILE(s.tile) \
     FIELDS_RAY(s.ray) \
     FIELDS_HIT(s.hit) \

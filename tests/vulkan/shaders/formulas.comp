@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "all_formulas.glsl"
 /// Another table that is always bound.
-LayerTable make_test_layers() { return 0u; }
+LayerTable make_test_layers() { return make_layer_table(0u); }
 #include "formula_cases-inl.h"
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kPart = 0u;

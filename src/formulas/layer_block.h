@@ -1,0 +1,39 @@
+// The block with one row that a point has in the grid of layer_grid.h.
+#ifndef RELIEF_LAYER_BLOCK_H
+#define RELIEF_LAYER_BLOCK_H
+#include "formulas/layer_grid.h"
+#include "formulas/layer_table.h"
+
+#include "formulas/begin.h"
+
+/// Between the rows around a point; `first`: the entry of row 0, `stride` from row to row.
+FN Vec2 blend_layer_rows(GridTable table, LayerPlace place, uint first, uint stride) {
+    Vec2 sum = {0.0f, 0.0f};
+    for (uint tap = 0u; tap < (1u << place.axis_count); ++tap) {
+        uint row = place.row;
+        float weight = 1.0f;
+        for (uint k = 0u; k < place.axis_count; ++k) {
+            bool is_upper = ((tap >> k) & 1u) != 0u;
+            row += is_upper ? place.stride[k] : 0u;
+            weight = weight * (is_upper ? place.fraction[k] : 1.0f - place.fraction[k]);
+        }
+        if (weight > 0.0f) sum = sum + read_grid_entry(table, first + row * stride) * weight;
+    }
+    return sum;
+}
+
+/// Entry `i` of the block with one row that a point has.
+FN Vec2 blend_layer_block(GridTable table, LayerPlace place, uint i) {
+    uint averages = place.first_entry + place.row_count * kLayerColumnCount;
+    if (i < kLayerColumnCount)
+        return blend_layer_rows(table, place, place.first_entry + i, kLayerColumnCount);
+    if (i == kLayerColumnCount) return blend_layer_rows(table, place, averages, 1u);
+    uint fuzz = averages + place.row_count + place.fuzz_row * kLayerColumnCount + i - kLayerColumnCount - 1u;
+    Vec2 lower = read_grid_entry(table, fuzz);
+    if (!(place.fuzz_fraction > 0.0f)) return lower;
+    return lower * (1.0f - place.fuzz_fraction) +
+           read_grid_entry(table, fuzz + kLayerColumnCount) * place.fuzz_fraction;
+}
+
+#include "formulas/end.h"
+#endif

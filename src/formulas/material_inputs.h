@@ -1,0 +1,120 @@
+// What textures make of the numbers of a material at one point: the numbers as words, so that a table of
+// textures can name its targets, and what follows from them for layers and glass.
+#ifndef RELIEF_MATERIAL_INPUTS_H
+#define RELIEF_MATERIAL_INPUTS_H
+#include "formulas/glass_parameters.h"
+#include "formulas/layer_parameters.h"
+#include "formulas/power.h"
+
+#include "formulas/begin.h"
+
+// Places of the numbers; a colour takes three.
+const uint kInputBaseColor = 0u;
+const uint kInputRoughness = 3u;
+const uint kInputMetallic = 4u;
+const uint kInputOpacity = 5u;
+const uint kInputDiffuseRoughness = 6u;
+const uint kInputSpecularWeight = 7u;
+const uint kInputSpecularColor = 8u;
+const uint kInputCoatWeight = 11u;
+const uint kInputCoatColor = 12u;
+const uint kInputCoatRoughness = 15u;
+const uint kInputCoatDarkening = 16u;
+const uint kInputFuzzWeight = 17u;
+const uint kInputFuzzColor = 18u;
+const uint kInputFuzzRoughness = 21u;
+const uint kInputTransmissionWeight = 22u;
+const uint kInputTransmissionColor = 23u;
+const uint kInputEmission = 26u; ///< the numbers before end at 1
+const uint kInputNormal = 29u;   ///< a texel, in place of a factor
+const uint kInputWords = 32u;
+
+struct InputNumbers {
+    float word[kInputWords];
+};
+
+/// What does not change over the surface.
+struct InputConstants {
+    float ior;
+    float coat_ior;
+    uint is_absorbing; ///< a body of glass that its transmission_color belongs to, not to its surface
+};
+
+FN Vec3 get_input_color(InputNumbers numbers, uint place) {
+    Vec3 color = {numbers.word[place], numbers.word[place + 1u], numbers.word[place + 2u]};
+    return color;
+}
+
+/// `value` of a texture for `count` words from `place` on, all of one number where they are three.
+FN InputNumbers apply_input(InputNumbers numbers, uint place, uint count, Vec3 value) {
+    if (place == kInputNormal) {
+        numbers.word[kInputNormal] = value.x;
+        numbers.word[kInputNormal + 1u] = value.y;
+        numbers.word[kInputNormal + 2u] = value.z;
+        return numbers;
+    }
+    numbers.word[place] = numbers.word[place] * value.x;
+    if (count == 1u) return numbers;
+    numbers.word[place + 1u] = numbers.word[place + 1u] * value.y;
+    numbers.word[place + 2u] = numbers.word[place + 2u] * value.z;
+    return numbers;
+}
+
+/// Each in its range; a normal as it is.
+FN InputNumbers limit_inputs(InputNumbers numbers) {
+    for (uint k = 0u; k < kInputEmission; ++k) numbers.word[k] = clamp(numbers.word[k], 0.0f, 1.0f);
+    for (uint k = kInputEmission; k < kInputNormal; ++k) numbers.word[k] = max(numbers.word[k], 0.0f);
+    return numbers;
+}
+
+/// Fresnel's reflection at normal incidence between two indices of refraction.
+FN float find_normal_reflection(float ratio) {
+    float root = (ratio - 1.0f) / (ratio + 1.0f);
+    return root * root;
+}
+
+/// As in make_general_bsdf: the surface fades out together with its reflection at normal incidence.
+FN float find_grazing_reflection(float f0) { return min(1.0f, 50.0f * f0); }
+
+/// -log2 of what a length of 1 / `share` leaves over of a colour.
+FN Vec3 find_color_depth(Vec3 color, float share) {
+    Vec3 depth = {-share * find_logarithm(max(color.x, 1e-12f)),
+                  -share * find_logarithm(max(color.y, 1e-12f)),
+                  -share * find_logarithm(max(color.z, 1e-12f))};
+    return depth;
+}
+
+/// All but what belongs to the albedo table, and fuzz_scale. A coat under which the light comes from its
+/// medium: OpenPBR 1.1, "Coat": refraction.
+FN LayerParameters set_layer_inputs(LayerParameters l, InputNumbers numbers, InputConstants constants) {
+    l.specular_color = get_input_color(numbers, kInputSpecularColor);
+    l.specular_weight = numbers.word[kInputSpecularWeight];
+    l.metallic = numbers.word[kInputMetallic];
+    l.coat_weight = numbers.word[kInputCoatWeight];
+    float medium = 1.0f + l.coat_weight * (constants.coat_ior - 1.0f);
+    l.dielectric_f0 = l.specular_weight * find_normal_reflection(constants.ior / medium);
+    l.dielectric_f90 = find_grazing_reflection(l.dielectric_f0);
+    l.diffuse_roughness = numbers.word[kInputDiffuseRoughness];
+    l.coat_roughness = numbers.word[kInputCoatRoughness];
+    l.coat_depth = find_color_depth(get_input_color(numbers, kInputCoatColor), 0.5f);
+    l.coat_darkening = numbers.word[kInputCoatDarkening];
+    l.fuzz_color = get_input_color(numbers, kInputFuzzColor);
+    l.fuzz_weight = numbers.word[kInputFuzzWeight];
+    l.fuzz_exponent = 1.0f / max(numbers.word[kInputFuzzRoughness], 0.07f);
+    return l;
+}
+
+FN GlassParameters set_glass_inputs(GlassParameters g, InputNumbers numbers, InputConstants constants) {
+    g.weight = numbers.word[kInputTransmissionWeight];
+    g.specular_color = get_input_color(numbers, kInputSpecularColor);
+    Vec3 color = get_input_color(numbers, kInputTransmissionColor);
+    if (constants.is_absorbing != 0u) return g;
+    if (g.kind == kSolidGlass)
+        g.tint = color;
+    else
+        g.depth = find_color_depth(color, 1.0f);
+    return g;
+}
+
+#include "formulas/end.h"
+#endif

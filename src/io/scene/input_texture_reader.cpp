@@ -1,0 +1,152 @@
+#include "io/scene/input_texture_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/suggest.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/tile_names.h"
+#include "scene/displacement_conventions.h"
+#include "scene/material_inputs.h"
+#include "scene/words.h"
+
+namespace relief {
+
+namespace {
+
+constexpr double kFarthestUv = 1e6;
+
+/// One number stands for both.
+Vec2f read_pair(const JsonNode& node) {
+    if (!node.is_array()) {
+        const float both = node.as_float(-kFarthestUv, kFarthestUv);
+        return {both, both};
+    }
+    const std::vector<JsonNode> numbers = node.elements();
+    if (numbers.size() != 2) node.fail(fmt::format("must be 2 numbers, not {}", numbers.size()));
+    return {numbers[0].as_float(-kFarthestUv, kFarthestUv), numbers[1].as_float(-kFarthestUv, kFarthestUv)};
+}
+
+void check_texture_keys(const JsonNode& node, const MaterialInputKind& kind, bool is_own_key) {
+    if (const auto uv_set = node.find("uv_set"))
+        uv_set->fail("textures lie on the one uv set that their mesh is read with",
+                     "name it as uv_set of the mesh; a file that is two meshes can be read with two");
+    if (kind.input == MaterialInput::normal)
+        node.check_keys(scene_keys::kNormalTexture);
+    else if (!is_own_key)
+        node.check_keys(scene_keys::kInputTexture);
+    else if (kind.is_color())
+        node.check_keys(scene_keys::kColourTexture);
+    else
+        node.check_keys(scene_keys::kDataTexture);
+}
+
+void read_place(const JsonNode& node, InputTexture& texture) {
+    if (const auto scale = node.find("uv_scale")) texture.uv_scale = read_pair(*scale);
+    if (const auto offset = node.find("uv_offset")) texture.uv_offset = read_pair(*offset);
+    const auto wrap = node.find("wrap");
+    if (!wrap) return;
+    if (texture.is_udim) wrap->fail("each of several tiles ends with its own texels", "leave wrap out");
+    const std::string name = wrap->as_string();
+    texture.wrap = wrap->with_place([&] { return parse_word<WrapMode>(name); });
+}
+
+/// `node`: a file name, or an object with it. `is_own_key`: that of a member of Material.
+InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& kind, bool is_own_key,
+                                AssetCache& assets) {
+    InputTexture texture;
+    texture.input = kind.input;
+    const bool is_object = !node.is_string();
+    if (is_object) check_texture_keys(node, kind, is_own_key);
+    const JsonNode file = is_object ? node.get("file") : node;
+    const std::string name = file.as_string();
+    texture.is_udim = has_tile_token(name);
+    TextureUse use = kind.is_color() ? TextureUse::colour : TextureUse::number;
+    if (kind.input == MaterialInput::normal) use = TextureUse::vector;
+    uint32_t channel = 0;
+    std::string space;
+    if (is_object) {
+        texture.filter = read_texture_filter(node);
+        if (const auto found = node.find("channel")) channel = read_channel(*found), use = TextureUse::number;
+        space = read_color_space(node);
+        read_place(node, texture);
+    }
+    texture.tiles = file.with_place([&] { return assets.load_tiles(name, use, channel, space); });
+    return texture;
+}
+
+/// Where it is one: an object under the name of an input, or a file name with a token for tiles.
+void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& assets, Material& material) {
+    for (const char* key : {kind.name, kind.alias}) {
+        const auto found = key ? node.find(key) : std::nullopt;
+        if (!found || !found->is_object() || kind.input == MaterialInput::normal) continue;
+        if (kind.own_texture && node.find(kind.own_texture))
+            found->fail(fmt::format("has a texture twice: '{}' is there too", kind.own_texture),
+                        "leave one of the two out");
+        material.textures.push_back(read_input_texture(*found, kind, false, assets));
+        return;
+    }
+    if (!kind.own_texture) return;
+    for (const char* key : {kind.own_texture, kind.input == MaterialInput::normal ? kind.name : nullptr}) {
+        const auto found = key ? node.find(key) : std::nullopt;
+        if (!found || !is_placed_texture(*found)) continue;
+        material.textures.push_back(read_input_texture(*found, kind, true, assets));
+        return;
+    }
+}
+
+} // namespace
+
+void read_input_textures(const JsonNode& node, AssetCache& assets, Material& material) {
+    for (const MaterialInputKind& kind : list_material_inputs()) read_one(node, kind, assets, material);
+}
+
+bool is_placed_texture(const JsonNode& texture) {
+    if (texture.is_string()) return has_tile_token(texture.as_string());
+    if (!texture.is_object()) return false;
+    const auto file = texture.find("file");
+    if (file && file->is_string() && has_tile_token(file->as_string())) return true;
+    return texture.find("wrap") || texture.find("uv_scale") || texture.find("uv_offset");
+}
+
+void refuse_input_textures(const JsonNode& node) {
+    constexpr std::pair<const char*, const char*> kReasons[] = {
+        {"ior", "texture specular_weight, which scales the same reflection"},
+        {"specular_ior", "texture specular_weight, which scales the same reflection"},
+        {"coat_ior", "texture coat_weight, which scales the same reflection"},
+        {"transmission_depth", "it is of the inside of a body, where there are no uvs"}};
+    for (const auto& [key, reason] : kReasons)
+        if (const auto found = node.find(key); found && found->is_object())
+            found->fail("takes a number and no texture", reason);
+}
+
+uint32_t read_channel(const JsonNode& node) {
+    constexpr std::string_view kNames[] = {"r", "g", "b", "a", "luminance"};
+    const std::string name = node.as_string();
+    const auto found = std::find(std::begin(kNames), std::end(kNames), name);
+    if (found == std::end(kNames))
+        node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a, luminance");
+    return uint32_t(found - std::begin(kNames));
+}
+
+std::string read_color_space(const JsonNode& node) {
+    const auto space = node.find("color_space");
+    if (!space) return {};
+    const std::string name = space->as_string();
+    if (name.empty()) space->fail("a color space needs a name", "auto, linear, srgb, acescg, ...");
+    return name == "auto" ? std::string() : name;
+}
+
+MapFilter read_texture_filter(const JsonNode& node) {
+    const auto filter = node.find("filter");
+    if (!filter) return MapFilter::none;
+    const std::string name = filter->as_string();
+    return filter->with_place([&] { return parse_texture_filter(name); });
+}
+
+} // namespace relief

@@ -1,0 +1,29 @@
+// A texture of one input of a material in a scene file, as an object with its place on the uv plane.
+#pragma once
+
+#include "io/scene/asset_cache.h"
+#include "io/scene/json_node.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Adds the textures that `node`, a material, has as objects under the names of its inputs, or whose file
+/// name has a token for tiles. Throws bad_input.
+void read_input_textures(const JsonNode& node, AssetCache& assets, Material& material);
+
+/// Whether the texture of a key of today's, `*_texture`, is one that read_input_textures reads.
+bool is_placed_texture(const JsonNode& texture);
+
+/// The inputs of a material that a texture cannot drive, refused with the reason.
+void refuse_input_textures(const JsonNode& node);
+
+/// Which of a texel's values is the number.
+uint32_t read_channel(const JsonNode& node);
+
+/// `auto` and none are the same.
+std::string read_color_space(const JsonNode& node);
+
+/// `none` where there is none.
+MapFilter read_texture_filter(const JsonNode& node);
+
+} // namespace relief

@@ -1,0 +1,49 @@
+// Materials whose inputs have textures of their own (Material::textures), as both engines read them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "formulas/material_inputs.h"
+#include "math/vec.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Words of scalar::InputNumbers.
+struct InputPlace {
+    uint32_t first, count;
+};
+InputPlace find_input_place(MaterialInput input);
+
+/// A texture and where its values go.
+struct PlacedTexture {
+    InputPlace place;
+    std::vector<std::shared_ptr<const Texture>> tiles; ///< one; or by UDIM - 1001, null where there is none
+    bool is_number;                                    ///< the first channel counts alone
+    bool is_udim, is_smooth;
+    WrapMode wrap;
+    Vec2f uv_scale, uv_offset;
+};
+
+struct TexturedMaterial {
+    scalar::InputNumbers numbers; ///< that the textures multiply
+    scalar::InputConstants constants;
+    std::vector<PlacedTexture> textures;
+};
+
+struct TexturedMaterials {
+    std::vector<TexturedMaterial> list;
+    std::vector<uint32_t> of_material; ///< place in `list`; kNoIndex: without
+
+    bool empty() const { return list.empty(); }
+    /// Null: of a material without.
+    const TexturedMaterial* find(uint32_t material) const {
+        const uint32_t place = empty() ? kNoIndex : of_material[material];
+        return place == kNoIndex ? nullptr : &list[place];
+    }
+};
+
+TexturedMaterials make_textured_materials(const std::vector<Material>& materials);
+
+} // namespace relief
