@@ -15,8 +15,6 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// `diffuse`: of light along `direction`. What comes from behind a surface is transmitted.
 scalar::LightShares find_shares(const VertexLanes& lanes, size_t lane, const float (&diffuse)[3][16],
                                 const Vec3f& direction) {
@@ -31,6 +29,15 @@ void TileTracer::shade_paths() {
     shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
     add_backgrounds();
     drop_misses();
+    if (depth_ <= settings_.image.bounces)
+        shade_vertices();
+    else
+        add_last_emission();
+    counters_.shade_s += timer.seconds();
+}
+
+/// What rays have hit is lit and scatters; paths that go on stay active.
+void TileTracer::shade_vertices() {
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
     if (tracer_.scene().has_normal_maps) map_shading_normals(tracer_.scene(), hits_, points_);
@@ -40,7 +47,20 @@ void TileTracer::shade_paths() {
         next = shade_block(first, std::min(kBlock, active_.size() - first), next);
     active_.resize(next), rays_.resize(next), coarse_from_.resize(next);
     counters_.bounce_rays += active_.size();
-    counters_.shade_s += timer.seconds();
+}
+
+/// Of the rays that look for light alone.
+void TileTracer::add_last_emission() {
+    if (lights_.has_emitters()) {
+        points_.resize(hits_.size());
+        tracer_.make_surface_points(hits_, points_, scratch_);
+        draw_random();
+        for (size_t k = 0; k < active_.size(); ++k) {
+            const Vec3f emission = meet_material(k).emission;
+            if (!(emission == Vec3f{})) add_emission(k, emission);
+        }
+    }
+    active_.clear();
 }
 
 /// Light of rays that leave the scene, and of analytic lights that are met on the way.
@@ -167,19 +187,26 @@ uint32_t TileTracer::choose_body(size_t k, const VertexLanes& lanes, size_t lane
                            dot(get_lane(lanes.geometric_normal, lane), direction) < 0});
 }
 
+/// Of the surface that ray k has hit, with what glass does to its path.
+PointMaterial TileTracer::meet_material(size_t k) {
+    const PreparedScene& scene = tracer_.scene();
+    const SurfacePoint& point = points_[k];
+    PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
+    if (has_glass_) {
+        Path& path = paths_[active_[k]];
+        const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
+        path.throughput =
+            path.throughput * meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
+    }
+    return m;
+}
+
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
     const PreparedScene& scene = tracer_.scene();
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
-        const SurfacePoint& point = points_[k];
-        PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
-        if (has_glass_) {
-            Path& path = paths_[active_[k]];
-            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t};
-            path.throughput = path.throughput *
-                              meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
-        }
+        const PointMaterial m = meet_material(k);
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
         set_material(m, lane, lanes);
@@ -188,7 +215,7 @@ void TileTracer::reflect(size_t first, size_t count) {
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
     }
     for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
-    const bool has_bounce = depth_ < settings_.image.bounces;
+    const bool has_bounce = depth_ < last_depth();
     const MaterialLayers& found = scene.layers;
     const LayerView layers{found.records.data(), found.entries.data(), uint32_t(found.entries.size())};
     for (size_t n = 0; n < count; n += 16) {
@@ -237,11 +264,11 @@ void TileTracer::add_emission(size_t k, const Vec3f& emission) {
                                   depth_);
 }
 
-/// Next-event estimation. At the last vertex no bounce ray can find the light too: full weight.
+/// Next-event estimation. Without bounces no other ray can find the light too: full weight.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
-    const bool is_last = depth_ == settings_.image.bounces;
-    const float weight = is_last ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
+    const float weight =
+        last_depth() == 0 ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
     Vec3f contribution = path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;
     TraceRay ray{get_lane(lanes.shadow_origin, lane), 0, light.direction, light.distance, hits_[k].lod_bias};

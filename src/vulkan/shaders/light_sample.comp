@@ -118,7 +118,7 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, uint lod_bias)
     return ray;
 }
 
-/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex: no bounce ray follows.
+/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 without bounces: no other ray finds lights.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, uint instance) {
     uint material_index = instances[instance].material;
     MaterialData material = materials[material_index];
@@ -133,7 +133,7 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, uint i
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
     if (kHasGlass != 0u && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
-    float weight = push.depth == push.last_depth ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
+    float weight = push.last_depth == 0u ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
     RayData shadow = make_shadow_ray(point, drawn, ray.lod_bias);
@@ -187,6 +187,8 @@ bool light_vertex(uint path_index, HitData hit) {
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);
+    // The last rays look for light alone.
+    if (push.depth > 0u && push.depth == push.last_depth) return false;
     return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit.instance);
 }
 
