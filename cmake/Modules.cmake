@@ -1,3 +1,9 @@
+# relief_unite(TARGET): compiles its sources several at once under RELIEF_UNITY. Names in unnamed namespaces differ within a
+# module for that. Six: of more, a change of one file would compile too many others.
+function(relief_unite target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RELIEF_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
+
 # relief_module(NAME [SOURCE_DIRECTORY DIR] [EXCLUDE REGEX] [PRECOMPILED HEADERS] MODULES ... LIBRARIES ...): static library
 # relief_NAME from src/NAME, without the sources whose path matches REGEX. HEADERS: of relief_precompile, instead of
 # relief_library_headers.
@@ -18,6 +24,7 @@ function(relief_module name)
     set(scope INTERFACE)
   else()
     add_library(relief_${name} STATIC ${sources})
+    relief_unite(relief_${name})
     set(scope PUBLIC)
   endif()
   if(NOT ARG_PRECOMPILED)

@@ -40,15 +40,8 @@ struct ConvertOptions {
     ProgressOptions progress;
 };
 
-constexpr double kRead = 0.1,
+constexpr double kBeforeConversion = 0.1,
                  kConverted = 0.7; ///< parts of the work, before and after which files are read and written
-
-enum class FileKind { map, mesh, scene };
-
-FileKind get_kind(const std::string& file) {
-    if (is_mesh_file(file)) return FileKind::mesh;
-    return get_lower_extension(file) == ".json" ? FileKind::scene : FileKind::map;
-}
 
 [[noreturn]] void refuse(const std::string& message, const std::string& where, const std::string& hint) {
     throw Error(ErrorKind::usage, {message, where, hint});
@@ -136,11 +129,12 @@ int convert_map_file(const ConvertOptions& options) {
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
     WorkProgress progress(options.progress);
-    progress.tell(kRead);
+    progress.tell(kBeforeConversion);
     const MapSamples samples = choose_samples(options, from);
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
-    const Displacement converted = convert_map(from, make_target(options, from, mesh_or_null, samples),
-                                               mesh_or_null, &warnings, progress.part(kRead, kConverted));
+    const Displacement converted =
+        convert_map(from, make_target(options, from, mesh_or_null, samples), mesh_or_null, &warnings,
+                    progress.part(kBeforeConversion, kConverted));
     print_warnings(options, warnings, &progress);
     write_map(converted, options.output, samples, progress.part(kConverted, 1));
     fmt::print("wrote {}: {}\n", options.output, describe(converted));
@@ -171,8 +165,8 @@ int convert_surface(const ConvertOptions& options) {
                    options.input, "a plain mesh is written as it is");
         WorkProgress progress(options.progress);
         const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()});
-        progress.tell(kRead);
-        write_mesh(mesh, options.output, progress.part(kRead, 1));
+        progress.tell(kBeforeConversion);
+        write_mesh(mesh, options.output, progress.part(kBeforeConversion, 1));
         fmt::print("wrote {}\n", options.output);
         return kExitDone;
     }
@@ -180,11 +174,11 @@ int convert_surface(const ConvertOptions& options) {
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
     WorkProgress progress(options.progress);
     const Scene scene = load_surface(options);
-    progress.tell(kRead);
+    progress.tell(kBeforeConversion);
     keep_files(list_files(scene), options.output);
     print_warnings(options, scene.warnings, &progress);
-    const Mesh mesh =
-        make_displaced_mesh(scene, options.level.value_or(kUsualLevel), progress.part(kRead, kConverted));
+    const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel),
+                                          progress.part(kBeforeConversion, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));
     fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
                mesh.face_sizes.size());

@@ -3,10 +3,16 @@
 #include <memory>
 #include <system_error>
 
+#include "common/values.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
 namespace relief::cli {
+
+FileKind get_kind(const std::filesystem::path& file) {
+    if (is_mesh_file(file)) return FileKind::mesh;
+    return get_lower_extension(file) == ".json" ? FileKind::scene : FileKind::map;
+}
 
 std::vector<std::string> list_files(const Scene& scene) {
     std::vector<std::string> files = {scene.source};

@@ -10,6 +10,11 @@
 
 namespace relief::cli {
 
+enum class FileKind { map, mesh, scene };
+
+/// By its suffix.
+FileKind get_kind(const std::filesystem::path& file);
+
 /// Files that a scene was read from, as far as known: scene file, meshes, maps, textures.
 std::vector<std::string> list_files(const Scene& scene);
 

@@ -43,13 +43,6 @@ constexpr double kRead = 0.3; ///< of the work; a check picture comes last
 
 double get_picture_start(const InspectOptions& options) { return options.picture.empty() ? 1 : 0.6; }
 
-enum class FileKind { map, mesh, scene };
-
-FileKind get_kind(const std::filesystem::path& file) {
-    if (is_mesh_file(file)) return FileKind::mesh;
-    return get_lower_extension(file) == ".json" ? FileKind::scene : FileKind::map;
-}
-
 std::string get_severity_name(Severity severity) {
     switch (severity) {
     case Severity::note:

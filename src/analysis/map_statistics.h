@@ -11,6 +11,8 @@
 
 namespace relief {
 
+inline constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
+
 /// A texel of a map.
 struct TexelPlace {
     int udim = 1001;

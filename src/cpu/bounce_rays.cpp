@@ -1,14 +1,10 @@
 #include "cpu/bounce_rays.h"
 
-#include <limits>
-
 #include "base/check.h"
 
 namespace relief::cpu {
 
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Traces the part beyond `coarse_from` of the rays that scratch.indices lists, at an LOD bias each.
 void trace_far(const Tracer& tracer, std::span<const TraceRay> rays, std::span<const float> coarse_from,

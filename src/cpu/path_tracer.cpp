@@ -13,7 +13,6 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kPacketEdge = 4;
 
 } // namespace

@@ -17,7 +17,6 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// What shadows are caught by: white and diffuse, so that nothing but light and its cosine counts.
 constexpr PointMaterial kCatcherMaterial{{1, 1, 1}, {0, 0, 0}, 1, 0, 1, kNoIndex, kNoIndex, kNoIndex};
 
@@ -38,6 +37,15 @@ void TileTracer::shade_paths() {
     shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
     add_backgrounds();
     drop_misses();
+    if (depth_ <= settings_.image.bounces)
+        shade_vertices();
+    else
+        add_last_emission();
+    counters_.shade_s += timer.seconds();
+}
+
+/// What rays have hit is lit and scatters; paths that go on stay active.
+void TileTracer::shade_vertices() {
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
     if (tracer_.scene().has_normal_maps) map_shading_normals(tracer_.scene(), hits_, points_);
@@ -47,7 +55,20 @@ void TileTracer::shade_paths() {
         next = shade_block(first, std::min(kBlock, active_.size() - first), next);
     active_.resize(next), rays_.resize(next), coarse_from_.resize(next);
     counters_.bounce_rays += active_.size();
-    counters_.shade_s += timer.seconds();
+}
+
+/// Of the rays that look for light alone.
+void TileTracer::add_last_emission() {
+    if (lights_.has_emitters()) {
+        points_.resize(hits_.size());
+        tracer_.make_surface_points(hits_, points_, scratch_);
+        draw_random();
+        for (size_t k = 0; k < active_.size(); ++k) {
+            const Vec3f emission = meet_material(k, 0).emission;
+            if (!(emission == Vec3f{})) add_emission(k, emission);
+        }
+    }
+    active_.clear();
 }
 
 /// Light of rays that leave the scene, and of analytic lights that are met on the way.
@@ -196,22 +217,29 @@ float TileTracer::find_lift(size_t k, size_t n) {
                            scratch_.patches);
 }
 
+/// Of the surface that ray k has hit, vertex n of a block, with what glass does to its path.
+PointMaterial TileTracer::meet_material(size_t k, size_t n) {
+    if (is_catcher(k)) return kCatcherMaterial;
+    const PreparedScene& scene = tracer_.scene();
+    const SurfacePoint& point = points_[k];
+    PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
+    vertex_inputs_.set(n, hits_[k].instance, point.uv, m);
+    if (has_glass_) {
+        Path& path = paths_[active_[k]];
+        const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,
+                                   vertex_inputs_.glass()};
+        path.throughput =
+            path.throughput * meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
+    }
+    return m;
+}
+
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
     const PreparedScene& scene = tracer_.scene();
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
-        const SurfacePoint& point = points_[k];
-        PointMaterial m =
-            is_catcher(k) ? kCatcherMaterial : make_point_material(scene, hits_[k].instance, point.uv);
-        if (!is_catcher(k)) vertex_inputs_.set(n, hits_[k].instance, point.uv, m);
-        if (has_glass_) {
-            Path& path = paths_[active_[k]];
-            const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,
-                                       vertex_inputs_.glass()};
-            path.throughput = path.throughput *
-                              meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
-        }
+        const PointMaterial m = meet_material(k, n);
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
         set_material(m, lane, lanes);
@@ -221,7 +249,7 @@ void TileTracer::reflect(size_t first, size_t count) {
         lanes.light_lift[lane] = m.glass == kNoIndex ? find_lift(k, n) : 0.0f;
     }
     for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);
-    const bool has_bounce = depth_ < settings_.image.bounces;
+    const bool has_bounce = depth_ < last_depth();
     for (size_t n = 0; n < count; n += 16) {
         const size_t k = first + n;
         tracer_.shading_kernels().reflect(
@@ -284,11 +312,11 @@ bool TileTracer::is_covered(size_t k, float lift) {
     return hit.is_hit();
 }
 
-/// Next-event estimation. At the last vertex, and on shadow catchers, no bounce ray can find the light too:
-/// full weight.
+/// Next-event estimation. Without bounces, and on shadow catchers, no other ray can find the light too: full
+/// weight.
 void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light) {
     Path& path = paths_[active_[k]];
-    const bool is_alone = depth_ == settings_.image.bounces || is_catcher(k);
+    const bool is_alone = last_depth() == 0 || is_catcher(k);
     const float weight = is_alone ? 1.0f : scalar::power_heuristic(light.pdf, lanes.light_bsdf_pdf[lane]);
     Vec3f contribution = path.throughput * get_lane(lanes.light_reflected, lane) * light.weight * weight;
     if (contribution == Vec3f{} || !is_finite(contribution)) return;

@@ -11,6 +11,7 @@
 #include "cpu/cut_outs.h"
 #include "cpu/path_lights.h"
 #include "cpu/path_tracer.h"
+#include "cpu/shading/point_material.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/vertex_inputs.h"
 #include "formulas/camera.h"
@@ -44,6 +45,7 @@ class TileTracer {
 
   private:
     bool is_pinhole() const { return camera_.aperture_radius == 0; }
+    int last_depth() const { return int(scalar::find_last_depth(uint32_t(settings_.image.bounces))); }
     void start_paths();
     void trace_paths();
     float draw_cut_out(uint32_t path, bool is_shadow, uint32_t round) const {
@@ -52,6 +54,8 @@ class TileTracer {
     void pass_shadow_rays();
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
     void shade_paths();
+    void shade_vertices();
+    void add_last_emission();
     void add_backgrounds();
     void add_background(uint32_t path, const Vec3f& light);
     void gather_lights();
@@ -63,6 +67,7 @@ class TileTracer {
     void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
+    PointMaterial meet_material(size_t k, size_t n);
     void reflect(size_t first, size_t count);
     float find_lift(size_t k, size_t n);
     bool is_covered(size_t k, float lift);

@@ -16,17 +16,20 @@
 
 namespace relief::cpu {
 
+/// Of rays that end nowhere.
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 struct TraceRay {
     Vec3f origin{};
     float t_min = 0;
     Vec3f direction{};
-    float t_max = std::numeric_limits<float>::infinity();
+    float t_max = kInfinity;
     uint32_t lod_bias = 0; ///< surface M_bias is seen: every level lowered by it
 };
 
 /// Where a ray hit the surface; `i`, `j`: the cell at the biased level, `is_upper`: triangle 00, 11, 01.
 struct TraceHit {
-    float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing
+    float t = kInfinity; ///< infinity: nothing
     uint32_t instance = kNoIndex;
     uint32_t patch = kNoIndex;
     float u = 0, v = 0; ///< on the patch, [0, 1]^2; on a triangle primitive likewise, with v <= u

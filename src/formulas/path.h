@@ -6,7 +6,8 @@
 
 #include "formulas/begin.h"
 
-const uint kRouletteDepth = 1u; ///< bounces exempt from Russian roulette
+const uint kRouletteDepth = 1u;       ///< bounces exempt from Russian roulette
+const float kLeastThroughput = 0.25f; ///< of paths that it spares
 
 // Dimension pairs of the sampler.
 const uint kPixelPair = 0u;
@@ -59,16 +60,21 @@ FN Vec3 clamp_indirect(Vec3 light, float limit, uint bounces) {
     return limit > 0.0f && bounces > 0u && brightest > limit ? light * (limit / brightest) : light;
 }
 
+/// Depth of the last rays of paths of so many bounces: behind the last vertex one more looks for light alone,
+/// so that there, too, lights found and lights drawn are weighed. Direct light alone is one shadow ray.
+FN uint find_last_depth(uint bounces) { return bounces > 0u ? bounces + 1u : 0u; }
+
 /// What clamp_indirect multiplies light by.
 FN float find_clamp_scale(Vec3 light, float limit, uint bounces) {
     float brightest = max(max(light.x, light.y), light.z);
     return limit > 0.0f && bounces > 0u && brightest > limit ? limit / brightest : 1.0f;
 }
 
-/// Russian roulette (Arvo and Kirk 1990), from the second vertex on (Pharr et al. 2023, section 13.4).
+/// Russian roulette (Arvo and Kirk 1990), from the second vertex on. Paths that carry kLeastThroughput or
+/// more all go on: ending them costs more in noise than it saves in rays (docs/results/noise.md).
 FN float survival_probability(uint depth, Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
-    return depth < kRouletteDepth ? 1.0f : min(brightest, 1.0f);
+    return depth < kRouletteDepth ? 1.0f : min(brightest * (1.0f / kLeastThroughput), 1.0f);
 }
 
 #include "formulas/end.h"

@@ -21,7 +21,7 @@ struct Rectangle {
 
 using SampleRange = std::pair<int, int>;
 
-struct Part {
+struct CoveredPart {
     const Image* image;
     Rectangle window;
     SampleRange samples;
@@ -33,7 +33,7 @@ Rectangle get_window(const Image& image) {
 }
 
 /// The least number of samples that a pixel of the rectangle, inside the part, has.
-int count_least_samples(const Part& part, const Rectangle& cell) {
+int count_least_samples(const CoveredPart& part, const Rectangle& cell) {
     const int all = part.samples.second - part.samples.first;
     if (!part.count_channel) return all;
     float least = float(all);
@@ -67,16 +67,16 @@ struct Cell {
 };
 
 /// Cells of a band of rows, side by side; neighbours that lack the same are one.
-std::vector<Cell> measure_band(const std::vector<Part>& parts, const Rectangle& band,
+std::vector<Cell> measure_band(const std::vector<CoveredPart>& parts, const Rectangle& band,
                                const std::set<int>& columns, int end) {
-    std::vector<Part> touching;
-    for (const Part& part : parts)
+    std::vector<CoveredPart> touching;
+    for (const CoveredPart& part : parts)
         if (part.window.y0 <= band.y0 && part.window.y1 >= band.y1) touching.push_back(part);
     std::vector<Cell> cells;
     for (auto right = std::next(columns.begin()); right != columns.end(); ++right) {
         const Rectangle window{*std::prev(right), band.y0, *right, band.y1};
         std::vector<SampleRange> ranges;
-        for (const Part& part : touching) {
+        for (const CoveredPart& part : touching) {
             if (part.window.x0 > window.x0 || part.window.x1 < window.x1) continue;
             const int count = count_least_samples(part, window);
             if (count > 0) ranges.emplace_back(part.samples.first, part.samples.first + count);
@@ -133,7 +133,7 @@ Rectangle find_whole_window(std::span<const Image> images) {
 
 std::vector<PictureGap> find_gaps(std::span<const Image> images) {
     if (images.empty()) return {};
-    std::vector<Part> parts;
+    std::vector<CoveredPart> parts;
     int end = 0;
     for (size_t k = 0; k < images.size(); ++k) {
         parts.push_back({&images[k], get_window(images[k]), read_sample_range(images[k], k),
@@ -142,7 +142,7 @@ std::vector<PictureGap> find_gaps(std::span<const Image> images) {
     }
     const Rectangle whole = find_whole_window(images);
     std::set<int> columns{whole.x0, whole.x1}, rows{whole.y0, whole.y1};
-    for (const Part& part : parts) {
+    for (const CoveredPart& part : parts) {
         for (const int x : {part.window.x0, part.window.x1})
             if (x > whole.x0 && x < whole.x1) columns.insert(x);
         for (const int y : {part.window.y0, part.window.y1})

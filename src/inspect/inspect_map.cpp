@@ -18,8 +18,6 @@ namespace relief {
 
 namespace {
 
-constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
-
 struct SampleTypeName {
     const char* name;
     double bits;

@@ -14,8 +14,6 @@ namespace relief {
 
 namespace {
 
-constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
-
 double get_largest_scale(const Displacement& map) {
     return std::max({std::fabs(map.scale.x), std::fabs(map.scale.y), std::fabs(map.scale.z)});
 }

@@ -22,7 +22,7 @@ Vec3f find_depth(const Vec3f& color, float length) {
     return {depth(color.x), depth(color.y), depth(color.z)};
 }
 
-scalar::GlassParameters make_record(const Material& material) {
+scalar::GlassParameters make_glass_record(const Material& material) {
     scalar::GlassParameters g{};
     g.weight = material.transmission_weight;
     g.ior = std::max(weaken_ior(material.ior, material.specular_weight), scalar::kLeastGlassIor);
@@ -47,7 +47,7 @@ MaterialGlass make_material_glass(const std::vector<Material>& materials) {
     for (const Material& material : materials) {
         const bool is_glass = material.transmission_weight > 0;
         result.record_of_material.push_back(is_glass ? uint32_t(result.records.size()) : kNoIndex);
-        if (is_glass) result.records.push_back(make_record(material));
+        if (is_glass) result.records.push_back(make_glass_record(material));
     }
     return result;
 }

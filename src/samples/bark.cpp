@@ -1,8 +1,8 @@
 // Bark: tall plates with deep cracks between; edges curl over the cracks, and flakes cover the plates.
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/bake.h"
 #include "samples/lathe_model.h"
 #include "samples/models.h"
@@ -14,7 +14,6 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kCrackWidth = 0.0185f, kPlateHeight = 0.025f;
 constexpr float kFlakeWidth = 0.0055f, kFlakeHeight = 0.0036f;
 

@@ -1,8 +1,8 @@
 // The coral: a ball covered with cups that lean every way, between them a skin of small grains.
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/lathe_model.h"
 #include "samples/models.h"
 #include "samples/noise.h"
@@ -13,9 +13,7 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-LatheShape make_shape() {
+LatheShape make_coral_shape() {
     LatheShape shape;
     for (int i = 0; i <= 48; ++i) {
         const float a = kPi * float(i) / 48;
@@ -87,7 +85,7 @@ class CoralSculptor {
 } // namespace
 
 Model make_coral(const ProgressFunction& on_progress) {
-    return make_sculpted_model<CoralSculptor>("coral", make_shape(), DisplacementSpace::object, 0.5f,
+    return make_sculpted_model<CoralSculptor>("coral", make_coral_shape(), DisplacementSpace::object, 0.5f,
                                               on_progress);
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/noise.h"
 #include "samples/profile.h"
 
@@ -12,7 +12,6 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kProfileSamples = 1024;
 
 // Layout of the atlas: the tube fills the upper part from side to side, the caps stand below it.

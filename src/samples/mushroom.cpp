@@ -1,8 +1,8 @@
 // The fly agaric: warts that sit on the cap, gills below it, a skirt about the stem, a scaly bulb.
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/lathe_model.h"
 #include "samples/models.h"
 #include "samples/noise.h"
@@ -13,11 +13,10 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kGills = 56;
 constexpr float kSkirtTop = 0.84f, kSkirtLength = 0.17f;
 
-LatheShape make_shape() {
+LatheShape make_mushroom_shape() {
     LatheShape shape;
     shape.profile = {{0, -0.03f},     {0.14f, -0.02f}, {0.25f, 0.04f},  {0.27f, 0.13f},  {0.215f, 0.25f},
                      {0.175f, 0.38f}, {0.16f, 0.55f},  {0.15f, 0.72f},  {0.145f, 0.87f}, {0.18f, 0.965f},
@@ -156,8 +155,8 @@ class MushroomSculptor {
 } // namespace
 
 Model make_mushroom(const ProgressFunction& on_progress) {
-    return make_sculpted_model<MushroomSculptor>("mushroom", make_shape(), DisplacementSpace::tangent, 0.35f,
-                                                 on_progress);
+    return make_sculpted_model<MushroomSculptor>("mushroom", make_mushroom_shape(),
+                                                 DisplacementSpace::tangent, 0.35f, on_progress);
 }
 
 } // namespace relief::samples

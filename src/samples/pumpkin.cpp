@@ -1,8 +1,8 @@
 // The pumpkin: ribs that bulge over their creases, warts, cork veins and a bent stem.
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/lathe_model.h"
 #include "samples/models.h"
 #include "samples/noise.h"
@@ -13,11 +13,10 @@ namespace relief::samples {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kRibs = 11;
 constexpr float kStemRadius = 0.19f;
 
-LatheShape make_shape() {
+LatheShape make_pumpkin_shape() {
     LatheShape shape;
     for (int i = 0; i <= 48; ++i) {
         const float a = kPi * float(i) / 48, r = i == 48 ? 0.0f : std::sin(a);
@@ -134,8 +133,8 @@ class PumpkinSculptor {
 } // namespace
 
 Model make_pumpkin(const ProgressFunction& on_progress) {
-    return make_sculpted_model<PumpkinSculptor>("pumpkin", make_shape(), DisplacementSpace::object, 0.42f,
-                                                on_progress);
+    return make_sculpted_model<PumpkinSculptor>("pumpkin", make_pumpkin_shape(), DisplacementSpace::object,
+                                                0.42f, on_progress);
 }
 
 } // namespace relief::samples

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 
 namespace relief::samples {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 void add_face(Mesh& mesh, std::initializer_list<uint32_t> corners) {
     mesh.face_sizes.push_back(uint32_t(corners.size()));

@@ -1,16 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "math/vec.h"
+#include "samples/angles.h"
 #include "samples/noise.h"
 #include "samples/stage.h"
 
 namespace relief::samples {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 Vec3f sky_radiance(const Vec3f& direction, const Vec3f& to_sun, const Vec3f& sun_color) {
     const float up = direction.y, towards = std::max(dot(direction, to_sun), 0.0f);

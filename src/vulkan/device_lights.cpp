@@ -81,11 +81,11 @@ std::vector<Vec2f> join_albedos(const MaterialLayers& layers) {
     return entries;
 }
 
-template <class Item> void append_words(const std::vector<Item>& items, std::vector<uint32_t>& words) {
-    static_assert(sizeof(Item) % sizeof(uint32_t) == 0);
+template <class EmitterItem> void append_words(const std::vector<EmitterItem>& items, std::vector<uint32_t>& words) {
+    static_assert(sizeof(EmitterItem) % sizeof(uint32_t) == 0);
     const size_t first = words.size();
-    words.resize(first + items.size() * sizeof(Item) / sizeof(uint32_t));
-    if (!items.empty()) std::memcpy(words.data() + first, items.data(), items.size() * sizeof(Item));
+    words.resize(first + items.size() * sizeof(EmitterItem) / sizeof(uint32_t));
+    if (!items.empty()) std::memcpy(words.data() + first, items.data(), items.size() * sizeof(EmitterItem));
 }
 
 /// The sources, then the nodes of the tree from the next whole node on, then sets of instances; all refer to

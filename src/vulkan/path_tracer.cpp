@@ -20,8 +20,6 @@ namespace relief::vulkan {
 
 namespace {
 
-constexpr uint32_t kGroupSize = 64;
-
 static_assert(sizeof(scalar::CameraPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathData) == 96 && sizeof(scalar::SurfacePointData) == 68);
@@ -34,10 +32,6 @@ static_assert(offsetof(scalar::CounterData, shadow_count) ==
 
 /// Of one path, in all samples of a launch.
 constexpr uint64_t kFirstHitBytes = PathTracer::kSamplesPerLaunch * sizeof(uint32_t);
-
-Kernel make_kernel(const Device& device, const char* shader) {
-    return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
-}
 
 /// One that reads maps or textures.
 Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
@@ -222,7 +216,7 @@ scalar::PathPush PathTracer::make_push(uint32_t sample_index) const {
     push.has_background = settings_.image.background ? 1 : 0;
     push.background = settings_.image.background.value_or(Vec3f{});
     push.capacity = capacity_;
-    push.last_depth = uint32_t(settings_.image.bounces);
+    push.last_depth = scalar::find_last_depth(uint32_t(settings_.image.bounces));
     push.clamp_indirect = settings_.image.clamp_indirect;
     push.sample_index = sample_index;
     push.bounce_lod = make_bounce_lod(tracer_.scene(), settings_);
@@ -360,6 +354,8 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
     commands.begin_stage(Stage::shade);
     clear_lists();
     commands.dispatch(background_, push.count, push);
+    const bool is_last = push.depth > uint32_t(settings_.image.bounces);
+    if (is_last && push.emitter_count == 0) return {0, 0};
     commands.dispatch(surface_point_, push.count, push);
     commands.dispatch(shading_normal_, push.count, push);
     commands.dispatch(light_sample_, push.count, push);

@@ -13,16 +13,11 @@ namespace relief::vulkan {
 
 namespace {
 
-constexpr uint32_t kGroupSize = 64;
 /// A draw has less than 2^32 vertices, and triangle ranks need one bit more than cell indices.
 constexpr uint32_t kMostCells = 1u << 26;
 
 static_assert(sizeof(scalar::RasterItem) == 24);
 static_assert(sizeof(scalar::RasterPush) <= scalar::kMaxPushBytes);
-
-Kernel make_kernel(const Device& device, const char* shader) {
-    return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
-}
 
 /// Rows of the window touched by a range of pixels in place_pixel order.
 void set_rows(const scalar::CameraPush& camera, scalar::RasterPush& push) {

@@ -12,8 +12,6 @@ namespace relief::vulkan {
 
 namespace {
 
-constexpr uint32_t kGroupSize = 64;
-
 RayHit make_ray_hit(const scalar::HitData& found, const scalar::SurfacePointData& point) {
     RayHit hit;
     if (found.instance == scalar::kNone) return hit;

@@ -14,12 +14,12 @@ namespace {
 
 constexpr uint32_t kGuides = EnvironmentTables::kGuides;
 
-struct Interval {
+struct Bin {
     uint32_t index;
     float position; ///< within the interval, [0, 1)
 };
 
-/// Interval of a cumulative distribution (0 ... 1) that u falls into, in [first, last].
+/// Bin of a cumulative distribution (0 ... 1) that u falls into, in [first, last].
 uint32_t search_interval(std::span<const float> cumulative, float u, uint32_t first, uint32_t last) {
     const auto begin = cumulative.begin() + first + 1, end = cumulative.begin() + last + 1;
     return first + uint32_t(std::upper_bound(begin, end, u) - begin);
@@ -37,8 +37,8 @@ void fill_guide(std::span<const float> cumulative, std::span<uint32_t> guide) {
     }
 }
 
-/// Interval that u falls into; never one of zero width.
-Interval find_interval(std::span<const float> cumulative, const uint32_t* guides, float u) {
+/// Bin that u falls into; never one of zero width.
+Bin find_interval(std::span<const float> cumulative, const uint32_t* guides, float u) {
     const uint32_t guide = guides[std::min(uint32_t(u * float(kGuides)), kGuides - 1)];
     const uint32_t index = search_interval(cumulative, u, guide & 0xffff, guide >> 16);
     return {index, scalar::locate_in_interval(u, cumulative[index], cumulative[index + 1])};
@@ -85,9 +85,8 @@ EnvironmentLookup EnvironmentLight::look_up(const Vec3f& direction) const {
 
 DirectionSample EnvironmentLight::draw_direction(const Vec2f& u) const {
     if (!environment_.texture) return {scalar::square_to_sphere(u), scalar::sphere_pdf()};
-    const Interval row =
-        find_interval(distribution_.rows, guides_.data() + size_t(data_.cells_y) * kGuides, u.y);
-    const Interval column =
+    const Bin row = find_interval(distribution_.rows, guides_.data() + size_t(data_.cells_y) * kGuides, u.y);
+    const Bin column =
         find_interval(distribution_.row(row.index), guides_.data() + size_t(row.index) * kGuides, u.x);
     const Vec2f position{(float(column.index) + column.position) / float(data_.cells_x),
                          (float(row.index) + row.position) / float(data_.cells_y)};

@@ -115,7 +115,7 @@ std::string name_reader(const std::filesystem::path& file) {
     return fmt::format("the {} reader", kind);
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+[[noreturn]] void report_failure(const std::filesystem::path& file, const std::string& what) {
     throw Error(ErrorKind::bad_input,
                 {fmt::format("{} {}", name_reader(file), what), file.string(), kOtherFormat});
 }
@@ -148,13 +148,13 @@ int wait_for(Child& child, const std::filesystem::path& file, const MeshReaderSe
         if (const std::optional<int> status = child.find_status()) return *status;
         const Clock::duration waited = Clock::now() - start;
         if (std::chrono::duration<double>(waited).count() > limit_s)
-            fail(file, fmt::format("was not done after {:.3g} s", limit_s));
+            report_failure(file, fmt::format("was not done after {:.3g} s", limit_s));
         std::this_thread::sleep_for(std::clamp(waited / 32, kShortest, kLongest));
     }
 }
 
 [[noreturn]] void fail_for_memory(const std::filesystem::path& file, uint64_t limit) {
-    fail(file, fmt::format("needs more than {} MiB of memory", limit >> 20));
+    report_failure(file, fmt::format("needs more than {} MiB of memory", limit >> 20));
 }
 
 Mesh take_mesh(const std::filesystem::path& file, int status, MeshBlock block, uint64_t memory_limit) {
@@ -162,7 +162,7 @@ Mesh take_mesh(const std::filesystem::path& file, int status, MeshBlock block, u
         const int signal = WTERMSIG(status);
         if (signal == SIGXFSZ) fail_for_memory(file, memory_limit); // the limit of the shared memory
         const char* name = sigdescr_np(signal);
-        fail(file, fmt::format("ended with signal {} ({})", signal, name ? name : "unknown"));
+        report_failure(file, fmt::format("ended with signal {} ({})", signal, name ? name : "unknown"));
     }
     switch (block.content) {
     case BlockContent::mesh:
@@ -174,7 +174,7 @@ Mesh take_mesh(const std::filesystem::path& file, int status, MeshBlock block, u
     case BlockContent::nothing:
         break;
     }
-    fail(file, fmt::format("ended without a mesh (exit {})", WEXITSTATUS(status)));
+    report_failure(file, fmt::format("ended without a mesh (exit {})", WEXITSTATUS(status)));
 }
 
 } // namespace

@@ -17,8 +17,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values of glTF are copied as they are");
 
-const char* const kDamagedHint = "the file is damaged or incomplete: export it again";
-constexpr int64_t kMostBytes = int64_t(1) << 48;
+const char* const kDamagedFileHint = "the file is damaged or incomplete: export it again";
+constexpr int64_t kMostFileBytes = int64_t(1) << 48;
 
 template <class T> T load(const char* bytes) {
     T value;
@@ -54,7 +54,7 @@ constexpr std::array<Component, 7> kComponents = {{{1, load_float<int8_t>, nullp
 /// Of an optional key; 0 where it is missing.
 size_t read_offset(const JsonNode& node) {
     const auto offset = node.find("byteOffset");
-    return size_t(offset ? offset->as_integer(0, kMostBytes) : 0);
+    return size_t(offset ? offset->as_integer(0, kMostFileBytes) : 0);
 }
 
 std::string_view get_type_name(size_t width) {
@@ -88,7 +88,7 @@ void GltfFile::open_glb(std::string_view bytes) {
     constexpr uint32_t kJson = 0x4e4f534a, kBytes = 0x004e4942;
     constexpr size_t kHeaderBytes = 12, kChunkBytes = 8;
     const auto fail = [this](const std::string& message) {
-        throw Error(ErrorKind::bad_input, {message, name_, kDamagedHint});
+        throw Error(ErrorKind::bad_input, {message, name_, kDamagedFileHint});
     };
     if (bytes.size() < kHeaderBytes + kChunkBytes) fail("the GLB file ends in its header");
     if (const uint32_t version = load<uint32_t>(bytes.data() + 4); version != 2)
@@ -120,13 +120,14 @@ const JsonNode& GltfFile::resolve(const JsonNode& index, const std::vector<JsonN
                                   const char* what) {
     const int64_t place = index.as_integer(0, std::numeric_limits<int32_t>::max());
     if (place >= int64_t(list.size()))
-        index.fail(fmt::format("there is no {} {}: the file has {}", what, place, list.size()), kDamagedHint);
+        index.fail(fmt::format("there is no {} {}: the file has {}", what, place, list.size()),
+                   kDamagedFileHint);
     return list[size_t(place)];
 }
 
 std::string GltfFile::load_buffer(const JsonNode& buffer) const {
     const std::optional<JsonNode> uri = buffer.find("uri");
-    if (!uri) buffer.fail("has neither a 'uri' nor bytes in a GLB file", kDamagedHint);
+    if (!uri) buffer.fail("has neither a 'uri' nor bytes in a GLB file", kDamagedFileHint);
     const std::string text = uri->as_string();
     // The text may be megabytes of data, which no message should hold.
     if (is_data_uri(text)) return uri->with_place([&] { return decode_data_uri(text); });
@@ -136,7 +137,7 @@ std::string GltfFile::load_buffer(const JsonNode& buffer) const {
 
 std::string_view GltfFile::find_buffer(const JsonNode& index) {
     const JsonNode& buffer = resolve(index, buffers_, "buffer");
-    const auto size = size_t(buffer.get("byteLength").as_integer(0, kMostBytes));
+    const auto size = size_t(buffer.get("byteLength").as_integer(0, kMostFileBytes));
     std::string_view bytes;
     if (&buffer == &buffers_.front() && has_glb_buffer_ && !buffer.find("uri")) {
         bytes = glb_buffer_;
@@ -146,17 +147,17 @@ std::string_view GltfFile::find_buffer(const JsonNode& index) {
         bytes = found->second;
     }
     if (bytes.size() < size)
-        buffer.fail(fmt::format("has {} bytes of the {} that it says", bytes.size(), size), kDamagedHint);
+        buffer.fail(fmt::format("has {} bytes of the {} that it says", bytes.size(), size), kDamagedFileHint);
     return bytes.substr(0, size);
 }
 
 std::string_view GltfFile::find_view(const JsonNode& view) {
     const std::string_view buffer = find_buffer(view.get("buffer"));
     const size_t offset = read_offset(view);
-    const auto size = size_t(view.get("byteLength").as_integer(0, kMostBytes));
+    const auto size = size_t(view.get("byteLength").as_integer(0, kMostFileBytes));
     if (offset > buffer.size() || size > buffer.size() - offset)
         view.fail(fmt::format("goes to byte {} of a buffer of {} bytes", offset + size, buffer.size()),
-                  kDamagedHint);
+                  kDamagedFileHint);
     return buffer.substr(offset, size);
 }
 
@@ -166,12 +167,12 @@ GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
     if (!view_index)
         accessor.fail("has no 'bufferView'", "export it without compression, such as that of Draco");
     if (const std::string type = accessor.get("type").as_string(); type != get_type_name(width))
-        accessor.fail(fmt::format("is of type {}, not {}", type, get_type_name(width)), kDamagedHint);
+        accessor.fail(fmt::format("is of type {}, not {}", type, get_type_name(width)), kDamagedFileHint);
     Values values;
     values.width = width;
     const int64_t component = accessor.get("componentType").as_integer(kFirstComponent, kLastComponent);
     if (component == kNoComponent)
-        accessor.fail("has componentType 5124, which glTF does not know", kDamagedHint);
+        accessor.fail("has componentType 5124, which glTF does not know", kDamagedFileHint);
     values.component = &kComponents[size_t(component - kFirstComponent)];
     if (const auto normalized = accessor.find("normalized")) values.is_normalized = normalized->as_bool();
     const JsonNode& view = resolve(*view_index, views_, "bufferView");
@@ -187,7 +188,7 @@ GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
     const size_t end = values.count == 0 ? 0 : offset + (values.count - 1) * values.stride + element_bytes;
     if (end > bytes.size())
         accessor.fail(fmt::format("goes to byte {} of a bufferView of {} bytes", end, bytes.size()),
-                      kDamagedHint);
+                      kDamagedFileHint);
     if (values.count > 0) values.begin = bytes.data() + offset;
     return values;
 }
@@ -208,7 +209,7 @@ std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, siz
 std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
     const Values values = find_values(resolve(accessor_index, accessors_, "accessor"), 1);
     if (!values.component->load_index && values.count > 0)
-        accessor_index.fail("indices must be unsigned integers", kDamagedHint);
+        accessor_index.fail("indices must be unsigned integers", kDamagedFileHint);
     std::vector<uint32_t> result;
     result.reserve(values.count);
     for (size_t i = 0; i < values.count; ++i)

@@ -9,8 +9,6 @@ namespace relief {
 
 namespace {
 
-const char* const kDamagedHint = "the file is damaged: export it again";
-
 enum Mode { kLastLineMode = 3, kTriangles = 4, kStrip = 5, kFan = 6 };
 
 using Triangle = std::array<uint32_t, 3>;

@@ -9,6 +9,8 @@
 
 namespace relief {
 
+inline constexpr const char* kDamagedHint = "the file is damaged: export it again";
+
 struct GltfPrimitive {
     // Values of the vertices one after another, kept by the file; empty where the part has none of the kind.
     std::span<const float> positions, normals; ///< 3 a vertex

@@ -11,7 +11,7 @@ namespace relief {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& message, const std::string& hint) {
+[[noreturn]] void refuse_uri(const std::string& message, const std::string& hint) {
     throw Error(ErrorKind::bad_input, {message, "", hint});
 }
 
@@ -36,7 +36,7 @@ bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 std::string decode_data_uri(std::string_view uri) {
     constexpr std::string_view kMark = ";base64,";
     const size_t mark = uri.find(kMark);
-    if (mark == std::string_view::npos) fail("holds data that is not in base64", "export it again");
+    if (mark == std::string_view::npos) refuse_uri("holds data that is not in base64", "export it again");
     std::string_view text = uri.substr(mark + kMark.size());
     while (text.ends_with('=')) text.remove_suffix(1);
     std::string bytes;
@@ -46,8 +46,9 @@ std::string decode_data_uri(std::string_view uri) {
     for (const char c : text) {
         const uint32_t digit = decode_digit(c);
         if (digit == 64)
-            fail(fmt::format("has byte {} where base64 must be", unsigned(static_cast<unsigned char>(c))),
-                 "the file is damaged: export it again");
+            refuse_uri(
+                fmt::format("has byte {} where base64 must be", unsigned(static_cast<unsigned char>(c))),
+                "the file is damaged: export it again");
         bits = bits << 6 | digit;
         bit_count += 6;
         if (bit_count >= 8) bit_count -= 8, bytes.push_back(char(bits >> bit_count & 0xff));
@@ -69,8 +70,8 @@ std::string decode_path_uri(std::string_view uri) {
     const bool is_web = path.find("://") != std::string::npos || path.starts_with("file:");
     if (path.empty() || path.find('\0') != std::string::npos || is_web || plain.is_absolute() ||
         *plain.begin() == "..")
-        fail(fmt::format("'{}' is no file in the folder of the glTF file or below", uri),
-             "keep the buffers beside the file, or export as GLB");
+        refuse_uri(fmt::format("'{}' is no file in the folder of the glTF file or below", uri),
+                   "keep the buffers beside the file, or export as GLB");
     return plain.string();
 }
 

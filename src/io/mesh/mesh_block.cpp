@@ -15,7 +15,7 @@ namespace relief {
 
 namespace {
 
-constexpr std::array<char, 8> kMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '1'};
+constexpr std::array<char, 8> kBlockMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '1'};
 constexpr size_t kArrays = 9;
 
 /// The sizes are those of the arrays of a mesh, or of the three texts of an error.
@@ -144,7 +144,7 @@ void write_mesh_block(int descriptor, const Mesh& mesh) {
     visit_arrays(mesh, [&](const auto& array, size_t place) { header.sizes[place] = array.size(); });
     cursor.write(&header, sizeof header);
     visit_arrays(mesh, [&](const auto& array, size_t) { write_array(cursor, array); });
-    Cursor(descriptor).write(kMagic.data(), kMagic.size());
+    Cursor(descriptor).write(kBlockMagic.data(), kBlockMagic.size());
 }
 
 void write_error_block(int descriptor, const Error& error) {
@@ -156,12 +156,12 @@ void write_error_block(int descriptor, const Error& error) {
     cursor.write(&header, sizeof header);
     for (const std::string* text : {&error.message(), &error.where(), &error.hint()})
         write_array(cursor, *text);
-    Cursor(descriptor).write(kMagic.data(), kMagic.size());
+    Cursor(descriptor).write(kBlockMagic.data(), kBlockMagic.size());
 }
 
 void write_memory_block(int descriptor) {
     Header header;
-    header.magic = kMagic, header.content = uint32_t(BlockContent::out_of_memory);
+    header.magic = kBlockMagic, header.content = uint32_t(BlockContent::out_of_memory);
     Cursor(descriptor).write(&header, sizeof header);
 }
 
@@ -171,7 +171,7 @@ MeshBlock read_mesh_block(int descriptor, uint64_t most_bytes) {
     Header header;
     Cursor cursor(descriptor);
     if (fstat(descriptor, &status) != 0 || uint64_t(status.st_size) > most_bytes) return block;
-    if (!cursor.read(&header, sizeof header) || header.magic != kMagic) return block;
+    if (!cursor.read(&header, sizeof header) || header.magic != kBlockMagic) return block;
     const uint64_t left = uint64_t(status.st_size) - sizeof header;
     if (header.content == uint32_t(BlockContent::out_of_memory))
         block.content = BlockContent::out_of_memory;

@@ -18,9 +18,7 @@ namespace relief {
 
 namespace {
 
-const char* const kDamagedHint = "the file is damaged: export it again";
-
-Affine read_matrix(const JsonNode& node) {
+Affine read_node_matrix(const JsonNode& node) {
     const std::vector<JsonNode> values = node.elements();
     if (values.size() != 16)
         node.fail(fmt::format("must be 16 numbers, not {}", values.size()), kDamagedHint);
@@ -51,7 +49,7 @@ Affine read_rotation(const JsonNode& node) {
 }
 
 Affine read_transform(const JsonNode& node) {
-    if (const auto matrix = node.find("matrix")) return read_matrix(*matrix);
+    if (const auto matrix = node.find("matrix")) return read_node_matrix(*matrix);
     Affine result;
     if (const auto scale = node.find("scale")) result = make_scale(scale->as_vec3());
     if (const auto rotation = node.find("rotation")) result = compose(read_rotation(*rotation), result);

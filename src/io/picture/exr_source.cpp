@@ -25,9 +25,9 @@ namespace relief {
 namespace {
 
 /// A stream of ours as OpenEXR wants it.
-class ExrStream final : public Imf::IStream {
+class ExrInputStream final : public Imf::IStream {
   public:
-    ExrStream(std::unique_ptr<std::istream> stream, const std::string& name)
+    ExrInputStream(std::unique_ptr<std::istream> stream, const std::string& name)
         : IStream(name.c_str()), stream_(std::move(stream)) {}
 
     bool read(char bytes[], int count) override {
@@ -151,7 +151,7 @@ class ExrSource final : public PixelSource {
     }
 
     std::string name_;
-    ExrStream stream_;
+    ExrInputStream stream_;
     Imf::InputFile file_;
     PixelHeader header_;
     bool is_plain_ = false;

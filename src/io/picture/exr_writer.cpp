@@ -16,9 +16,9 @@ namespace relief {
 namespace {
 
 /// Keeps faults of the disk, so that what OpenEXR writes in its destructors is checked as well.
-class ExrStream final : public Imf::OStream {
+class ExrOutputStream final : public Imf::OStream {
   public:
-    explicit ExrStream(CheckedFile& file) : OStream("picture"), file_(file) {}
+    explicit ExrOutputStream(CheckedFile& file) : OStream("picture"), file_(file) {}
     void write(const char bytes[], int count) override { file_.write(bytes, size_t(count)); }
     uint64_t tellp() override { return file_.tell(); }
     void seekp(uint64_t position) override { file_.seek(position); }
@@ -72,7 +72,7 @@ void write_samples(Imf::Header header, const std::vector<std::string>& channels,
                                        static_cast<const char*>(samples.values) + c * value_bytes, window,
                                        stride_bytes, stride_bytes * width));
     }
-    ExrStream stream(file);
+    ExrOutputStream stream(file);
     Imf::OutputFile output(stream, header, prepare_exr_threads());
     output.setFrameBuffer(buffer);
     output.writePixels(window.max.y - window.min.y + 1);

@@ -28,7 +28,7 @@ constexpr uint64_t kMaxTexels = uint64_t(1) << 31;
 constexpr size_t kMaxChannels = 1024;
 constexpr std::array<std::string_view, 8> kExtensions = {".exr", ".tif", ".tiff", ".tx",
                                                          ".png", ".hdr", ".jpg",  ".jpeg"};
-const char* const kDamagedHint = "the file is damaged or incomplete: export or copy it again";
+const char* const kDamagedPictureHint = "the file is damaged or incomplete: export or copy it again";
 
 [[noreturn]] void fail(const std::string& name, const std::string& message, const std::string& hint) {
     throw Error(ErrorKind::bad_input, {message, name, hint});
@@ -37,7 +37,7 @@ const char* const kDamagedHint = "the file is damaged or incomplete: export or c
 void check_size(const PixelHeader& header, const std::string& name, uint64_t file_bytes) {
     if (header.is_deep) fail(name, "is a deep image", "flatten it first");
     if (header.width <= 0 || header.height <= 0 || header.channels.empty())
-        fail(name, fmt::format("has no pixels ({} x {})", header.width, header.height), kDamagedHint);
+        fail(name, fmt::format("has no pixels ({} x {})", header.width, header.height), kDamagedPictureHint);
     const uint64_t pixels = uint64_t(header.width) * uint64_t(header.height);
     if (header.width > kMaxSide || header.height > kMaxSide || header.depth > 1 || pixels > kMaxTexels ||
         header.channels.size() > kMaxChannels)
@@ -54,7 +54,7 @@ void check_size(const PixelHeader& header, const std::string& name, uint64_t fil
         fail(name,
              fmt::format("claims {} x {} pixels in a file of {} bytes", header.width, header.height,
                          file_bytes),
-             kDamagedHint);
+             kDamagedPictureHint);
 }
 
 void check_extension(const std::string& name) {
@@ -72,7 +72,7 @@ void check_start(std::istream& stream, const std::string& name) {
     stream.read(start.data(), std::streamsize(start.size()));
     start.resize(size_t(stream.gcount()));
     if (std::ranges::none_of(kStarts, [&](std::string_view known) { return start.starts_with(known); }))
-        fail(name, "is no EXR, TIFF, PNG, JPEG or HDR file: it starts otherwise", kDamagedHint);
+        fail(name, "is no EXR, TIFF, PNG, JPEG or HDR file: it starts otherwise", kDamagedPictureHint);
     stream.clear();
     stream.seekg(0);
 }
@@ -82,11 +82,11 @@ void check_attributes(std::istream& stream, const std::string& name, uint64_t fi
         fail(name,
              fmt::format("is damaged: attribute '{}' is longer than the file, or not as long as its type",
                          *attribute),
-             kDamagedHint);
+             kDamagedPictureHint);
     stream.clear();
     stream.seekg(0);
     if (has_oversized_png_chunk(stream, file_bytes))
-        fail(name, "is damaged: it ends within a chunk", kDamagedHint);
+        fail(name, "is damaged: it ends within a chunk", kDamagedPictureHint);
     stream.clear();
     stream.seekg(0);
 }

@@ -17,7 +17,7 @@ namespace {
 constexpr uint32_t kMaxPrimitiveCount = 1u << 30;
 
 /// A subtree with fewer primitives is built by one thread.
-constexpr uint32_t kParallelCount = 8192;
+constexpr uint32_t kParallelLeaves = 8192;
 constexpr size_t kGrain = 16384;
 
 /// Entries [begin, end), not empty.
@@ -72,7 +72,7 @@ Cut cut_by_number(const Range& range) {
 
 template <class Left, class Right>
 void build_parts(uint32_t count, const Left& build_left, const Right& build_right) {
-    if (count >= kParallelCount) return parallel_invoke(build_left, build_right);
+    if (count >= kParallelLeaves) return parallel_invoke(build_left, build_right);
     build_left();
     build_right();
 }

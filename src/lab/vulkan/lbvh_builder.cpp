@@ -17,11 +17,11 @@ namespace {
 
 using Part = BuildReport::Part;
 
-constexpr uint32_t kGroupSize = 256;
+constexpr uint32_t kLbvhGroupSize = 256;
 
 /// Mesa's CPU device (22.3) runs a group as fibres of eight lanes and joins all of them at memory barriers.
 /// In a loop that some fibres leave early the rest is lost, unless there is only one.
-uint32_t choose_refit_group_size(const Device& device) { return device.is_cpu() ? 8 : kGroupSize; }
+uint32_t choose_refit_group_size(const Device& device) { return device.is_cpu() ? 8 : kLbvhGroupSize; }
 
 constexpr std::array<Stage, BuildReport::kPartCount> kStages = {
     Stage::tree_boxes, Stage::tree_codes, Stage::sort, Stage::tree_hierarchy, Stage::tree_refit};
@@ -32,22 +32,22 @@ constexpr const char* kTooManyHint = "build it on the host as another tree, or s
 /// Kernels that read codes, for one width of them.
 struct CodeKernels {
     CodeKernels(const Device& device, uint32_t code_bits)
-        : codes(lab::make_kernel(device, "lbvh_codes", {kGroupSize, code_bits})),
+        : codes(lab::make_kernel(device, "lbvh_codes", {kLbvhGroupSize, code_bits})),
           cuts(lab::make_kernel(device, "lbvh_cuts", {scalar::kBuildGroupSize, code_bits})),
-          hierarchy(lab::make_kernel(device, "lbvh_hierarchy", {kGroupSize, code_bits})),
-          split(lab::make_kernel(device, "heap_split", {kGroupSize, code_bits})) {}
+          hierarchy(lab::make_kernel(device, "lbvh_hierarchy", {kLbvhGroupSize, code_bits})),
+          split(lab::make_kernel(device, "heap_split", {kLbvhGroupSize, code_bits})) {}
 
     Kernel codes, cuts, hierarchy, split;
 };
 
 struct Kernels {
     explicit Kernels(const Device& device)
-        : boxes(lab::make_kernel(device, "lbvh_boxes", {kGroupSize})),
-          order(lab::make_kernel(device, "lbvh_order", {kGroupSize})),
+        : boxes(lab::make_kernel(device, "lbvh_boxes", {kLbvhGroupSize})),
+          order(lab::make_kernel(device, "lbvh_order", {kLbvhGroupSize})),
           sums(lab::make_kernel(device, "lbvh_sums", {scalar::kBuildGroupSize})),
           numbers(lab::make_kernel(device, "lbvh_numbers", {scalar::kBuildGroupSize})),
           refit(lab::make_kernel(device, "lbvh_refit", {choose_refit_group_size(device)})),
-          heap_refit(lab::make_kernel(device, "heap_refit", {kGroupSize})),
+          heap_refit(lab::make_kernel(device, "heap_refit", {kLbvhGroupSize})),
           sort(device),
           of_30_bits(device, 30),
           of_63_bits(device, 63) {}

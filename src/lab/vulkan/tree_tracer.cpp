@@ -12,7 +12,7 @@
 namespace relief::vulkan {
 namespace {
 
-constexpr uint32_t kGroupSize = 64;
+constexpr uint32_t kWalkGroupSize = 64;
 
 bool is_heap(const DeviceTree& tree) {
     return tree.form == TreeForm::dense_heap || tree.form == TreeForm::succinct_heap;
@@ -71,7 +71,8 @@ const Kernel& TreeTracer::find_kernel(const DeviceTree& tree, const TreeQuery& q
     const std::string name = fmt::format("{} {} {}", shader, is_counting, is_succinct);
     const auto found = kernels_.find(name);
     if (found != kernels_.end()) return found->second;
-    return kernels_.emplace(name, lab::make_kernel(device_, shader, {kGroupSize, is_counting, is_succinct}))
+    return kernels_
+        .emplace(name, lab::make_kernel(device_, shader, {kWalkGroupSize, is_counting, is_succinct}))
         .first->second;
 }
 

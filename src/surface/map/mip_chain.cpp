@@ -13,7 +13,7 @@ namespace relief {
 
 namespace {
 
-constexpr uint32_t kReach = 2; ///< texels beside an island that are filled
+constexpr uint32_t kFilledTexels = 2; ///< texels beside an island that are filled
 
 /// What a texel of a copy is the mean of, along one axis: up to three texels and their shares.
 struct Taps {
@@ -141,10 +141,11 @@ TexelRectangle MipChain::remake(const Texture& texture, size_t index, const Texe
     TexelRectangle where{columns.first, rows.first, columns.second, rows.second};
     if (!copy.is_outside.empty()) {
         // Texels beside islands depend on their neighbours; at the border also on those around it.
-        const bool is_inner = where.x0 >= kReach && where.y0 >= kReach && where.x1 + kReach < coarse.width &&
-                              where.y1 + kReach < coarse.height;
-        where = is_inner ? TexelRectangle{where.x0 - kReach, where.y0 - kReach, where.x1 + kReach,
-                                          where.y1 + kReach}
+        const bool is_inner = where.x0 >= kFilledTexels && where.y0 >= kFilledTexels &&
+                              where.x1 + kFilledTexels < coarse.width &&
+                              where.y1 + kFilledTexels < coarse.height;
+        where = is_inner ? TexelRectangle{where.x0 - kFilledTexels, where.y0 - kFilledTexels,
+                                          where.x1 + kFilledTexels, where.y1 + kFilledTexels}
                          : cover_all(coarse);
     }
     average(texture, index, where);
@@ -189,7 +190,7 @@ void MipChain::average(const Texture& texture, size_t index, const TexelRectangl
 void MipChain::fill_borders(Copy& copy, const TexelRectangle& where) const {
     if (copy.is_outside.empty()) return;
     Texture& texture = *copy.texture;
-    constexpr int64_t reach = kReach;
+    constexpr int64_t reach = kFilledTexels;
     const int64_t width = texture.width, height = texture.height;
     const auto fill_one = [&](int64_t x, int64_t y) {
         int64_t best = 2 * reach * reach + 1, from = -1;

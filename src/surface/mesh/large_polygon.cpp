@@ -10,13 +10,13 @@ namespace relief {
 
 namespace {
 
-using Point = Vec2<double>;
+using PlanePoint = Vec2<double>;
 
 /// Reflex corners by cells of a grid, about one corner a cell.
 class ReflexGrid {
   public:
-    explicit ReflexGrid(std::span<const Point> polygon) : lower_(polygon[0]), upper_(polygon[0]) {
-        for (const Point& p : polygon) {
+    explicit ReflexGrid(std::span<const PlanePoint> polygon) : lower_(polygon[0]), upper_(polygon[0]) {
+        for (const PlanePoint& p : polygon) {
             lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
             upper_ = {std::max(upper_.x, p.x), std::max(upper_.y, p.y)};
         }
@@ -24,12 +24,12 @@ class ReflexGrid {
         cells_.resize(size_t(side_) * size_t(side_));
     }
 
-    void add(const Point& p, uint32_t corner) { find_cell(p).push_back(corner), ++count_; }
-    void remove(const Point& p, uint32_t corner) { std::erase(find_cell(p), corner), --count_; }
+    void add(const PlanePoint& p, uint32_t corner) { find_cell(p).push_back(corner), ++count_; }
+    void remove(const PlanePoint& p, uint32_t corner) { std::erase(find_cell(p), corner), --count_; }
 
     /// True where `test` holds for a corner of the triangle's cells. Adds the cells looked at to `work`.
     template <class Test>
-    bool any(const std::array<Point, 3>& triangle, size_t& work, const Test& test) const {
+    bool any(const std::array<PlanePoint, 3>& triangle, size_t& work, const Test& test) const {
         if (count_ == 0) return false; // what is left is convex
         const auto [low, high] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
         const int last_row = locate(high, lower_.y, upper_.y);
@@ -44,12 +44,12 @@ class ReflexGrid {
 
   private:
     /// Columns that a triangle covers in a row, which is taken a little higher than it is.
-    std::pair<int, int> find_columns(const std::array<Point, 3>& triangle, int row) const {
+    std::pair<int, int> find_columns(const std::array<PlanePoint, 3>& triangle, int row) const {
         const double step = (upper_.y - lower_.y) / side_, slack = 1e-6 * step;
         const double low = lower_.y + row * step - slack, high = lower_.y + (row + 1) * step + slack;
         double left = std::numeric_limits<double>::infinity(), right = -left;
         for (size_t k = 0; k < 3; ++k) {
-            const Point &a = triangle[k], &b = triangle[(k + 1) % 3];
+            const PlanePoint &a = triangle[k], &b = triangle[(k + 1) % 3];
             if (std::max(a.y, b.y) < low || std::min(a.y, b.y) > high) continue;
             for (const double y : {low, high}) {
                 const double part =
@@ -69,12 +69,12 @@ class ReflexGrid {
         if (!(high > low)) return 0;
         return std::clamp(int((value - low) / (high - low) * side_), 0, side_ - 1);
     }
-    std::vector<uint32_t>& find_cell(const Point& p) {
+    std::vector<uint32_t>& find_cell(const PlanePoint& p) {
         return cells_[size_t(locate(p.y, lower_.y, upper_.y)) * size_t(side_) +
                       size_t(locate(p.x, lower_.x, upper_.x))];
     }
 
-    Point lower_, upper_;
+    PlanePoint lower_, upper_;
     int side_;
     size_t count_ = 0;
     std::vector<std::vector<uint32_t>> cells_;
@@ -83,7 +83,7 @@ class ReflexGrid {
 /// The corners that are left, as a ring.
 class EarClipper {
   public:
-    explicit EarClipper(std::span<const Point> polygon)
+    explicit EarClipper(std::span<const PlanePoint> polygon)
         : polygon_(polygon),
           grid_(polygon),
           previous_(polygon.size()),
@@ -131,10 +131,10 @@ class EarClipper {
 
     bool is_ear(uint32_t k) {
         if (is_reflex_[k]) return false;
-        const Point &a = polygon_[previous_[k]], &b = polygon_[k], &c = polygon_[next_[k]];
+        const PlanePoint &a = polygon_[previous_[k]], &b = polygon_[k], &c = polygon_[next_[k]];
         return !grid_.any({a, b, c}, cut_.work, [&](uint32_t other) {
             ++cut_.work;
-            const Point& p = polygon_[other];
+            const PlanePoint& p = polygon_[other];
             if (p == a || p == b || p == c) return false;
             return compute_turn(a, b, p) >= 0 && compute_turn(b, c, p) >= 0 && compute_turn(c, a, p) >= 0;
         });
@@ -154,7 +154,7 @@ class EarClipper {
         return after;
     }
 
-    std::span<const Point> polygon_;
+    std::span<const PlanePoint> polygon_;
     ReflexGrid grid_;
     std::vector<uint32_t> previous_, next_;
     std::vector<uint8_t> is_reflex_;
@@ -165,6 +165,6 @@ class EarClipper {
 
 } // namespace
 
-PolygonCut cut_large_polygon(std::span<const Point> polygon) { return EarClipper(polygon).run(); }
+PolygonCut cut_large_polygon(std::span<const PlanePoint> polygon) { return EarClipper(polygon).run(); }
 
 } // namespace relief

@@ -38,15 +38,15 @@ Interval operator*(const Interval& a, double b) {
 }
 
 /// A vertex in double precision.
-struct Corner {
+struct CornerFrame {
     std::array<double, 3> position;
     std::array<std::array<double, 3>, 3> frame; // [coordinate][t, b, n]
     std::array<double, 2> uv;
 };
 
-Corner make_corner(const VertexData& vertex) {
+CornerFrame make_corner(const VertexData& vertex) {
     const Vec3f &p = vertex.position, &t = vertex.frame.t, &b = vertex.frame.b, &n = vertex.frame.n;
-    Corner corner;
+    CornerFrame corner;
     corner.position = {p.x, p.y, p.z};
     for (int axis = 0; axis < 3; ++axis)
         corner.frame[axis] = {get_component(t, axis), get_component(b, axis), get_component(n, axis)};
@@ -54,9 +54,9 @@ Corner make_corner(const VertexData& vertex) {
     return corner;
 }
 
-Corner blend_line(const Corner& a, const Corner& b, double s) {
+CornerFrame blend_line(const CornerFrame& a, const CornerFrame& b, double s) {
     const auto blend = [s](double x, double y) { return x * (1 - s) + y * s; };
-    Corner corner;
+    CornerFrame corner;
     for (int axis = 0; axis < 3; ++axis) {
         corner.position[axis] = blend(a.position[axis], b.position[axis]);
         for (int k = 0; k < 3; ++k) corner.frame[axis][k] = blend(a.frame[axis][k], b.frame[axis][k]);
@@ -157,14 +157,14 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
 
 /// Extends `bounds` by the hull over `corners` of p + F D, or of `base` plus F D where that is not null.
 void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint, const CoordinateRanges* base,
-                    std::span<const Corner> corners) {
+                    std::span<const CornerFrame> corners) {
     Interval u, v;
-    for (const Corner& corner : corners) u.extend(corner.uv[0]), v.extend(corner.uv[1]);
+    for (const CornerFrame& corner : corners) u.extend(corner.uv[0]), v.extend(corner.uv[1]);
     const std::array<Interval, 3> d = bound_displacement(footprint, u, v);
     for (int axis = 0; axis < 3; ++axis) {
         Interval hull;
         double size = 0;
-        for (const Corner& corner : corners) {
+        for (const CornerFrame& corner : corners) {
             Interval moved{corner.position[axis], corner.position[axis]};
             if (base) moved = {(*base)[size_t(axis)][0], (*base)[size_t(axis)][1]};
             if (!footprint.map->is_tangent) moved = moved + d[axis];
@@ -183,7 +183,7 @@ void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint,
 /// The patch's own corners and its base.
 struct PatchBase {
     Footprint footprint;
-    std::array<Corner, 4> corners;
+    std::array<CornerFrame, 4> corners;
     const BicubicBase* bicubic; ///< or null
 
     PatchBase(const Surface& surface, const PatchSamples& samples)
@@ -203,11 +203,11 @@ struct PatchBase {
 void extend_by_part(std::array<Interval, 3>& bounds, const PatchBase& base,
                     const std::array<double, 4>& u0_v0_u1_v1) {
     const auto [u0, v0, u1, v1] = u0_v0_u1_v1;
-    const std::array<Corner, 4>& corners = base.corners;
+    const std::array<CornerFrame, 4>& corners = base.corners;
     const auto blend = [&](double u, double v) {
         return blend_line(blend_line(corners[0], corners[1], u), blend_line(corners[3], corners[2], u), v);
     };
-    const std::array<Corner, 4> part = {blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
+    const std::array<CornerFrame, 4> part = {blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
     if (!base.bicubic) return extend_by_hull(bounds, base.footprint, nullptr, part);
     const CoordinateRanges ranges = bound_part(*base.bicubic, u0_v0_u1_v1);
     extend_by_hull(bounds, base.footprint, &ranges, part);
@@ -218,10 +218,10 @@ void extend_by_line(std::array<Interval, 3>& bounds, const PatchSamples& samples
                     int k, const std::array<double, 2>& s0_s1) {
     Footprint footprint{&map, samples.first_of_line(k).tile, samples.first_of_line(k).mip};
     footprint.include(samples.first_of_line(k)), footprint.include(samples.second_of_line(k));
-    const Corner first = make_corner(samples.first_of_line(k)),
-                 second = make_corner(samples.second_of_line(k));
-    const std::array<Corner, 2> ends = {blend_line(first, second, s0_s1[0]),
-                                        blend_line(first, second, s0_s1[1])};
+    const CornerFrame first = make_corner(samples.first_of_line(k)),
+                      second = make_corner(samples.second_of_line(k));
+    const std::array<CornerFrame, 2> ends = {blend_line(first, second, s0_s1[0]),
+                                             blend_line(first, second, s0_s1[1])};
     if (!samples.base()) return extend_by_hull(bounds, footprint, nullptr, ends);
     const std::array<Vec3f, 2>& inner = samples.line_controls(k);
     for (const Vec3f& control : inner) footprint.include(control);

@@ -12,7 +12,7 @@ namespace relief::vulkan {
 namespace {
 
 /// Minimum buffer size: one texel of the widest format.
-constexpr uint64_t kLeastBytes = 16;
+constexpr uint64_t kGranularity = 16;
 
 struct Texel {
     vk::Format format;
@@ -28,7 +28,7 @@ Texel find_texel(TexelFormat format) {
 }
 
 uint64_t round_up(uint64_t bytes) {
-    return (std::max<uint64_t>(bytes, 1) + kLeastBytes - 1) / kLeastBytes * kLeastBytes;
+    return (std::max<uint64_t>(bytes, 1) + kGranularity - 1) / kGranularity * kGranularity;
 }
 
 /// Texel buffers may exceed the range of a storage binding.

@@ -133,4 +133,8 @@ Kernel& Kernel::operator=(Kernel&&) noexcept = default;
 uint32_t Kernel::group_size() const { return implementation_->group_size; }
 bool Kernel::is_drawn() const { return implementation_->is_drawn; }
 
+Kernel make_kernel(const Device& device, const char* shader) {
+    return Kernel(device, {.shader = shader, .constants = {kGroupSize}});
+}
+
 } // namespace relief::vulkan

@@ -46,6 +46,12 @@ class Kernel {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// Of kernels with one invocation a ray, path or pixel.
+inline constexpr uint32_t kGroupSize = 64;
+
+/// A kernel in groups of kGroupSize without further constants.
+Kernel make_kernel(const Device& device, const char* shader);
+
 /// The buffers bound to kernels, by binding number. A buffer bound as texels must have a format.
 class BindingTable {
   public:

@@ -142,8 +142,8 @@ VertexMaterial load_material(uint path_index, HitData hit) {
     return white;
 }
 
-/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 at the last vertex and on shadow catchers: no
-/// bounce ray follows.
+/// Sets the shadow ray and its contribution; false if zero. MIS weight 1 without bounces and on shadow catchers: no
+/// other ray finds lights.
 bool sample_light(uint path_index, PathData path, SurfacePointData point, HitData hit) {
     uint material_index = instances[hit.instance].material;
     VertexMaterial material = load_material(path_index, hit);
@@ -160,9 +160,9 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, HitDat
     bool is_lifted = lift > 0.0;
     if (is_open && !is_lifted && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
-    // No bounce ray finds light from below the triangle.
+    // No other ray finds light from below the triangle.
     bool is_caught = is_catcher(hit, push.depth);
-    bool is_alone = push.depth == push.last_depth || is_lifted || is_caught;
+    bool is_alone = push.last_depth == 0u || is_lifted || is_caught;
     float weight = is_alone ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
@@ -225,6 +225,8 @@ bool light_vertex(uint path_index, HitData hit) {
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);
+    // The last rays look for light alone.
+    if (push.depth > 0u && push.depth == push.last_depth) return false;
     return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit);
 }
 
