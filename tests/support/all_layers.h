@@ -19,6 +19,8 @@ inline std::vector<std::string> list_all_layers(const std::string& light_layer) 
             "samples",
             "variance",
             "cost",
+            "guide_albedo",
+            "guide_N",
             "diffuse_direct",
             "emission",
             "background",

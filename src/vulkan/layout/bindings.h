@@ -105,6 +105,8 @@ const uint kDefaultGroupConstant = 15u;
 const uint kEnvironmentGroupConstant = 16u;
 // Of kernels that know of glass: not 0 where a material of the scene lets light through.
 const uint kGlassConstant = 17u;
+// Of kernels that add light to paths: not 0 where the picture has guides of a denoiser.
+const uint kGuidesConstant = 18u;
 
 #include "formulas/end.h"
 #endif
