@@ -35,6 +35,8 @@ constexpr std::string_view kLayers[] = {"depth",
                                         "variance",
                                         "cost",
                                         "shadow",
+                                        "guide_albedo",
+                                        "guide_N",
                                         "diffuse_direct",
                                         "diffuse_indirect",
                                         "specular_direct",
@@ -255,8 +257,9 @@ void check_aim(const RenderOptions& o) {
 /// Parts of a picture differ at their edges and in their noise, so they are denoised when they are one.
 void check_denoise(const RenderOptions& o) {
     if (!o.tile && !o.samples) return;
-    throw Error(ErrorKind::usage, {"a part of a picture is not denoised", "--denoise",
-                                   "--layers albedo,N for the parts, then relief merge PARTS --denoise"});
+    throw Error(ErrorKind::usage,
+                {"a part of a picture is not denoised", "--denoise",
+                 "--layers guide_albedo,guide_N for the parts, then relief merge PARTS --denoise"});
 }
 
 void add_layers(std::span<const char* const> names, std::vector<std::string>& layers) {

@@ -13,8 +13,9 @@
 
 namespace relief {
 
-/// Layers that a picture needs to be denoised, as ImageSettings::layers names them.
-inline constexpr const char* kDenoiserGuides[] = {"albedo", "N"};
+/// Layers that a picture needs to be denoised, as ImageSettings::layers names them: albedo and normal of what
+/// is seen, also in mirrors and through clear glass.
+inline constexpr const char* kDenoiserGuides[] = {"guide_albedo", "guide_N"};
 
 struct DenoiserSettings {
     /// Tried in order: shared libraries, or folders that hold libOpenImageDenoise.so.2; then that name on the
@@ -34,8 +35,8 @@ class Denoiser {
 
     std::string version() const; ///< "2.5.1"
 
-    /// Replaces R, G and B of a linear picture, guided by "albedo.R/G/B" and "N.X/Y/Z", which are prefiltered
-    /// first; the colour that was there goes into the layers "noisy.R/G/B", other channels stay.
+    /// Replaces R, G and B of a linear picture, guided by "guide_albedo.R/G/B" and "guide_N.X/Y/Z", which are
+    /// prefiltered first; the colour that was there goes into the layers "noisy.R/G/B", other channels stay.
     /// `is_cancelled` may be empty; where it returns true the picture stays as it was, and false comes back.
     /// Throws Error{bad_input} for a picture without these channels, Error{out_of_memory}, and Error{failed}
     /// where the library fails.

@@ -9,6 +9,7 @@ static_assert(kLightKinds.size() == scalar::kKindCount);
 void PathLights::start(size_t path_count) {
     sums_.assign(path_count * count_, Vec3f{});
     if (has_kinds_) shares_.resize(path_count);
+    if (has_guides_) is_guided_.assign(path_count, 0);
 }
 
 void PathLights::add_seen(uint32_t path, uint32_t kind, uint32_t group, const Vec3f& light) {

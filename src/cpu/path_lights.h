@@ -1,5 +1,5 @@
-// What the paths of a tile bring to the layers that share out the light of a picture. Nothing is kept for a
-// picture without them.
+// What the paths of a tile bring to the layers that share out the light of a picture, and to the guides of a
+// denoiser. Nothing is kept for a picture without them.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,15 @@ class PathLights {
         : groups_(groups),
           clamp_indirect_(image.clamp_indirect),
           has_kinds_(layers.has_kinds),
+          has_guides_(layers.has_guides),
           first_group_(layers.kind_count()),
+          first_guide_(layers.first_guide()),
           count_(layers.count()) {}
 
     bool is_on() const { return count_ > 0; }
     bool has_kinds() const { return has_kinds_; }
-    bool has_groups() const { return count_ > first_group_; }
+    bool has_groups() const { return first_guide_ > first_group_; }
+    bool has_guides() const { return has_guides_; }
 
     /// A sample begins: all paths are dark.
     void start(size_t path_count);
@@ -58,6 +61,14 @@ class PathLights {
     /// To their groups, each light that the ray meets, which comes to the vertex after `depth` bounces.
     void add_met_lights(uint32_t path, const Meeting& meeting, int depth);
 
+    /// Guides are of the first vertex that has some: the path looks for it until they are set.
+    bool looks_for_guides(uint32_t path) const { return has_guides_ && !is_guided_[path]; }
+    void set_guides(uint32_t path, const Vec3f& albedo, const Vec3f& normal) {
+        is_guided_[path] = 1;
+        Vec3f* guides = &sums_[path * count_ + first_guide_];
+        guides[0] = albedo, guides[1] = normal;
+    }
+
     /// The path leaves its first vertex: how what comes along it is scattered.
     void set_shares(uint32_t path, const scalar::LightShares& shares) {
         if (has_kinds_) shares_[path] = shares;
@@ -83,9 +94,10 @@ class PathLights {
 
     const LightGroups& groups_;
     float clamp_indirect_;
-    bool has_kinds_;
-    size_t first_group_, count_;              ///< of the colours of a path
-    std::vector<Vec3f> sums_;                 ///< path by path: the kinds, the groups
+    bool has_kinds_, has_guides_;
+    size_t first_group_, first_guide_, count_; ///< of the colours of a path
+    std::vector<Vec3f> sums_;                  ///< path by path: the kinds, the groups, the guides
+    std::vector<uint8_t> is_guided_;
     std::vector<scalar::LightShares> shares_; ///< of set_shares()
     std::vector<ShadowRay> shadow_rays_;
 };

@@ -36,6 +36,7 @@ void TileTracer::shade_paths() {
     const Timer timer;
     shadow_rays_.clear(), shadows_.clear(), path_lights_.clear_shadow_rays();
     add_backgrounds();
+    if (path_lights_.has_guides()) note_sky();
     drop_misses();
     if (depth_ <= settings_.image.bounces)
         shade_vertices();
@@ -176,6 +177,8 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     for (size_t n = 0; n < count; ++n) {
         if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
         if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
+        if (path_lights_.looks_for_guides(active_[first + n]))
+            note_guides(first + n, lanes_[n / 16], n % 16, emissions_[n]);
     }
     for (size_t n = 0; n < lit_count; ++n)
         add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);

@@ -59,6 +59,7 @@ class TileTracer {
     void add_backgrounds();
     void add_background(uint32_t path, const Vec3f& light);
     void gather_lights();
+    void note_sky();
     void add_lights_before(size_t k, const Vec3f& share, const EnvironmentLookup& behind);
     bool is_catcher(size_t k) const;
     void cover_catchers();
@@ -77,6 +78,7 @@ class TileTracer {
     void pass_wall(size_t k, const Vec3f& left);
     uint32_t choose_body(size_t k, const VertexLanes& lanes, size_t lane, const Vec3f& direction) const;
     void record_first_hit(size_t k, const VertexLanes& lanes, size_t lane);
+    void note_guides(size_t k, const VertexLanes& lanes, size_t lane, const Vec3f& emission);
     Vec3f add_found_light(uint32_t path, const Vec3f& light);
     void add_emission(size_t k, const Vec3f& emission);
     void add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane, const LightSample& light);

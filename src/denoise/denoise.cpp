@@ -18,7 +18,8 @@ namespace {
 
 using Channels = std::array<const char*, 3>;
 constexpr Channels kColour = {"R", "G", "B"}, kNoisy = {"noisy.R", "noisy.G", "noisy.B"};
-constexpr Channels kAlbedo = {"albedo.R", "albedo.G", "albedo.B"}, kNormal = {"N.X", "N.Y", "N.Z"};
+constexpr Channels kAlbedo = {"guide_albedo.R", "guide_albedo.G", "guide_albedo.B"},
+                   kNormal = {"guide_N.X", "guide_N.Y", "guide_N.Z"};
 
 std::array<size_t, 3> find_channels(const Image& picture, const Channels& names) {
     std::array<size_t, 3> found;
@@ -27,7 +28,7 @@ std::array<size_t, 3> find_channels(const Image& picture, const Channels& names)
         if (!channel)
             throw Error(ErrorKind::bad_input,
                         {fmt::format("a picture without the channel {} cannot be denoised", names[k]), "",
-                         "render it with the layers albedo and N"});
+                         "render it with the layers guide_albedo and guide_N"});
         found[k] = *channel;
     }
     return found;

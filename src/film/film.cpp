@@ -12,6 +12,7 @@
 #include "image/cryptomatte.h"
 #include "image/shadow_alpha.h"
 #include "math/vec.h"
+#include "relief/denoise.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -31,6 +32,7 @@ enum class Source {
     variance,
     cost,
     shadow,
+    guide,
     light_kind,
     light_group,
     objects,
@@ -50,7 +52,7 @@ constexpr LayerKind make_light_kind(size_t kind) {
 }
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 23> kLayerKinds{{
+constexpr std::array<LayerKind, 25> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
@@ -63,6 +65,8 @@ constexpr std::array<LayerKind, 23> kLayerKinds{{
     {"variance", Source::variance, {"R", "G", "B"}, 3},
     {"cost", Source::cost, {"Y", "", ""}, 1},
     {"shadow", Source::shadow, {"C", "L", "U"}, 3},
+    {kDenoiserGuides[0], Source::guide, {"R", "G", "B"}, 3},
+    {kDenoiserGuides[1], Source::guide, {"X", "Y", "Z"}, 3},
     make_light_kind(0),
     make_light_kind(1),
     make_light_kind(2),
@@ -95,7 +99,16 @@ void check_layer(const std::string& name) {
     throw Error(ErrorKind::usage, {"there is no layer \"" + name + "\"", "", "layers are " + known});
 }
 
-bool is_light(Source source) { return source == Source::light_kind || source == Source::light_group; }
+/// Whether Film::add_lights brings it.
+bool is_of_paths(Source source) {
+    return source == Source::guide || source == Source::light_kind || source == Source::light_group;
+}
+
+/// Which colour of Film::add_lights a layer is, other than those of groups.
+size_t find_path_color(const LayerKind& kind, const LightLayers& layers) {
+    if (kind.source == Source::guide) return layers.first_guide() + (kind.name == kDenoiserGuides[1] ? 1 : 0);
+    return size_t(std::ranges::find(kLightKinds, std::string_view(kind.name)) - kLightKinds.begin());
+}
 
 bool is_matte(Source source) { return source == Source::objects || source == Source::materials; }
 
@@ -134,7 +147,8 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::depth:
     case Source::id:
     case Source::samples:
-    case Source::light_kind: // Film::add_lights
+    case Source::guide: // Film::add_lights
+    case Source::light_kind:
     case Source::light_group:
     case Source::objects:
     case Source::materials:
@@ -214,8 +228,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         if (!is_requested && !is_needed) continue;
         if (is_needed) squares_offset_ = stride_;
         if (kind.source == Source::shadow) shadow_offset_ = stride_;
-        const auto light = std::ranges::find(kLightKinds, std::string_view(kind.name));
-        add_layer({k, stride_, !is_requested, size_t(light - kLightKinds.begin())});
+        add_layer({k, stride_, !is_requested, find_path_color(kind, light_layers_)});
     }
     allocate_sums();
 }
@@ -303,7 +316,7 @@ void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
     DCHECK(lights.size() == light_layers_.count());
     double* sums = sums_.data() + pixel_index(x, y) * stride_;
     for (const Layer& layer : layers_)
-        if (is_light(kLayerKinds[layer.kind].source)) add_to(sums + layer.sum_offset, lights[layer.light]);
+        if (is_of_paths(kLayerKinds[layer.kind].source)) add_to(sums + layer.sum_offset, lights[layer.light]);
 }
 
 void Film::clear(const Window& window) {
@@ -381,6 +394,7 @@ void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& spa
     case Source::albedo:
     case Source::cost:
     case Source::shadow:
+    case Source::guide:
     case Source::light_kind:
     case Source::light_group:
         const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];

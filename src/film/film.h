@@ -89,17 +89,19 @@ class Film {
     void add_sample(int x, int y, const FilmSample& sample);
     /// As many samples at once as `sums` holds.
     void add_sums(int x, int y, const FilmSums& sums);
-    /// Of as many samples as were added, once for each: a colour for each kind and group of light_layers().
+    /// Of as many samples as were added, once for each: a colour for each kind and group of light_layers(),
+    /// and its guides.
     void add_lights(int x, int y, std::span<const Vec3f> lights);
     const LightLayers& light_layers() const { return light_layers_; }
 
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 
-    /// R G B A and the layers. Colour, alpha, light, N, Ng, P, albedo, uv and cost are means over the samples
-    /// (normals normalised again, P and uv over the samples that hit); depth and id are of the nearest first
-    /// hit; variance is that of the mean; mattes are shares of the samples. Pixels without samples are 0,
-    /// depth infinity. With the layer shadow, alpha holds what is missing of the light of shadow catchers.
+    /// R G B A and the layers. Colour, alpha, light, guides, N, Ng, P, albedo, uv and cost are means over the
+    /// samples (normals normalised again, P and uv over the samples that hit); depth and id are of the
+    /// nearest first hit; variance is that of the mean; mattes are shares of the samples. Pixels without
+    /// samples are 0, depth infinity. With the layer shadow, alpha holds what is missing of the light of
+    /// shadow catchers.
     Image resolve(const PictureSpace& space = {}) const;
 
     /// The least and the greatest number of samples that a pixel has.
@@ -135,7 +137,7 @@ class Film {
         size_t kind;       ///< index into the table of layers
         size_t sum_offset; ///< of its first sum within a pixel's stride
         bool is_hidden;    ///< kept for estimate_error() alone
-        size_t light = 0;  ///< of a layer of light: which colour of add_lights()
+        size_t light = 0;  ///< which colour of add_lights(), if it is one
     };
 
     void add_layer(const Layer& layer);

@@ -75,7 +75,7 @@ struct PreparedScene {
     Terminators terminators = Terminators::none;
     TexturedMaterials textured; ///< of the materials
     MaterialLayers layers;      ///< of the materials
-    MaterialGlass glass;   ///< of the materials
+    MaterialGlass glass;        ///< of the materials
     std::vector<Light> lights;
     LightLinks links; ///< of the lights
     std::optional<Environment> environment;

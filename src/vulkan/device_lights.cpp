@@ -81,7 +81,8 @@ std::vector<Vec2f> join_albedos(const MaterialLayers& layers) {
     return entries;
 }
 
-template <class EmitterItem> void append_words(const std::vector<EmitterItem>& items, std::vector<uint32_t>& words) {
+template <class EmitterItem>
+void append_words(const std::vector<EmitterItem>& items, std::vector<uint32_t>& words) {
     static_assert(sizeof(EmitterItem) % sizeof(uint32_t) == 0);
     const size_t first = words.size();
     words.resize(first + items.size() * sizeof(EmitterItem) / sizeof(uint32_t));

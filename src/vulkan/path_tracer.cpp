@@ -43,9 +43,10 @@ Kernel make_reading_kernel(const Tracer& tracer, const char* shader) {
 std::vector<uint32_t> add_light_layers(std::vector<uint32_t> constants, const LightLayers& layers,
                                        const LightGroups& groups) {
     if (layers.count() == 0) return constants;
-    constants.resize(std::max<size_t>(constants.size(), scalar::kEnvironmentGroupConstant + 1));
+    constants.resize(std::max<size_t>(constants.size(), scalar::kGuidesConstant + 1));
     constants[scalar::kLightKindsConstant] = uint32_t(layers.kind_count());
     constants[scalar::kLightGroupsConstant] = uint32_t(layers.groups.size());
+    constants[scalar::kGuidesConstant] = layers.has_guides ? 1 : 0;
     constants[scalar::kDefaultGroupConstant] = groups.of_default;
     constants[scalar::kEnvironmentGroupConstant] = groups.of_environment;
     return constants;

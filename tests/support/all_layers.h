@@ -20,6 +20,8 @@ inline std::vector<std::string> list_all_layers(const std::string& light_layer) 
             "variance",
             "cost",
             "shadow",
+            "guide_albedo",
+            "guide_N",
             "diffuse_direct",
             "emission",
             "background",

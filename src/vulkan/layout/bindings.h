@@ -111,6 +111,8 @@ const uint kTerminatorsConstant = 18u;
 const uint kShadowCatchersConstant = 19u;
 // Of kernels that know of materials: not 0 where inputs of one have textures (MaterialInputData).
 const uint kInputTexturesConstant = 20u;
+// Of kernels that add light to paths: not 0 where the picture has guides of a denoiser.
+const uint kGuidesConstant = 21u;
 
 #include "formulas/end.h"
 #endif

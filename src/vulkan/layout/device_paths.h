@@ -58,8 +58,9 @@ struct FilmSumsData {
 
 const uint kFilmSumsWords = 28u; ///< of FilmSumsData
 /// Of a path, in the film's buffer behind all sums of light: LightShares of the light that was drawn at its
-/// first vertex and of what comes there; the group of the light that was drawn last.
-const uint kPathLightWords = 9u;
+/// first vertex and of what comes there; the group of the light that was drawn last; whether its guides are
+/// found.
+const uint kPathLightWords = 10u;
 
 /// Emissive patch `index`: cumulative probability in units of 2^-24, as fine as random numbers.
 struct EmitterData {

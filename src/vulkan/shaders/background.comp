@@ -6,6 +6,7 @@
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
 #include "vulkan/shaders/met_lights.glsl"
+#include "formulas/guides.h"
 
 void see_background(uint path_index, vec3 light, uint group) {
     paths[path_index].radiance += light;
@@ -22,6 +23,19 @@ LightSeen look_behind(vec3 direction, float distance) {
     return behind;
 }
 
+/// What is behind all surfaces has its colour for an albedo; seen in a mirror it faces the path.
+void note_sky(uint path_index, vec3 direction, vec3 light) {
+    if (!looks_for_guides(push.capacity, path_index, push.depth)) return;
+    add_guides(push.capacity, path_index, find_guide_albedo(paths[path_index].throughput, light),
+               push.depth > 0u ? -direction : vec3(0.0));
+}
+
+/// That a camera ray sees.
+vec3 find_background(vec3 direction) {
+    if (push.has_background != 0u) return push.background;
+    return push.has_environment != 0u ? environment_radiance(push.environment, direction) : vec3(0.0);
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= push.count) return;
@@ -30,7 +44,9 @@ void main() {
     vec3 direction = rays[path_index].direction;
     float distance = is_hit(hit) ? hit.t : make_infinity();
     if (push.depth > 0u) {
-        meet_lights(path_index, paths[path_index].throughput, distance, look_behind(direction, distance));
+        LightSeen behind = look_behind(direction, distance);
+        if (!is_hit(hit)) note_sky(path_index, direction, behind.radiance);
+        meet_lights(path_index, paths[path_index].throughput, distance, behind);
         return;
     }
     // Less than 1 of rays that came through clear walls.
@@ -40,11 +56,13 @@ void main() {
     bool is_covered = is_met && is_hit(hit) && is_catcher(hit, push.depth);
     if (is_covered) hits[path_index].instance = kNone;
     if (is_hit(hit) && !is_covered) return;
+    vec3 seen = find_background(direction);
+    note_sky(path_index, direction, seen);
     // Lights cover the background of the picture, which is none of the scene.
     if (is_met) film[path_index].light_count += 1.0;
     if (is_met && push.has_background != 0u) return;
     if (push.has_background != 0u)
-        see_background(path_index, share * push.background, kDefaultGroup);
+        see_background(path_index, share * seen, kDefaultGroup);
     else if (push.has_environment != 0u)
-        see_background(path_index, share * environment_radiance(push.environment, direction), kEnvironmentGroup);
+        see_background(path_index, share * seen, kEnvironmentGroup);
 }

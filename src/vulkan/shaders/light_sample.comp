@@ -8,6 +8,7 @@
 #include "vulkan/shaders/light_sums.glsl"
 #include "vulkan/shaders/terminator.glsl"
 #include "vulkan/shaders/material_inputs.glsl"
+#include "formulas/guides.h"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -214,6 +215,28 @@ void share_emission(uint path_index, vec3 light, uint group) {
         add_scattered(push.capacity, path_index, light, push.depth - 1u);
 }
 
+GuideVertex make_guide_vertex(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+    GuideVertex vertex = {point.base_color, material.emission, point.roughness, point.metallic, false};
+    if (kHasGlass != 0u && material.has_glass != 0u) {
+        vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
+        GlassDraw drawn = draw_vertex_glass(point, material, -rays[path_index].direction, pick.y);
+        vertex.is_glass = drawn.is_glass;
+        vertex.metallic = drawn.metallic;
+    }
+    if (kHasLayers != 0u && material.has_layers != 0u && !vertex.is_glass)
+        vertex.roughness = roughen_base(point.roughness, material.layers);
+    return vertex;
+}
+
+void note_guides(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+    GuideVertex vertex = make_guide_vertex(path_index, path, point, material);
+    bool goes_on = push.depth + 1u < push.last_depth && is_mirror(vertex);
+    note_guided(push.capacity, path_index, !goes_on);
+    if (!goes_on)
+        add_guides(push.capacity, path_index, find_guide_albedo(path.throughput, find_guide_color(vertex)),
+                   point.bent_normal);
+}
+
 /// True if there is a shadow ray.
 bool light_vertex(uint path_index, HitData hit) {
     PathData path = paths[path_index];
@@ -225,6 +248,7 @@ bool light_vertex(uint path_index, HitData hit) {
     vec3 emission = find_emission(path, hit, point, material.emission);
     paths[path_index].radiance = path.radiance + emission;
     share_emission(path_index, emission, material.light_group);
+    if (looks_for_guides(push.capacity, path_index, push.depth)) note_guides(path_index, path, point, material);
     // The last rays look for light alone.
     if (push.depth > 0u && push.depth == push.last_depth) return false;
     return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit);

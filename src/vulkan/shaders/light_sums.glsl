@@ -1,6 +1,6 @@
-// Sums of the layers that share out the light of a picture (image/light_layers.h). They lie in the film's
-// buffer behind its other sums, path by path: a colour for each kind and each group that the picture has
-// layers of. What paths keep for them lies behind. Nothing is left of all this where it has none.
+// Sums of the layers that share out the light of a picture, and of guides (image/light_layers.h). They lie in
+// the film's buffer behind its other sums, path by path: a colour for each kind and each group that the
+// picture has layers of, then two guides. What paths keep for them lies behind. Nothing is left of all this where it has none.
 #ifndef RELIEF_LIGHT_SUMS_GLSL
 #define RELIEF_LIGHT_SUMS_GLSL
 
@@ -12,7 +12,11 @@ layout(constant_id = kLightKindsConstant) const uint kLightKinds = 0u;
 layout(constant_id = kLightGroupsConstant) const uint kLightGroups = 0u;
 layout(constant_id = kDefaultGroupConstant) const uint kDefaultGroup = 0xffffffffu;
 layout(constant_id = kEnvironmentGroupConstant) const uint kEnvironmentGroup = 0xffffffffu;
+layout(constant_id = kGuidesConstant) const uint kHasGuides = 0u;
 layout(scalar, set = 0, binding = kBindFilm) buffer LightSums { uint light_words[]; };
+
+/// Of a path.
+uint count_colors() { return kLightKinds + kLightGroups + (kHasGuides != 0u ? 2u : 0u); }
 
 vec3 load_light_words(uint first) {
     return uintBitsToFloat(uvec3(light_words[first], light_words[first + 1u], light_words[first + 2u]));
@@ -25,9 +29,9 @@ void store_light_words(uint first, vec3 v) {
     light_words[first + 2u] = bits.z;
 }
 
-/// `layer`: a kind, or behind all kinds a group.
+/// `layer`: a kind, behind all kinds a group, behind all groups a guide.
 void add_to_layer(uint capacity, uint path_index, uint layer, vec3 light) {
-    uint first = capacity * kFilmSumsWords + 3u * (path_index * (kLightKinds + kLightGroups) + layer);
+    uint first = capacity * kFilmSumsWords + 3u * (path_index * count_colors() + layer);
     store_light_words(first, load_light_words(first) + light);
 }
 
@@ -42,7 +46,7 @@ void add_to_group(uint capacity, uint path_index, uint group, vec3 light) {
 
 /// First word of what a path keeps.
 uint find_path_light(uint capacity, uint path_index) {
-    return capacity * (kFilmSumsWords + 3u * (kLightKinds + kLightGroups)) + path_index * kPathLightWords;
+    return capacity * (kFilmSumsWords + 3u * count_colors()) + path_index * kPathLightWords;
 }
 
 void store_shares(uint first, LightShares shares) {
@@ -65,6 +69,21 @@ void store_bounce_shares(uint capacity, uint path_index, LightShares shares) {
 
 void store_light_group(uint capacity, uint path_index, uint group) {
     if (kLightGroups != 0u) light_words[find_path_light(capacity, path_index) + 8u] = group;
+}
+
+/// Whether the vertex after `depth` bounces may be the one that the path's guides are of.
+bool looks_for_guides(uint capacity, uint path_index, uint depth) {
+    return kHasGuides != 0u && (depth == 0u || light_words[find_path_light(capacity, path_index) + 9u] == 0u);
+}
+
+/// Behind looks_for_guides() of each vertex.
+void note_guided(uint capacity, uint path_index, bool is_guided) {
+    light_words[find_path_light(capacity, path_index) + 9u] = is_guided ? 1u : 0u;
+}
+
+void add_guides(uint capacity, uint path_index, vec3 albedo, vec3 normal) {
+    add_to_layer(capacity, path_index, kLightKinds + kLightGroups, albedo);
+    add_to_layer(capacity, path_index, kLightKinds + kLightGroups + 1u, normal);
 }
 
 void add_split(uint capacity, uint path_index, vec3 light, LightShares shares, uint bounces) {
