@@ -153,8 +153,7 @@ Command add_merge(CLI::App& verb) {
     verb.add_flag("--allow-gaps", options->allows_gaps,
                   "join parts of a picture that lack pixels or samples of it, otherwise refused");
     verb.add_flag("--denoise", options->is_denoised,
-                  "denoise the joined picture, by Open Image Denoise 2: parts need the layers guide_albedo "
-                  "and guide_N");
+                  "by Open Image Denoise 2: parts need the layers guide_albedo, guide_N and direct");
     add_display_options(verb, options->display);
     return [options] { return run_merge(*options); };
 }

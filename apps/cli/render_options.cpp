@@ -37,6 +37,7 @@ constexpr std::string_view kLayers[] = {"depth",
                                         "shadow",
                                         "guide_albedo",
                                         "guide_N",
+                                        "direct",
                                         "diffuse_direct",
                                         "diffuse_indirect",
                                         "specular_direct",
@@ -259,7 +260,7 @@ void check_denoise(const RenderOptions& o) {
     if (!o.tile && !o.samples) return;
     throw Error(ErrorKind::usage,
                 {"a part of a picture is not denoised", "--denoise",
-                 "--layers guide_albedo,guide_N for the parts, then relief merge PARTS --denoise"});
+                 "--layers guide_albedo,guide_N,direct for the parts, then relief merge PARTS --denoise"});
 }
 
 void add_layers(std::span<const char* const> names, std::vector<std::string>& layers) {
@@ -323,7 +324,7 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
-    if (o.is_denoised) add_layers(kDenoiserGuides, o.settings.image.layers);
+    if (o.is_denoised) add_layers(kDenoiserLayers, o.settings.image.layers);
     refuse_link_loop(o.edits, ErrorKind::bad_input);
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
         throw Error(ErrorKind::usage,

@@ -13,9 +13,13 @@
 
 namespace relief {
 
-/// Layers that a picture needs to be denoised, as ImageSettings::layers names them: albedo and normal of what
-/// is seen, also in mirrors and through clear glass.
+/// Albedo and normal of what is seen, also in mirrors and through clear glass, as ImageSettings::layers names
+/// them.
 inline constexpr const char* kDenoiserGuides[] = {"guide_albedo", "guide_N"};
+/// Of the colour, what comes straight from lights to the first surface, or to the camera.
+inline constexpr const char* kDirectLayer = "direct";
+/// What a picture needs to be denoised.
+inline constexpr const char* kDenoiserLayers[] = {kDenoiserGuides[0], kDenoiserGuides[1], kDirectLayer};
 
 struct DenoiserSettings {
     /// Tried in order: shared libraries, or folders that hold libOpenImageDenoise.so.2; then that name on the
@@ -35,11 +39,11 @@ class Denoiser {
 
     std::string version() const; ///< "2.5.1"
 
-    /// Replaces R, G and B of a linear picture, guided by "guide_albedo.R/G/B" and "guide_N.X/Y/Z", which are
-    /// prefiltered first; the colour that was there goes into the layers "noisy.R/G/B", other channels stay.
-    /// `is_cancelled` may be empty; where it returns true the picture stays as it was, and false comes back.
-    /// Throws Error{bad_input} for a picture without these channels, Error{out_of_memory}, and Error{failed}
-    /// where the library fails.
+    /// Replaces R, G and B of a linear picture, its direct light ("direct.R/G/B") and the rest apart, guided
+    /// by "guide_albedo.R/G/B" and "guide_N.X/Y/Z", which are prefiltered first; the colour that was there
+    /// goes into the layers "noisy.R/G/B", other channels stay. `is_cancelled` may be empty; where it returns
+    /// true the picture stays as it was, and false comes back. Throws Error{bad_input} for a picture without
+    /// these channels, Error{out_of_memory}, and Error{failed} where the library fails.
     bool denoise(Image& picture, const std::function<bool()>& is_cancelled = {}) const;
 
   private:

@@ -89,12 +89,12 @@ struct ImageSettings {
     Window whole_window;
     int whole_samples = 0;
     /// Any of depth N N_camera Ng P albedo uv id samples variance cost; shadow, which pictures with a shadow
-    /// catcher always have, as their alpha is made of it; guide_albedo guide_N, albedo and normal for a
-    /// denoiser, of what is seen in mirrors and through clear glass (kDenoiserGuides of relief/denoise.h);
-    /// diffuse_direct diffuse_indirect specular_direct specular_indirect transmission_direct
-    /// transmission_indirect emission background, whose sum is the colour; light_NAME, the part of it that a
-    /// group of lights gives; CryptoObject CryptoMaterial, which are of Cryptomatte 1.2: six ranks of id and
-    /// coverage a pixel, their names in the picture's metadata.
+    /// catcher always have, as their alpha is made of it; guide_albedo guide_N, of what is seen in mirrors
+    /// and clear glass (relief/denoise.h); diffuse_direct diffuse_indirect specular_direct specular_indirect
+    /// transmission_direct transmission_indirect emission background, whose sum is the colour; direct, of
+    /// these all that are not indirect; light_NAME, the part of it that a group of lights gives; CryptoObject
+    /// CryptoMaterial, which are of Cryptomatte 1.2: six ranks of id and coverage a pixel, their names in the
+    /// picture's metadata.
     std::vector<std::string> layers;
 };
 

@@ -239,7 +239,6 @@ PointMaterial TileTracer::meet_material(size_t k, size_t n) {
 
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
-    const PreparedScene& scene = tracer_.scene();
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
         const PointMaterial m = meet_material(k, n);

@@ -1,10 +1,11 @@
-// Filters a picture three times, as the library's documentation advises for guides with noise of their own:
-// albedo, normals, then the colour with both as clean guides.
+// Filters a picture as the library's documentation advises for guides with noise of their own: albedo,
+// normals, then the colour with both as clean guides; direct and indirect light apart.
 #include "relief/denoise.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ namespace {
 using Channels = std::array<const char*, 3>;
 constexpr Channels kColour = {"R", "G", "B"}, kNoisy = {"noisy.R", "noisy.G", "noisy.B"};
 constexpr Channels kAlbedo = {"guide_albedo.R", "guide_albedo.G", "guide_albedo.B"},
+                   kDirect = {"direct.R", "direct.G", "direct.B"},
                    kNormal = {"guide_N.X", "guide_N.Y", "guide_N.Z"};
 
 std::array<size_t, 3> find_channels(const Image& picture, const Channels& names) {
@@ -28,7 +30,7 @@ std::array<size_t, 3> find_channels(const Image& picture, const Channels& names)
         if (!channel)
             throw Error(ErrorKind::bad_input,
                         {fmt::format("a picture without the channel {} cannot be denoised", names[k]), "",
-                         "render it with the layers guide_albedo and guide_N"});
+                         "render it with the layers guide_albedo, guide_N and direct"});
         found[k] = *channel;
     }
     return found;
@@ -42,6 +44,13 @@ std::vector<float> take_channels(const Image& picture, const Channels& names) {
     for (size_t p = 0; p < count; ++p)
         for (size_t k = 0; k < 3; ++k) taken[3 * p + k] = picture.pixels[p * width + channels[k]];
     return taken;
+}
+
+/// The rest of a sum, whose parts are not negative.
+std::vector<float> subtract(const std::vector<float>& sum, const std::vector<float>& part) {
+    std::vector<float> rest(sum.size());
+    std::ranges::transform(sum, part, rest.begin(), [](float a, float b) { return std::max(a - b, 0.0f); });
+    return rest;
 }
 
 void put_channels(const std::vector<float>& values, const std::array<size_t, 3>& channels, Image& picture) {
@@ -143,13 +152,22 @@ bool Denoiser::denoise(Image& picture, const std::function<bool()>& is_cancelled
     if (picture.find_channel(kNoisy[0]))
         throw Error(ErrorKind::bad_input, {"the picture is denoised already", "", ""});
     const std::array<size_t, 3> colour = find_channels(picture, kColour);
-    std::vector<float> noisy = take_channels(picture, kColour), clean(noisy.size());
+    const std::vector<float> noisy = take_channels(picture, kColour);
+    std::vector<float> direct = take_channels(picture, kDirect), indirect = subtract(noisy, direct);
     std::vector<float> albedo = take_channels(picture, kAlbedo), normal = take_channels(picture, kNormal);
+    const auto filter = [&](std::vector<float>& light) {
+        std::vector<float> clean(light.size());
+        const bool is_done = library_->filter({{"color", &light}, {"albedo", &albedo}, {"normal", &normal}},
+                                              clean, picture, is_cancelled);
+        light = std::move(clean);
+        return is_done;
+    };
     if (!library_->filter({{"albedo", &albedo}}, albedo, picture, is_cancelled) ||
-        !library_->filter({{"normal", &normal}}, normal, picture, is_cancelled) ||
-        !library_->filter({{"color", &noisy}, {"albedo", &albedo}, {"normal", &normal}}, clean, picture,
-                          is_cancelled))
+        !library_->filter({{"normal", &normal}}, normal, picture, is_cancelled) || !filter(direct) ||
+        !filter(indirect))
         return false;
+    std::vector<float> clean(direct.size());
+    for (size_t k = 0; k < clean.size(); ++k) clean[k] = direct[k] + indirect[k];
     append_channels(kNoisy, picture);
     put_channels(clean, colour, picture);
     put_channels(noisy, find_channels(picture, kNoisy), picture);

@@ -33,6 +33,7 @@ enum class Source {
     cost,
     shadow,
     guide,
+    direct,
     light_kind,
     light_group,
     objects,
@@ -52,7 +53,7 @@ constexpr LayerKind make_light_kind(size_t kind) {
 }
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 25> kLayerKinds{{
+constexpr std::array<LayerKind, 26> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
@@ -67,6 +68,7 @@ constexpr std::array<LayerKind, 25> kLayerKinds{{
     {"shadow", Source::shadow, {"C", "L", "U"}, 3},
     {kDenoiserGuides[0], Source::guide, {"R", "G", "B"}, 3},
     {kDenoiserGuides[1], Source::guide, {"X", "Y", "Z"}, 3},
+    {kDirectLayer, Source::direct, {"R", "G", "B"}, 3},
     make_light_kind(0),
     make_light_kind(1),
     make_light_kind(2),
@@ -101,10 +103,19 @@ void check_layer(const std::string& name) {
 
 /// Whether Film::add_lights brings it.
 bool is_of_paths(Source source) {
-    return source == Source::guide || source == Source::light_kind || source == Source::light_group;
+    return source == Source::guide || source == Source::direct || source == Source::light_kind ||
+           source == Source::light_group;
 }
 
-/// Which colour of Film::add_lights a layer is, other than those of groups.
+/// Light of all kinds that comes straight from lights to the first surface, or to the camera.
+Vec3f sum_direct(std::span<const Vec3f> lights) {
+    Vec3f sum{};
+    for (size_t kind = 0; kind < kLightKinds.size(); ++kind)
+        if (!std::string_view(kLightKinds[kind]).ends_with("_indirect")) sum += lights[kind];
+    return sum;
+}
+
+/// Which colour of Film::add_lights a layer is, other than those of groups and sums of kinds.
 size_t find_path_color(const LayerKind& kind, const LightLayers& layers) {
     if (kind.source == Source::guide) return layers.first_guide() + (kind.name == kDenoiserGuides[1] ? 1 : 0);
     return size_t(std::ranges::find(kLightKinds, std::string_view(kind.name)) - kLightKinds.begin());
@@ -148,6 +159,7 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::id:
     case Source::samples:
     case Source::guide: // Film::add_lights
+    case Source::direct:
     case Source::light_kind:
     case Source::light_group:
     case Source::objects:
@@ -315,8 +327,11 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
 void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
     DCHECK(lights.size() == light_layers_.count());
     double* sums = sums_.data() + pixel_index(x, y) * stride_;
-    for (const Layer& layer : layers_)
-        if (is_of_paths(kLayerKinds[layer.kind].source)) add_to(sums + layer.sum_offset, lights[layer.light]);
+    for (const Layer& layer : layers_) {
+        const Source source = kLayerKinds[layer.kind].source;
+        if (!is_of_paths(source)) continue;
+        add_to(sums + layer.sum_offset, source == Source::direct ? sum_direct(lights) : lights[layer.light]);
+    }
 }
 
 void Film::clear(const Window& window) {
@@ -395,6 +410,7 @@ void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& spa
     case Source::cost:
     case Source::shadow:
     case Source::guide:
+    case Source::direct:
     case Source::light_kind:
     case Source::light_group:
         const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];

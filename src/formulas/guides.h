@@ -6,8 +6,9 @@
 
 #include "formulas/begin.h"
 
-/// Surfaces that are rougher blur what is behind them: their own guides say more.
-const float kMirrorRoughness = 0.25f;
+/// Surfaces that are rougher blur what is behind them, and each sample sees another place: their own guides
+/// say more.
+const float kMirrorRoughness = 0.1f;
 /// Of others, less than this is metal: most of what they send on is diffuse.
 const float kMirrorMetallic = 0.75f;
 

@@ -19,6 +19,7 @@ LightLayers find_light_layers(std::span<const std::string> layers) {
     LightLayers result;
     for (const std::string& layer : layers) {
         if (std::ranges::find(kLightKinds, layer) != kLightKinds.end()) result.has_kinds = true;
+        if (layer == kDirectLayer) result.has_kinds = true; // it is their sum
         if (std::ranges::find(kDenoiserGuides, layer) != std::end(kDenoiserGuides)) result.has_guides = true;
         if (const std::string_view group = find_group_of_layer(layer); !group.empty())
             result.groups.emplace_back(group);

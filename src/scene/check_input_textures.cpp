@@ -18,7 +18,7 @@ namespace {
 constexpr int kLastUdim = 9999;
 constexpr float kFarthestUv = 1e6f;
 
-[[noreturn]] void fail(const std::string& where, const std::string& message, const std::string& hint = {}) {
+[[noreturn]] void refuse(const std::string& where, const std::string& message, const std::string& hint = {}) {
     throw Error(ErrorKind::bad_input, {message, where, hint});
 }
 
@@ -31,18 +31,18 @@ bool has_finite_texels(const Texture& texture) {
 
 void check_tiles(const std::string& where, const InputTexture& texture) {
     if (texture.tiles.empty() || (!texture.is_udim && texture.tiles.size() > 1))
-        fail(where, fmt::format("has {} tiles", texture.tiles.size()), "one, unless is_udim is set");
+        refuse(where, fmt::format("has {} tiles", texture.tiles.size()), "one, unless is_udim is set");
     std::set<int> seen;
     for (const MapTile& tile : texture.tiles) {
         if (texture.is_udim && (tile.udim < 1001 || tile.udim > kLastUdim))
-            fail(where, fmt::format("tile {} is not in [1001, {}]", tile.udim, kLastUdim));
-        if (!seen.insert(tile.udim).second) fail(where, fmt::format("tile {} is there twice", tile.udim));
-        if (!tile.texture) fail(where, fmt::format("tile {} has no texture", tile.udim));
+            refuse(where, fmt::format("tile {} is not in [1001, {}]", tile.udim, kLastUdim));
+        if (!seen.insert(tile.udim).second) refuse(where, fmt::format("tile {} is there twice", tile.udim));
+        if (!tile.texture) refuse(where, fmt::format("tile {} has no texture", tile.udim));
         if (!has_finite_texels(*tile.texture))
-            fail(where, "a value of the texture is no finite number", "repair the texture");
+            refuse(where, "a value of the texture is no finite number", "repair the texture");
         if (texture.input == MaterialInput::normal && tile.texture->channel_count < 3)
-            fail(where, fmt::format("has {} channels, and a normal has three", tile.texture->channel_count),
-                 "export it as RGB; a height map is a displacement");
+            refuse(where, fmt::format("has {} channels, and a normal has three", tile.texture->channel_count),
+                   "export it as RGB; a height map is a displacement");
     }
 }
 
@@ -50,25 +50,25 @@ void check_input_texture(const Material& material, const InputTexture& texture, 
     const MaterialInputKind& kind = get_input_kind(texture.input);
     if (uint32_t(texture.wrap) > uint32_t(WrapMode::black) || texture.filter == MapFilter::mip ||
         texture.filter > MapFilter::bspline)
-        fail(where, "its wrap or filter is none of those there are", "filters are none, cubic and bspline");
+        refuse(where, "its wrap or filter is none of those there are", "filters are none, cubic and bspline");
     for (const auto& [what, value] :
          {std::pair("uv_scale", texture.uv_scale), std::pair("uv_offset", texture.uv_offset)})
         for (const float number : {value.x, value.y})
             if (!(std::fabs(number) <= kFarthestUv))
-                fail(where,
-                     fmt::format("{} is {}, not in [{}, {}]", what, number, -kFarthestUv, kFarthestUv));
+                refuse(where,
+                       fmt::format("{} is {}, not in [{}, {}]", what, number, -kFarthestUv, kFarthestUv));
     check_tiles(where, texture);
     if (texture.input == MaterialInput::specular_weight && material.transmission_weight > 0)
-        fail(where, "a texture would give a body of glass an ior that changes over its surface",
-             "texture transmission_weight or specular_color, or make the number constant");
+        refuse(where, "a texture would give a body of glass an ior that changes over its surface",
+               "texture transmission_weight or specular_color, or make the number constant");
     if (texture.input == MaterialInput::transmission_color && material.transmission_depth > 0 &&
         !material.is_thin_walled)
-        fail(where,
-             "a texture lies on the surface, and with transmission_depth this is the color of the inside",
-             "leave transmission_depth out, so that each crossing of the surface takes the color");
+        refuse(where,
+               "a texture lies on the surface, and with transmission_depth this is the color of the inside",
+               "leave transmission_depth out, so that each crossing of the surface takes the color");
     visit_own_textures(material, [&](const char* name, const auto& own, MapFilter) {
         if (own && kind.own_texture && std::string_view(name) == kind.own_texture)
-            fail(where, fmt::format("has a texture twice: {} as well", name), "leave one of the two out");
+            refuse(where, fmt::format("has a texture twice: {} as well", name), "leave one of the two out");
     });
 }
 
@@ -79,22 +79,22 @@ void check_input_textures(const Material& material, const std::string& where) {
     std::set<MaterialInput> seen;
     for (const InputTexture& texture : material.textures)
         if (size_t(texture.input) >= kMaterialInputCount)
-            fail(where, fmt::format("a texture is for input {}, which there is not", int(texture.input)));
+            refuse(where, fmt::format("a texture is for input {}, which there is not", int(texture.input)));
     for (const InputTexture& texture : material.textures) {
         const std::string place = fmt::format("{}, {}", where, get_input_name(texture.input));
         if (!seen.insert(texture.input).second)
-            fail(place, "has a texture twice", "leave one of the two out");
+            refuse(place, "has a texture twice", "leave one of the two out");
         check_input_texture(material, texture, place);
         layered += get_input_kind(texture.input).is_layered ? 1 : 0;
     }
     if (!material.textures.empty() && layered > kMaxLayerTextures)
-        fail(where,
-             fmt::format(
-                 "{} of the numbers that the albedo of its layers depends on have textures, and at most "
-                 "{} may",
-                 layered, kMaxLayerTextures),
-             "make some of base_diffuse_roughness, specular_roughness, specular_weight, coat_weight, "
-             "coat_roughness, fuzz_weight and fuzz_roughness constant");
+        refuse(where,
+               fmt::format(
+                   "{} of the numbers that the albedo of its layers depends on have textures, and at most "
+                   "{} may",
+                   layered, kMaxLayerTextures),
+               "make some of base_diffuse_roughness, specular_roughness, specular_weight, coat_weight, "
+               "coat_roughness, fuzz_weight and fuzz_roughness constant");
 }
 
 } // namespace relief

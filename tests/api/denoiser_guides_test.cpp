@@ -72,7 +72,7 @@ TEST(DenoiserGuides, are_those_of_surfaces_that_blur) {
     const Image pane = render_guides(make_shown_wall(make_pane(0.5f), Wall::behind), 4);
     expect_near(find_mean_of(pane, "guide_albedo.R"), {1, 1, 1}, 1e-5f);
     expect_near(find_mean_of(pane, "guide_N.X"), {0, 0, 1}, 1e-5f);
-    Material coated = make_mirror(color, 0.1f);
+    Material coated = make_mirror(color, 0.05f);
     coated.coat_weight = 1, coated.coat_roughness = 0.6f;
     const Image blurred = render_guides(make_shown_wall(coated, Wall::behind), 4);
     expect_near(find_mean_of(blurred, "guide_albedo.R"), color, 1e-5f);
@@ -114,6 +114,21 @@ TEST(DenoiserGuides, leave_all_else_as_it_is_and_go_with_layers_of_light) {
     const Image one = render(test::make_lit_room(), settings).image;
     EXPECT_EQ(find_mean_of(one, "guide_N.X"), find_mean_of(with, "guide_N.X"));
     EXPECT_EQ(one.channels.size(), 7u);
+}
+
+TEST(DenoiserGuides, go_with_the_direct_light_of_a_picture) {
+    RenderSettings settings = test::make_room_settings(4);
+    const Image kinds = render(test::make_lit_room(), settings).image;
+    settings.image.layers = {kDirectLayer};
+    const Image image = render(test::make_lit_room(), settings).image;
+    EXPECT_EQ(image.channels.size(), 7u);
+    for (size_t p = 0; p < size_t(image.width * image.height); ++p) {
+        Vec3f sum{};
+        for (const char* layer :
+             {"diffuse_direct", "specular_direct", "transmission_direct", "emission", "background"})
+            sum += test::get_color(kinds, p, layer);
+        expect_near(test::get_color(image, p, kDirectLayer), sum, 1e-5f * (1 + sum.x + sum.y + sum.z));
+    }
 }
 
 TEST(DenoiserGuides, are_gone_on_with_and_joined) {

@@ -41,7 +41,7 @@ def main():
     assert clean < 0.5 * noisy, "as much as four times the samples take away"
     # Parts are joined, then denoised.
     for part in ("0:4", "4:8"):
-        run(*common, "--samples", part, "--layers", "guide_albedo,guide_N", "-o", folder / f"part{part[0]}.exr")
+        run(*common, "--samples", part, "--layers", "guide_albedo,guide_N,direct", "-o", folder / f"part{part[0]}.exr")
     parts = [folder / "part0.exr", folder / "part4.exr"]
     run("merge", *parts, "--denoise", "-o", folder / "merged.exr")
     merged = difference(folder / "merged.exr", folder / "clean.exr")

@@ -22,6 +22,7 @@ inline std::vector<std::string> list_all_layers(const std::string& light_layer) 
             "shadow",
             "guide_albedo",
             "guide_N",
+            "direct",
             "diffuse_direct",
             "emission",
             "background",

@@ -38,11 +38,11 @@ TEST(DeviceGuides, show_what_is_in_a_mirror_and_behind_a_pane) {
     expect_same_guides(test::make_shown_wall(test::make_mirror({0.5f, 0.9f, 0.7f}, 0), Wall::beside), 1e-4f);
     expect_same_guides(test::make_shown_wall(test::make_pane(0), Wall::behind), 1e-4f);
     expect_same_guides(test::make_shown_wall(test::make_pane(0.4f), Wall::behind), 1e-4f);
-    Material solid = test::make_pane(0.1f);
+    Material solid = test::make_pane(0.05f);
     solid.is_thin_walled = false, solid.transmission_weight = 0.7f, solid.metallic = 0.2f;
     expect_same_guides(test::make_shown_wall(solid, Wall::behind), 1e-4f);
-    Material coated = test::make_mirror({0.5f, 0.9f, 0.7f}, 0.1f);
-    coated.coat_weight = 1, coated.coat_roughness = 0.2f;
+    Material coated = test::make_mirror({0.5f, 0.9f, 0.7f}, 0.05f);
+    coated.coat_weight = 1, coated.coat_roughness = 0.05f;
     expect_same_guides(test::make_shown_wall(coated, Wall::beside), 1e-4f);
     Material bright = make_matte(0.3f);
     bright.emission = {2, 0.5f, 0};
