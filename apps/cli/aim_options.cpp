@@ -15,12 +15,12 @@ namespace relief::cli {
 
 namespace {
 
-const char* const kGroup = "Camera, light and display";
+const char* const kAimGroup = "Camera, light and display";
 constexpr float kLargest = 1e18f;
 
 template <class Parse>
 void add(CLI::App& verb, const std::string& name, const char* value, const char* help, Parse parse) {
-    verb.add_option_function<std::string>(name, parse, help)->type_name(value)->group(kGroup);
+    verb.add_option_function<std::string>(name, parse, help)->type_name(value)->group(kAimGroup);
 }
 
 Vec3f parse_point(const std::string& option, const std::string& text) {
@@ -92,7 +92,7 @@ void add_camera_options(CLI::App& verb, AimArguments& a) {
                  {"three-quarter", View::three_quarter}}};
             scene.view = parse_word("--view", text, kViews);
         });
-    verb.add_flag("--frame-all", scene.frame_all, "all objects from where the camera looks")->group(kGroup);
+    verb.add_flag("--frame-all", scene.frame_all, "all objects from where the camera looks")->group(kAimGroup);
     add(verb, "--turntable", "N", "N pictures of a turn of the camera: FILE.0001.png ...",
         [&a](const std::string& text) {
             a.turntable = int(parse_integer("--turntable", text, 1, 100000));
@@ -116,7 +116,7 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
         [&scene](const std::string& text) { scene.suns.push_back(parse_sun(text)); });
     verb.add_flag("--ground", a.ground,
                   "a plane under the lowest point; --ground=shadow: only the shadow on it, over --background")
-        ->group(kGroup)
+        ->group(kAimGroup)
         ->each([&scene](const std::string& text) { scene.ground = parse_ground(text); });
 }
 

@@ -246,7 +246,7 @@ void DeviceScene::add_tree_levels(const Surface& surface, const LevelField& leve
 }
 
 void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
-    for (const Instance& instance : scene.instances) {
+    for (const relief::Instance& instance : scene.instances) {
         const Surface& surface = scene.surfaces[instance.surface];
         scalar::InstanceData data{};
         data.object_from_origin = make_affine_data(instance.object_space.from_origin);

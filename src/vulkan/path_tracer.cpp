@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "engine/stop_request.h"
 #include "formulas/light_layers.h"
+#include "formulas/path.h"
 #include "formulas/pixel_order.h"
 #include "prepare/bounce_lod.h"
 #include "prepare/camera_frame.h"
