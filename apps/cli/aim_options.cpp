@@ -92,7 +92,8 @@ void add_camera_options(CLI::App& verb, AimArguments& a) {
                  {"three-quarter", View::three_quarter}}};
             scene.view = parse_word("--view", text, kViews);
         });
-    verb.add_flag("--frame-all", scene.frame_all, "all objects from where the camera looks")->group(kAimGroup);
+    verb.add_flag("--frame-all", scene.frame_all, "all objects from where the camera looks")
+        ->group(kAimGroup);
     add(verb, "--turntable", "N", "N pictures of a turn of the camera: FILE.0001.png ...",
         [&a](const std::string& text) {
             a.turntable = int(parse_integer("--turntable", text, 1, 100000));

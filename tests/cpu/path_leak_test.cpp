@@ -133,7 +133,6 @@ TEST_P(PathLeakTest, no_path_in_a_furnace_brings_much_more_than_its_light) {
         }
     EXPECT_LE(sum / (512.0 * 512), 1.01);
     EXPECT_LE(highest, 4.0f);
-    std::printf("%s %g %g\n", c.name, sum / (512.0 * 512), double(highest));
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, PathLeakTest, testing::ValuesIn(kCases),
