@@ -302,7 +302,7 @@ TEST_F(PathTracerTest, counts_rays_by_kind_and_depth) {
     const Statistics& statistics = picture.statistics;
     uint64_t camera = 0, bounce = 0, shadow = 0;
     for (const CastStatistics& cast : statistics.casts) {
-        EXPECT_LE(cast.depth, settings_.image.bounces);
+        EXPECT_LE(cast.depth, settings_.image.bounces + 1);
         (cast.is_shadow ? shadow : cast.depth == 0 ? camera : bounce) += cast.rays;
     }
     EXPECT_EQ(camera, uint64_t(27 * 21 * settings_.image.spp));
