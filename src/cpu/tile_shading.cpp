@@ -63,7 +63,7 @@ void TileTracer::add_last_emission() {
     if (lights_.has_emitters()) {
         points_.resize(hits_.size());
         tracer_.make_surface_points(hits_, points_, scratch_);
-        draw_random();
+        if (has_glass_) draw_random();
         for (size_t k = 0; k < active_.size(); ++k) {
             const Vec3f emission = meet_material(k, 0).emission;
             if (!(emission == Vec3f{})) add_emission(k, emission);
