@@ -48,22 +48,53 @@ def index_corners(faces: Faces, interpolation: str) -> np.ndarray:
     return faces.corners
 
 
-def compute_normals(positions: np.ndarray, faces: Faces) -> np.ndarray:
-    """A unit normal of each point: the mean of those of its faces, weighted by the angles of their corners. Points at one
-    place are one point."""
-    welded = np.unique(positions, axis=0, return_inverse=True)[1].reshape(-1)
+def weld(positions: np.ndarray) -> np.ndarray:
+    """Points at one place are one point, as Relief takes them: the number of each."""
+    places = positions.astype(np.float32)
+    order = np.lexsort(places.T)
+    is_new = np.concatenate([[False], (np.diff(places[order], axis=0) != 0).any(1)])
+    numbers = np.empty(len(places), np.int64)
+    numbers[order] = np.cumsum(is_new)
+    return numbers
+
+
+def compute_face_normals(positions: np.ndarray, faces: Faces) -> tuple:
+    """(unit normals of the faces, angles of their corners)."""
     starts, sizes = np.repeat(faces.starts(), faces.sizes), np.repeat(faces.sizes, faces.sizes)
     within = np.arange(len(faces.points)) - starts
     at = positions[faces.points]
     after = positions[faces.points[starts + (within + 1) % sizes]] - at
     before = positions[faces.points[starts + (within - 1) % sizes]] - at
     # Newell's normal: of a face that is not flat the mean.
-    cross = np.cross(at, at + after)
-    normal = np.add.reduceat(cross, faces.starts(), axis=0) if len(cross) else cross
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    normals = np.add.reduceat(np.cross(at, at + after), faces.starts(), axis=0)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     lengths = np.linalg.norm(after, axis=1) * np.linalg.norm(before, axis=1)
-    angles = np.arccos(np.clip((after * before).sum(1) / np.maximum(lengths, 1e-300), -1, 1))
+    return normals, np.arccos(np.clip((after * before).sum(1) / np.maximum(lengths, 1e-300), -1, 1))
+
+
+def compute_normals(positions: np.ndarray, faces: Faces) -> np.ndarray:
+    """A unit normal of each point: the mean of those of its faces, weighted by the angles of their corners. Points at one
+    place are one point."""
+    welded = weld(positions)
+    normals, angles = compute_face_normals(positions, faces)
     sums = np.zeros((welded.max(initial=-1) + 1, 3))
-    np.add.at(sums, welded[faces.points], np.repeat(normal, faces.sizes, axis=0) * angles[:, None])
+    np.add.at(sums, welded[faces.points], np.repeat(normals, faces.sizes, axis=0) * angles[:, None])
     sums /= np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
     return sums[welded]
+
+
+def compute_creased_normals(positions: np.ndarray, faces: Faces, degrees: float = 30) -> np.ndarray:
+    """The same at each corner, without the faces that turn away from its own by more than an angle."""
+    normals, angles = compute_face_normals(positions, faces)
+    own = np.repeat(normals, faces.sizes, axis=0)
+    order = np.argsort(faces.points, kind="stable")
+    counts = np.bincount(faces.points)
+    first = np.repeat(np.concatenate([[0], np.cumsum(counts)])[:-1], counts)
+    sums = np.zeros((len(order), 3))
+    for step in range(counts.max(initial=0)):  # the step-th corner at the same point
+        is_there = step < np.repeat(counts, counts)
+        mine = order[is_there]
+        other = order[(first + step)[is_there]]
+        is_near = (own[mine] * own[other]).sum(1) > np.cos(np.radians(degrees))
+        sums[mine] += own[other] * (angles[other] * is_near)[:, None]
+    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import re
 
+import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdRender, UsdSkel
 
 import relief
@@ -124,6 +125,16 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
     return context.scene
 
 
+def scale_lengths(context: Context) -> None:
+    """Those that no transform of an object scales."""
+    for material in context.scene.materials.values():
+        if "transmission_depth" in material:
+            material["transmission_depth"] *= context.unit
+    for displacement in context.scene.displacements.values():
+        if displacement.get("space") == "world" and context.unit != 1:
+            displacement["scale"] = (np.array(displacement.get("scale", 1.0)) * context.unit).tolist()
+
+
 def finish(context: Context, objects: ObjectReader, cameras: list, lights: list) -> None:
     scene = context.scene
     if not scene.objects:
@@ -132,6 +143,7 @@ def finish(context: Context, objects: ObjectReader, cameras: list, lights: list)
     settings = find_settings(context.stage)
     camera = choose_camera(context, settings, cameras)
     set_size(context, settings, camera)
+    scale_lengths(context)
     read_render_keys(context, settings)
     add_lights(context, lights, objects.paths_of_names)
     if not scene.lights and scene.environment is None and not objects.emits():

@@ -9,7 +9,8 @@ from pxr import Usd, UsdGeom
 import relief
 
 from .context import Context, to_array
-from .corners import Faces, compute_normals, index_corners, make_faces
+from .corners import Faces, compute_creased_normals, compute_normals, index_corners, make_faces
+from .refine import Cage, refine
 
 UV_NAMES = ("st", "uv", "UVMap", "st0", "map1", "Texture_uv")
 SCHEMES = {"catmullClark": "catmark", "bilinear": "bilinear"}
@@ -28,7 +29,7 @@ class RawMesh:
     creases: np.ndarray | None = None # (K, 3)
     subdivision: dict | None = None
     counts: tuple = (0, 0, 0)         # of points, faces and corners as the file has them
-    uvs: tuple | None = None          # of a shape without primvars: as normals
+    uvs: tuple | None = None          # in place of primvars: as normals
 
     def is_subdivided(self) -> bool:
         return self.subdivision is not None
@@ -176,14 +177,14 @@ def index_values(faces: Faces, found: tuple) -> np.ndarray:
 
 
 def make_mesh(context: Context, raw: RawMesh, part: Faces, wanted_uvs: str | None, with_normals: bool) -> relief.Mesh:
-    """One part of a mesh, or the whole. `with_normals`: where the file has none, those of the whole mesh."""
+    """One part of a mesh, or the whole. `with_normals`: one normal for each point of the whole mesh."""
     keys, subdivision = {}, raw.subdivision
-    uvs = find_uvs(context, raw.prim, wanted_uvs, raw.counts) or raw.uvs
+    uvs = raw.uvs or find_uvs(context, raw.prim, wanted_uvs, raw.counts)
     if uvs is not None:
         keys.update(uvs=uvs[0].astype(np.float32), uv_indices=index_values(part, uvs).astype(np.uint32))
         if subdivision is not None and uvs[1] == "varying":
             subdivision = dict(subdivision, uv="linear")
-    if raw.normals is not None:
+    if raw.normals is not None and not with_normals:
         keys.update(normals=raw.normals[0].astype(np.float32), normal_indices=index_values(part, raw.normals).astype(np.uint32))
     elif with_normals and subdivision is None:
         keys.update(normals=compute_normals(raw.positions, raw.faces).astype(np.float32),
@@ -209,3 +210,24 @@ def renumber_creases(creases: np.ndarray | None, used: np.ndarray) -> np.ndarray
     found = creases[is_in].copy()
     found[:, :2] = np.searchsorted(used, edges[is_in])
     return found if len(found) else None
+
+
+def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: str | None) -> RawMesh:
+    """A subdivided mesh as one of polygons on its limit surface."""
+    uvs = raw.uvs or find_uvs(context, raw.prim, wanted_uvs, raw.counts)
+    corner_uvs = np.zeros((len(raw.faces.points), 2)) if uvs is None else uvs[0][index_values(raw.faces, uvs)]
+    rows = np.zeros((0, 3)) if raw.creases is None else raw.creases
+    is_edge = rows[:, 0] != rows[:, 1]
+    point_sharpness = np.zeros(len(raw.positions))
+    point_sharpness[rows[~is_edge, 0].astype(np.int64)] = rows[~is_edge, 2]
+    cage = Cage(raw.positions, raw.faces.sizes, raw.faces.points, corner_uvs, raw.faces.numbers,
+                rows[is_edge, :2].astype(np.int64), rows[is_edge, 2], point_sharpness,
+                raw.subdivision["scheme"] == "catmark", raw.subdivision["boundary"] == "edge-and-corner")
+    fine = refine(cage, raw.subdivision["level"])
+    faces = Faces(fine.sizes, fine.corners, np.arange(len(fine.corners)), fine.faces)
+    refined = RawMesh(raw.prim, fine.points, faces, counts=(len(fine.points), len(fine.sizes), len(fine.corners)))
+    if cage.is_smooth:
+        refined.normals = (compute_creased_normals(fine.points, faces), "faceVarying", None)
+    if uvs is not None:
+        refined.uvs = (fine.uvs, "faceVarying", None)
+    return refined

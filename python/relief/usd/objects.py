@@ -12,8 +12,9 @@ from .context import Context
 from .corners import Faces
 from .displacements import find_noted
 from .instances import write_instances
+from .manifold import is_manifold
 from .materials import MaterialReader, ReadMaterial
-from .meshes import RawMesh, make_mesh, read_mesh
+from .meshes import RawMesh, make_mesh, read_mesh, refine_mesh
 from .shapes import can_read_shape, read_shape
 from .walk import Item
 
@@ -32,6 +33,8 @@ class ObjectReader:
     def __init__(self, context: Context) -> None:
         self.context, self.materials = context, MaterialReader(context)
         self.raw: dict = {}            # meshes by the prim that holds them
+        self.refined: dict = {}        # subdivided ones of several materials, likewise
+        self.manifold: dict = {}       # whether subdivided ones are, likewise
         self.meshes: dict = {}         # names in the scene of parts of them
         self.displacements: dict = {}  # names in the scene by their keys
         self.paths_of_names: dict = {} # of objects: for light linking
@@ -54,6 +57,8 @@ class ObjectReader:
         if raw is None:
             return
         parts = self.split(prim, raw)
+        if raw.is_subdivided() and (len(parts) > 1 or not self.is_manifold(key, raw)):
+            raw = self.refine(key, raw, parts)
         for part in parts:
             if len(part.faces.sizes):
                 self.add_part(item, raw, part, len(parts) > 1)
@@ -73,12 +78,26 @@ class ObjectReader:
         parts = [part for part in parts if len(part.faces.sizes)]
         if len(parts) == 1:
             return [Part(prim, raw.faces, parts[0].material)]
-        text = f"is split into {len(parts)} objects, one a material"
-        if raw.is_subdivided():
-            text += ": where they meet, each is smooth by itself"
         if parts:
-            self.context.report.add(prim, text)
+            self.context.report.add(prim, f"is split into {len(parts)} objects, one a material")
         return parts
+
+    def refine(self, key: str, raw: RawMesh, parts: list) -> RawMesh:
+        """Refined as a whole, so that parts meet; the parts' faces become those of the finer mesh."""
+        if key not in self.refined:
+            wanted = next((part.material.uvs for part in parts if part.material and part.material.uvs), None)
+            self.refined[key] = refine_mesh(self.context, raw, wanted)
+        fine = self.refined[key]
+        for part in parts:
+            part.faces = fine.faces.select(part.faces.numbers)
+        reason = "as its parts have to meet" if len(parts) > 1 else "as its faces are no closed sheet"
+        self.context.report.add(raw.prim, f"is subdivided into {len(fine.faces.sizes)} flat faces, {reason}")
+        return fine
+
+    def is_manifold(self, key: str, raw: RawMesh) -> bool:
+        if key not in self.manifold:
+            self.manifold[key] = is_manifold(raw.positions, raw.faces)
+        return self.manifold[key]
 
     def add_part(self, item: Item, raw: RawMesh, part: Part, is_split: bool) -> None:
         keys = {}
@@ -87,7 +106,7 @@ class ObjectReader:
         if displaced is not None:
             displaced = dict(displaced)
             wanted = displaced.pop("uvs", None) or wanted
-            if is_split and not raw.is_subdivided():
+            if is_split:
                 self.keep_closed(part, displaced)
         mesh_name = self.find_mesh(raw, part, wanted, is_split and displaced is not None)
         has_uvs = self.has_uvs[mesh_name]
@@ -159,6 +178,10 @@ class ObjectReader:
         matrices = item.matrices.reshape(-1, 4, 4)
         if item.instancer is not None:
             base = f"{item.instancer.GetPath()}{part.prim.GetPath()}"
+        is_flat = ~(np.abs(np.linalg.det(matrices[:, :3, :3])) > 0)
+        if is_flat.any() or not np.isfinite(matrices).all():
+            self.context.report.add(item.instancer or item.prim, "stands in places without extent, which are left out")
+            matrices = matrices[~is_flat & np.isfinite(matrices).all((1, 2))]
         if len(matrices) >= MANY:
             points = write_instances(self.context, matrices)
             if points is not None:
