@@ -54,6 +54,7 @@ class Context:
             self.upright[1:3, 1:3] = [[0, 1], [-1, 0]]
         self.root = np.diag([self.unit, self.unit, self.unit, 1]) @ self.upright
         self.temporary: str | None = None  # a folder that lasts as long as the scene
+        self.documents: list = []  # layers of MaterialX files
         self.baked: set = set()  # paths of the roots of skinned meshes that are posed
 
     def get_folder(self) -> str:

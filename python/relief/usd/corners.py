@@ -89,12 +89,12 @@ def compute_creased_normals(positions: np.ndarray, faces: Faces, degrees: float 
     own = np.repeat(normals, faces.sizes, axis=0)
     order = np.argsort(faces.points, kind="stable")
     counts = np.bincount(faces.points)
-    first = np.repeat(np.concatenate([[0], np.cumsum(counts)])[:-1], counts)
-    sums = np.zeros((len(order), 3))
-    for step in range(counts.max(initial=0)):  # the step-th corner at the same point
-        is_there = step < np.repeat(counts, counts)
-        mine = order[is_there]
-        other = order[(first + step)[is_there]]
+    first, counts = np.repeat(np.cumsum(counts) - counts, counts), np.repeat(counts, counts)
+    sums, left, step = np.zeros((len(order), 3)), np.arange(len(order)), 0
+    while len(left):  # the step-th corner at the same point
+        mine, other = order[left], order[first[left] + step]
         is_near = (own[mine] * own[other]).sum(1) > np.cos(np.radians(degrees))
         sums[mine] += own[other] * (angles[other] * is_near)[:, None]
+        step += 1
+        left = left[counts[left] > step]
     return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)

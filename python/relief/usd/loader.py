@@ -5,14 +5,16 @@ import os
 import re
 
 import numpy as np
-from pxr import Gf, Tf, Usd, UsdGeom, UsdRender, UsdSkel
+from pxr import Gf, Tf, Usd, UsdGeom, UsdRender, UsdSkel, UsdUtils
 
 import relief
 
 from .cameras import choose_camera
 from .context import Context, Options, make_error
 from .lights import add_lights
+from .mtlx_files import add_files
 from .objects import ObjectReader
+from .pictures import read_other_pictures
 from .walk import walk
 
 __all__ = ["Options", "load_scene"]
@@ -25,11 +27,14 @@ NOT_SHAPES = ("Xform", "Scope", "Material", "Shader", "NodeGraph", "GeomSubset",
 def open_stage(path: str) -> Usd.Stage:
     if not os.path.exists(path):
         raise make_error("no such file", path, "is the path relative to another folder?")
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # kept back: what is missing is in the report
     try:
         stage = Usd.Stage.Open(path, Usd.Stage.LoadAll)
     except Tf.ErrorException as error:
         raise make_error(f"is not a USD file: {str(error).strip().splitlines()[-1]}", path,
                          "usd, usda, usdc and usdz are read") from None
+    finally:
+        warnings.TakeUncoalescedDiagnostics()
     if stage is None:
         raise make_error("is not a USD file", path, "usd, usda, usdc and usdz are read")
     return stage
@@ -39,16 +44,18 @@ def describe(error) -> str:
     """What could not be opened or found, in one line."""
     text = str(error).strip().splitlines()[0]
     found = re.search(r"Could not open asset @(?:[^@]*/)?([^@]+)@", text)
-    if not found:
-        return text
-    note = ": usd-core does not read MaterialX files" if found.group(1).endswith(".mtlx") else ""
-    return f"{found.group(1)} cannot be opened{note}"
+    return f"{found.group(1)} cannot be opened" if found else text
 
 
-def note_composition(context: Context) -> None:
-    for error in context.stage.GetCompositionErrors():
-        site = getattr(error, "rootSite", None)
-        context.report.add(str(site.path) if site else "/", describe(error))
+def complete(context: Context) -> None:
+    """MaterialX files are read here; what else is missing goes into the report."""
+    errors = [(error.rootSite.path, describe(error)) for error in context.stage.GetCompositionErrors()]
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()
+    read = add_files(context, [path for path, text in errors if ".mtlx cannot" in text])
+    warnings.TakeUncoalescedDiagnostics()
+    for path, text in errors:
+        if text.removesuffix(" cannot be opened") not in read:
+            context.report.add(str(path), text)
 
 
 def bake_skinning(context: Context) -> None:
@@ -103,7 +110,7 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
     stage = open_stage(path)
     check_options(options, path)
     context = Context(stage, path, options)
-    note_composition(context)
+    complete(context)
     bake_skinning(context)
     objects = ObjectReader(context)
     cameras, lights = [], []
@@ -135,6 +142,16 @@ def scale_lengths(context: Context) -> None:
             displacement["scale"] = (np.array(displacement.get("scale", 1.0)) * context.unit).tolist()
 
 
+def frame_all(scene: relief.Scene) -> dict:
+    """A camera that shows everything; without the pictures of the scene, which need not be read for it."""
+    bare = relief.Scene()
+    bare.meshes = scene.meshes
+    bare.objects = [{key: value for key, value in entry.items() if key in ("mesh", "transform", "instances")}
+                    for entry in scene.objects]
+    bare.aim(frame_all=True, size=(scene.render.get("width", 1280), scene.render.get("height", 720)))
+    return bare.camera
+
+
 def finish(context: Context, objects: ObjectReader, cameras: list, lights: list) -> None:
     scene = context.scene
     if not scene.objects:
@@ -151,4 +168,5 @@ def finish(context: Context, objects: ObjectReader, cameras: list, lights: list)
         context.report.add("/", "has no light: a white sky is used")
     if camera is None:
         context.report.add("/", "has no camera: one that shows everything is used")
-        scene.aim(frame_all=True)
+        scene.camera = frame_all(scene)
+    read_other_pictures(context)

@@ -16,6 +16,7 @@ UV_NAMES = ("st", "uv", "UVMap", "st0", "map1", "Texture_uv")
 SCHEMES = {"catmullClark": "catmark", "bilinear": "bilinear"}
 BOUNDARIES = {"edgeOnly": "edge-only", "edgeAndCorner": "edge-and-corner"}
 MAX_SHARPNESS = 10.0
+MAX_FINE_FACES = 250_000
 LEVELS = ((4096, 3), (65536, 2))  # subdivision levels of meshes up to so many faces; 1 above
 
 
@@ -153,22 +154,26 @@ def check_values(context: Context, prim: Usd.Prim, name: str, found: tuple, coun
     return found
 
 
-def find_uvs(context: Context, prim: Usd.Prim, wanted: str | None, counts: tuple):
-    """(name, values of the primvar) of the uvs: the wanted ones, else of a usual name, else any."""
-    api = UsdGeom.PrimvarsAPI(prim)
-    primvars = {p.GetPrimvarName(): p for p in api.FindPrimvarsWithInheritance() if p.HasValue()}
-    flat = [name for name, p in primvars.items() if str(p.GetTypeName()) in ("texCoord2f[]", "float2[]", "texCoord2d[]",
-                                                                              "texCoord2h[]", "double2[]", "half2[]")]
-    names = [name for name in (wanted, *UV_NAMES) if name in flat] or flat
-    if wanted is not None and wanted not in flat and flat:
+def choose_uvs(context: Context, prim: Usd.Prim, wanted: str | None) -> str | None:
+    """The name of the primvar of uvs: the wanted ones, else of a usual name, else any."""
+    kinds = ("texCoord2f[]", "float2[]", "texCoord2d[]", "texCoord2h[]", "double2[]", "half2[]")
+    found = [p.GetPrimvarName() for p in UsdGeom.PrimvarsAPI(prim).FindPrimvarsWithInheritance()
+             if p.HasValue() and str(p.GetTypeName()) in kinds]
+    names = [name for name in (wanted, *UV_NAMES) if name in found] or found
+    if wanted is not None and wanted not in found and found:
         context.report.add(prim, f"has no uvs {wanted}: {names[0]} is used")
-    if not names:
+    return names[0] if names else None
+
+
+def read_uvs(context: Context, prim: Usd.Prim, name: str | None, counts: tuple):
+    """(values, interpolation, indices or None); None without a name, or where they do not fit."""
+    if name is None:
         return None
-    primvar = primvars[names[0]]
+    primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
     indices = primvar.GetIndices(context.time) if primvar.IsIndexed() else None
     indices = to_array(indices, dtype=np.int64) if indices is not None and len(indices) else None
     values = to_array(primvar.Get(context.time), 2)
-    return check_values(context, prim, f"uvs {names[0]}", (values, primvar.GetInterpolation(), indices), counts)
+    return check_values(context, prim, f"uvs {name}", (values, primvar.GetInterpolation(), indices), counts)
 
 
 def index_values(faces: Faces, found: tuple) -> np.ndarray:
@@ -176,10 +181,10 @@ def index_values(faces: Faces, found: tuple) -> np.ndarray:
     return chosen if found[2] is None else found[2][chosen]
 
 
-def make_mesh(context: Context, raw: RawMesh, part: Faces, wanted_uvs: str | None, with_normals: bool) -> relief.Mesh:
+def make_mesh(context: Context, raw: RawMesh, part: Faces, uv_name: str | None, with_normals: bool) -> relief.Mesh:
     """One part of a mesh, or the whole. `with_normals`: one normal for each point of the whole mesh."""
     keys, subdivision = {}, raw.subdivision
-    uvs = raw.uvs or find_uvs(context, raw.prim, wanted_uvs, raw.counts)
+    uvs = raw.uvs or read_uvs(context, raw.prim, uv_name, raw.counts)
     if uvs is not None:
         keys.update(uvs=uvs[0].astype(np.float32), uv_indices=index_values(part, uvs).astype(np.uint32))
         if subdivision is not None and uvs[1] == "varying":
@@ -214,7 +219,7 @@ def renumber_creases(creases: np.ndarray | None, used: np.ndarray) -> np.ndarray
 
 def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: str | None) -> RawMesh:
     """A subdivided mesh as one of polygons on its limit surface."""
-    uvs = raw.uvs or find_uvs(context, raw.prim, wanted_uvs, raw.counts)
+    uvs = raw.uvs or read_uvs(context, raw.prim, choose_uvs(context, raw.prim, wanted_uvs), raw.counts)
     corner_uvs = np.zeros((len(raw.faces.points), 2)) if uvs is None else uvs[0][index_values(raw.faces, uvs)]
     rows = np.zeros((0, 3)) if raw.creases is None else raw.creases
     is_edge = rows[:, 0] != rows[:, 1]
@@ -223,7 +228,11 @@ def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: str | None) -> RawMe
     cage = Cage(raw.positions, raw.faces.sizes, raw.faces.points, corner_uvs, raw.faces.numbers,
                 rows[is_edge, :2].astype(np.int64), rows[is_edge, 2], point_sharpness,
                 raw.subdivision["scheme"] == "catmark", raw.subdivision["boundary"] == "edge-and-corner")
-    fine = refine(cage, raw.subdivision["level"])
+    level = raw.subdivision["level"]
+    if context.options.subdivision_level is None:
+        while level > 1 and len(raw.faces.sizes) * 4 ** level > MAX_FINE_FACES:
+            level -= 1
+    fine = refine(cage, level)
     faces = Faces(fine.sizes, fine.corners, np.arange(len(fine.corners)), fine.faces)
     refined = RawMesh(raw.prim, fine.points, faces, counts=(len(fine.points), len(fine.sizes), len(fine.corners)))
     if cage.is_smooth:

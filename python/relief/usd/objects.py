@@ -14,7 +14,7 @@ from .displacements import find_noted
 from .instances import write_instances
 from .manifold import is_manifold
 from .materials import MaterialReader, ReadMaterial
-from .meshes import RawMesh, make_mesh, read_mesh, refine_mesh
+from .meshes import RawMesh, choose_uvs, make_mesh, read_mesh, refine_mesh
 from .shapes import can_read_shape, read_shape
 from .walk import Item
 
@@ -157,9 +157,10 @@ class ObjectReader:
 
     def find_mesh(self, raw: RawMesh, part: Part, wanted: str | None, with_normals: bool) -> str:
         """The name of a part's mesh in the scene; one mesh for all of its instances."""
-        key = (find_key(raw.prim), wanted, with_normals, part.faces.numbers.tobytes())
+        uvs = None if raw.uvs else choose_uvs(self.context, raw.prim, wanted)
+        key = (find_key(raw.prim), uvs, with_normals, part.faces.numbers.tobytes())
         if key not in self.meshes:
-            mesh = make_mesh(self.context, raw, part.faces, wanted, with_normals)
+            mesh = make_mesh(self.context, raw, part.faces, uvs, with_normals)
             noted = raw.prim.GetAttribute("relief:mesh_name")
             base = (noted.Get() if noted and noted.Get() else None) or part.prim.GetName()
             name, number = base, 1
