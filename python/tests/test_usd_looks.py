@@ -1,6 +1,7 @@
 """relief.usd: cameras, lights and materials."""
 import math
 import os
+import pathlib
 import unittest
 import zipfile
 
@@ -35,6 +36,16 @@ class Cameras(UsdTest):
         self.assertAlmostEqual(found["fov_degrees"], math.degrees(2 * math.atan(12 / 50)), 5)
         self.assertAlmostEqual(found["aperture_radius"], 5 / 2 / 2)  # 50 tenths of a unit, a half of which is open
         self.assertEqual((found["focus_distance"], scene.render["width"], scene.render["height"]), (10, 1280, 853))
+
+    def test_aperture_offsets_are_lens_shifts(self):
+        stage = stages.create(self.path)
+        stages.add_square(stage, "/m")
+        camera = UsdGeom.Camera.Define(stage, "/camera")
+        camera.CreateVerticalApertureAttr(24)
+        self.assertNotIn("shift", self.load(stage).camera)
+        camera.CreateHorizontalApertureOffsetAttr(6)
+        camera.CreateVerticalApertureOffsetAttr(-12)
+        self.assertEqual(self.load(stage).camera["shift"], [0.25, -0.5])
 
     def test_the_camera_is_that_of_the_settings_or_that_asked_for(self):
         stage = stages.create(self.path)
@@ -260,12 +271,58 @@ class Materials(UsdTest):
         self.assertTrue(self.reported("/look", "subsurface_weight is not taken over"))
 
     def test_the_standard_surface_by_its_other_names(self):
-        look = self.load_look("ND_standard_surface_surfaceshader", "mtlx", base=0.5, metalness=0.25, specular=0.75, coat=1.0,
+        look = self.load_look("ND_standard_surface_surfaceshader", "mtlx", base=0.5, specular=0.75, coat=1.0,
                               sheen=0.125, thin_walled=True, specular_IOR=1.25, coat_IOR=2.0)
-        self.assertEqual({k: look[k] for k in ("base_weight", "base_metalness", "specular_weight", "coat_weight", "fuzz_weight",
+        self.assertEqual({k: look[k] for k in ("base_weight", "specular_weight", "coat_weight", "fuzz_weight",
                                                "geometry_thin_walled", "specular_ior", "coat_ior", "specular_roughness")},
-                         {"base_weight": 0.5, "base_metalness": 0.25, "specular_weight": 0.75, "coat_weight": 1, "fuzz_weight": 0.125,
+                         {"base_weight": 0.5, "specular_weight": 0.75, "coat_weight": 1, "fuzz_weight": 0.125,
                           "geometry_thin_walled": True, "specular_ior": 1.25, "coat_ior": 2, "specular_roughness": 0.2})
+
+    def test_specular_of_a_standard_metal_is_not_its_weight(self):
+        look = self.load_look("ND_standard_surface_surfaceshader", "mtlx", metalness=1.0, specular=0.0)
+        self.assertEqual((look["base_metalness"], look.get("specular_weight", 1)), (1, 1))
+
+    def test_materialx_files_are_read(self):
+        stages.write_png(os.path.join(self.folder.name, "looks/tex/a.png"), stages.make_picture())
+        pathlib.Path(self.folder.name, "looks/gold.mtlx").write_text("""<?xml version="1.0"?>
+            <materialx version="1.38" colorspace="lin_rec709" fileprefix="tex/">
+              <nodegraph name="graph">
+                <input name="tint" type="color3" value="0.5, 0.25, 1"/>
+                <image name="image" type="color3"><input name="file" type="filename" value="a.png" colorspace="srgb_texture"/></image>
+                <multiply name="product" type="color3">
+                  <input name="in1" type="color3" nodename="image"/><input name="in2" type="color3" interfacename="tint"/>
+                </multiply>
+                <output name="out" type="color3" nodename="product"/>
+              </nodegraph>
+              <open_pbr_surface name="shader" type="surfaceshader">
+                <input name="base_color" type="color3" nodegraph="graph" output="out"/>
+                <input name="base_metalness" type="float" value="1"/>
+              </open_pbr_surface>
+              <surfacematerial name="gold" type="material">
+                <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+              </surfacematerial>
+            </materialx>""")
+        stage = stages.create(self.path)
+        mesh = stages.add_square(stage, "/m")
+        warnings = UsdUtils.CoalescingDiagnosticDelegate()  # usd-core cannot open what is added here
+        stage.DefinePrim("/looks", "Scope").GetReferences().AddReference("./looks/gold.mtlx", "/MaterialX/Materials")
+        self.assertTrue(warnings.TakeUncoalescedDiagnostics())
+        UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim())
+        mesh.GetPrim().CreateRelationship("material:binding").SetTargets(["/looks/gold"])
+        look = self.load(stage).materials["gold"]
+        self.assertTrue(look["base_color"].pop("file").endswith("looks/tex/a.png"))
+        self.assertEqual(look, {"base_color": {"factor": [0.5, 0.25, 1], "color_space": "srgb"}, "base_metalness": 1,
+                                "specular_roughness": look["specular_roughness"]})
+        self.assertFalse(self.reported("/looks", "cannot be opened"))
+
+    def test_subdivided_faces_that_are_no_sheet_are_refined_here(self):
+        stage = stages.create(self.path)
+        points = [(0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (-1, 0, 0), (-1, 1, 0), (0, 0, 1), (0, 1, 1)]
+        stages.add_mesh(stage, "/m", points, [4, 4, 4], [0, 2, 3, 1, 1, 5, 4, 0, 0, 1, 7, 6], "catmullClark")
+        scene = self.load(stage, subdivision_level=2)
+        self.assertEqual((len(scene.meshes["m"].sizes), scene.meshes["m"].subdivision), (3 * 16, None))
+        self.assertTrue(self.reported("/m", "no closed sheet"))
+        self.assertEqual(scene.validate(), [])
 
     def test_subsets_become_objects_that_meet(self):
         stage = stages.create(self.path)

@@ -72,12 +72,16 @@ class Units(UsdTest):
     def test_a_dome_shows_its_picture_where_usd_says(self):
         stage = stages.create(self.path)
         stages.add_square(stage, "/floor")
-        sky = np.zeros((8, 16, 3), np.uint8)
-        sky[:, 2:6] = 255, 0, 0   # longitude 90 degrees, towards +x
-        sky[:, 6:10] = 0, 255, 0  # longitude 0, towards +z
-        stages.write_png(os.path.join(self.folder.name, "sky.png"), sky)
+        sky = np.zeros((8, 16, 3), np.float32)
+        sky[:, 2:6] = 1, 0, 0   # longitude 90 degrees, towards +x
+        sky[:, 6:10] = 0, 1, 0  # longitude 0, towards +z
+        holder = relief.Scene()
+        holder.environment = relief.Environment(sky)
+        holder.add(relief.Mesh(stages.SQUARE, [[0, 1, 2, 3]]))
+        holder.save(self.folder.name)  # which writes it as EXR
+        file = relief.Scene.load(os.path.join(self.folder.name, "scene.json")).environment["file"]
         dome = UsdLux.DomeLight.Define(stage, "/sky")
-        dome.CreateTextureFileAttr("./sky.png")
+        dome.CreateTextureFileAttr(f"./{file}")
         for degrees, expected in ((0, (0, 0, 0)), (-90, (1, 0, 0)), (180, (0, 1, 0))):
             camera = UsdGeom.Camera.Define(stage, "/camera")
             camera.ClearXformOpOrder()

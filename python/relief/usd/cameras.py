@@ -36,13 +36,10 @@ def read_camera(context: Context, camera: UsdGeom.Camera, matrix: np.ndarray) ->
     prim = camera.GetPrim()
     place, backward, upward = matrix[:3, 3], matrix[:3, 2], matrix[:3, 1]
     forward = -backward / max(np.linalg.norm(backward), 1e-300)
-    high = context.get(camera.GetVerticalApertureAttr(), 15.2908)
+    high = max(context.get(camera.GetVerticalApertureAttr(), 15.2908), 1e-6)
     focal = context.get(camera.GetFocalLengthAttr(), 50.0)
     if context.get(camera.GetProjectionAttr()) == UsdGeom.Tokens.orthographic:
         context.report.add(prim, "is orthographic: it is taken as one with perspective")
-    for name in ("horizontalApertureOffset", "verticalApertureOffset"):
-        if context.get(prim.GetAttribute(name), 0) != 0:
-            context.report.add(prim, f"{name} is not taken over")
     if context.get(camera.GetClippingPlanesAttr()):
         context.report.add(prim, "clippingPlanes are not taken over")
     focus = context.get(camera.GetFocusDistanceAttr(), 0.0)
@@ -51,6 +48,9 @@ def read_camera(context: Context, camera: UsdGeom.Camera, matrix: np.ndarray) ->
     distance = read_distance(prim, focus) * context.unit
     keys = {"from_": to_list(place), "to": to_list(place + forward * (distance or 1.0)),
             "up": read_up(prim, forward, upward), "fov_degrees": min(max(read_hint(prim, "relief:fov_degrees", fov), 0.001), 179.999)}
+    shift = [context.get(prim.GetAttribute(name), 0.0) / high for name in ("horizontalApertureOffset", "verticalApertureOffset")]
+    if shift != [0, 0]:
+        keys["shift"] = shift
     if stop > 0 and focus > 0:
         radius = read_hint(prim, "relief:aperture_radius", focal * TENTHS / (2 * stop))
         keys.update(aperture_radius=radius * context.unit, focus_distance=read_hint(prim, "relief:focus_distance", focus) * context.unit)

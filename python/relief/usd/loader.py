@@ -50,7 +50,7 @@ def describe(error) -> str:
 def complete(context: Context) -> None:
     """MaterialX files are read here; what else is missing goes into the report."""
     errors = [(error.rootSite.path, describe(error)) for error in context.stage.GetCompositionErrors()]
-    warnings = UsdUtils.CoalescingDiagnosticDelegate()
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # of composing anew what is missing still
     read = add_files(context, [path for path, text in errors if ".mtlx cannot" in text])
     warnings.TakeUncoalescedDiagnostics()
     for path, text in errors:

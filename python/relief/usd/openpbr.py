@@ -51,6 +51,7 @@ def read_standard_surface(network: Network, shader: UsdShade.Shader, setter: Key
         setter.number(name, network.read(shader, other, default))
     for name, (other, default) in STANDARD_COLORS.items():
         setter.color(name, network.read(shader, other, default))
+    keep_metal(network, setter)
     setter.plain_number("specular_ior", network.read(shader, "specular_IOR", 1.5), 1, 100)
     setter.plain_number("coat_ior", network.read(shader, "coat_IOR", 1.5), 1, 100)
     setter.keys["coat_darkening"] = 0.0  # OpenPBR's alone
@@ -61,6 +62,16 @@ def read_standard_surface(network: Network, shader: UsdShade.Shader, setter: Key
     note_missing(network, shader, STANDARD_MISSING)
     note_normals(network, shader, ("coat_normal",))
     drop_defaults(setter)
+
+
+def keep_metal(network: Network, setter: KeySetter) -> None:
+    """`specular` is of the dielectric alone, OpenPBR's weight of metals as well."""
+    metal = setter.keys.get("base_metalness")
+    if metal == 0 or setter.keys.get("specular_weight") == 1:
+        return
+    if metal != 1:
+        network.note("specular of a surface that is in part metal is taken as 1")
+    setter.keys["specular_weight"] = 1.0
 
 
 def read_opacity(setter: KeySetter, opacity) -> None:
