@@ -176,15 +176,49 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }
 
-/// The pictures of a turntable, one after the other.
-int render_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
+Camera turn_to(const RenderOptions& options, const Camera& camera, int turn) {
+    return turn_camera(camera, 360.0f * float(turn) / float(options.aim.turntable));
+}
+
+/// A picture of a session; `printed_warnings` as for finish_picture.
+int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
+              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings) {
+    RenderResult result;
+    {
+        RenderWatcher watcher(options, printed_warnings);
+        result = session.render(&watcher);
+        if (watcher.is_refused()) return kExitWarnings;
+    }
+    return finish_picture(options, settings, output, waiting, result, printed_warnings);
+}
+
+/// The pictures of a turntable, one after the other, of a scene that stays prepared.
+int render_turns(const RenderOptions& options, const RenderSettings& settings, Scene scene,
                  PendingTimes waiting) {
+    const std::vector<std::string> files = list_files(scene);
+    for (int k = 0; k < options.aim.turntable; ++k) keep_files(files, name_turn(options.output, k));
+    const Camera camera = scene.camera;
+    size_t printed_warnings = 0;
+    Session session(std::move(scene), settings);
+    int exit_code = kExitDone;
+    for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
+        if (k > 0) session.change_view(turn_to(options, camera, k), settings.image);
+        exit_code =
+            show_next(options, settings, session, name_turn(options.output, k), waiting, printed_warnings);
+        waiting = {get_seconds(), 0};
+    }
+    return exit_code;
+}
+
+/// The same of tessellated surfaces, whose triangles are those of one view.
+int render_tessellated_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
+                             PendingTimes waiting) {
     const std::vector<std::string> files = list_files(scene);
     for (int k = 0; k < options.aim.turntable; ++k) keep_files(files, name_turn(options.output, k));
     int exit_code = kExitDone;
     for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
         Scene turned = scene;
-        turned.camera = turn_camera(scene.camera, 360.0f * float(k) / float(options.aim.turntable));
+        turned.camera = turn_to(options, scene.camera, k);
         exit_code =
             render_picture(options, settings, std::move(turned), name_turn(options.output, k), waiting);
         waiting = {get_seconds(), 0};
@@ -241,13 +275,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
-        RenderResult result;
-        {
-            RenderWatcher watcher(options, printed_warnings);
-            result = session.render(&watcher);
-            if (watcher.is_refused()) return kExitWarnings;
-        }
-        return finish_picture(options, settings, output, waiting, result, printed_warnings);
+        return show_next(options, settings, session, output, waiting, printed_warnings);
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet
@@ -300,7 +328,9 @@ int render_input(const RenderOptions& options, double start) {
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
-    if (options.aim.turntable > 0) return render_turns(options, settings, scene, waiting);
+    if (options.aim.turntable > 0 && settings.surface.mode == SurfaceMode::tessellated)
+        return render_tessellated_turns(options, settings, scene, waiting);
+    if (options.aim.turntable > 0) return render_turns(options, settings, std::move(scene), waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
     if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));

@@ -358,6 +358,9 @@ struct Scene {
 /// object.
 void validate_scene(const Scene& scene);
 
+/// The same for a camera.
+void validate_camera(const Camera& camera);
+
 /// The same for one mesh, which messages call by its name, or by `index` if it has none.
 void validate_mesh(const Mesh& mesh, size_t index = 0);
 

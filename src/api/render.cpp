@@ -19,7 +19,7 @@ namespace relief {
 RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* observer,
                     const Checkpoints& checkpoints) {
     validate_settings(given);
-    const RenderSettings settings = complete_settings(given, scene);
+    const RenderSettings settings = complete_settings(given, has_shadow_catchers(scene));
     validate_method(settings, scene.camera);
     const uint64_t scene_hash = scene.hash;
     RenderResult result;

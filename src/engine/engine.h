@@ -31,6 +31,13 @@ class Engine {
     /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
     virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
 
+    /// The scene's editor has changed the camera, the size of pictures and with them levels in place; these
+    /// patches read other copies of maps. `image` takes the place of those settings. As apply_changes() else.
+    virtual bool change_view(std::span<const SurfaceChange> changes, const ImageSettings& image) {
+        (void)changes, (void)image;
+        return false;
+    }
+
     /// Adds those of samples [settings.image.first_sample, + spp) of every pixel of the film's window that it
     /// lacks. Returns false when the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, const RenderControl& control) = 0;
