@@ -53,9 +53,9 @@ uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
 
 uint64_t hash_view(uint64_t hash, const Camera& camera) {
     ContentHash sum(hash);
-    const auto& [from, to, up, fov_degrees, aperture_radius, focus_distance] = camera;
+    const auto& [from, to, up, fov_degrees, aperture_radius, focus_distance, shift] = camera;
     sum.add(std::vector<Vec3f>{from, to, up});
-    sum.add(std::vector<float>{fov_degrees, aperture_radius, focus_distance});
+    sum.add(std::vector<float>{fov_degrees, aperture_radius, focus_distance, shift.x, shift.y});
     return sum.value();
 }
 

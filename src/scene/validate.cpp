@@ -385,6 +385,8 @@ void validate_camera(const Camera& camera) {
     check_range(where, "aperture_radius", camera.aperture_radius, 0, kHuge);
     if (!(camera.focus_distance > 0 && camera.focus_distance <= kHuge))
         fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
+    check_range(where, "shift", camera.shift.x, -kMaxLensShift, kMaxLensShift);
+    check_range(where, "shift", camera.shift.y, -kMaxLensShift, kMaxLensShift);
 }
 
 void validate_scene(const Scene& scene) {

@@ -124,6 +124,7 @@ Camera read_camera(const JsonNode& node) {
     const float distance = length(camera.to - camera.from);
     if (distance > 0) camera.focus_distance = distance;
     read_float(node, "focus_distance", camera.focus_distance, FLT_MIN);
+    if (const auto shift = node.find("shift")) camera.shift = shift->as_vec2(-kMaxLensShift, kMaxLensShift);
     return camera;
 }
 
