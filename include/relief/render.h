@@ -198,6 +198,10 @@ struct RenderResult {
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr,
                     const Checkpoints& checkpoints = {});
 
+/// Header entry "relief:settings" of pictures: what the mean of a pixel depends on beside the scene, alike on
+/// all engines and structures.
+std::string describe_settings(const RenderSettings& settings);
+
 /// Traversals of a structure that an engine supports, the default first.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);
 

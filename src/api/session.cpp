@@ -53,7 +53,7 @@ struct Session::Implementation {
         return is_complete;
     }
 
-    void change_view(const Camera& camera, const ImageSettings& image) {
+    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
         const Timer timer;
         if (image.layers != layers)
             throw Error(ErrorKind::usage,
@@ -66,7 +66,8 @@ struct Session::Implementation {
         changed = complete_settings(changed, editor->scene()->has_shadow_catchers);
         settings = changed;
         film.reset();
-        if (!engine->change_view(editor->change_view(camera, settings), settings.image)) start_engine();
+        if (!engine->change_view(editor->change_view(camera, settings, scene_hash), settings.image))
+            start_engine();
         prepare_s += timer.seconds();
     }
 
@@ -125,9 +126,9 @@ EditReport Session::edit(const MapEdit& edit) {
     return report;
 }
 
-void Session::change_view(const Camera& camera, const ImageSettings& image) {
+void Session::change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
     with_threads(implementation_->settings.device.threads,
-                 [&] { implementation_->change_view(camera, image); });
+                 [&] { implementation_->change_view(camera, image, scene_hash); });
 }
 
 void Session::check(const MapEdit& edit) const {

@@ -294,7 +294,8 @@ std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
     return changes;
 }
 
-std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const RenderSettings& settings) {
+std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const RenderSettings& settings,
+                                                    uint64_t scene_hash) {
     PreparedScene& scene = *scene_;
     scene.camera = camera;
     scene.camera.from = camera.from - scene.origin, scene.camera.to = camera.to - scene.origin;
@@ -310,7 +311,7 @@ std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const 
     });
     for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
     scene.may_enclose_camera = may_enclose_camera(scene);
-    hash_ = hash_view(hash_, camera);
+    hash_ = scene_hash != 0 ? scene_hash : hash_view(hash_, camera);
     return changes;
 }
 

@@ -46,8 +46,9 @@ class SceneEditor {
     std::vector<SurfaceChange> apply(const CheckedEdit& edit);
 
     /// Another camera and size of the picture, which have been validated; the patches that read other copies
-    /// of their maps for them.
-    std::vector<SurfaceChange> change_view(const Camera& camera, const RenderSettings& settings);
+    /// of their maps for them. `scene_hash` as for Session::change_view.
+    std::vector<SurfaceChange> change_view(const Camera& camera, const RenderSettings& settings,
+                                           uint64_t scene_hash);
 
   private:
     /// What a surface reads of an image, and where that has changed, in the image and its copies.

@@ -114,8 +114,10 @@ fs::path AssetCache::resolve(const std::string& file) const {
 std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel,
                                                 const std::string& space) {
     const fs::path path = resolve(file);
-    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel, space}];
+    const TextureKey key(path.string(), use, channel, space);
+    std::shared_ptr<const Texture>& cached = textures_[key];
     if (cached) return cached;
+    if (const auto earlier = earlier_.find(key); earlier != earlier_.end()) return cached = earlier->second;
     auto texture = std::make_shared<Texture>(read_texture(path));
     if (use == TextureUse::number) {
         check_finite(*texture, 0);

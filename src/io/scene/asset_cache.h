@@ -40,13 +40,16 @@ class AssetCache {
         return load_tiles(file, TextureUse::data);
     }
 
+    /// Textures of another cache are not read again.
+    void reuse(AssetCache& other) { earlier_ = std::move(other.textures_); }
+
     /// What was noticed while reading, in order.
     std::vector<std::string>& warnings() { return warnings_; }
 
   private:
     std::filesystem::path folder_;
-    std::map<std::tuple<std::string, TextureUse, uint32_t, std::string>, std::shared_ptr<const Texture>>
-        textures_;
+    using TextureKey = std::tuple<std::string, TextureUse, uint32_t, std::string>;
+    std::map<TextureKey, std::shared_ptr<const Texture>> textures_, earlier_;
     std::vector<std::string> warnings_;
 };
 

@@ -11,6 +11,7 @@
 #include "io/mesh/point_ply.h"
 #include "io/scene/error_list.h"
 #include "io/scene/json_node.h"
+#include "io/scene/keyed_values.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/scene_sections.h"
@@ -159,34 +160,52 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     errors.throw_if_any();
 }
 
-/// Size and samples of the picture may change without its being another picture.
-uint64_t compute_hash(const Json& document, const Scene& scene, ContentHash hash) {
+} // namespace
+
+/// Size, samples and frames of the picture may change without its being another picture.
+uint64_t hash_scene(const Json& document, uint64_t content_hash) {
     nlohmann::json canonical = document; // sorts the keys
     if (const auto render = canonical.find("render"); render != canonical.end())
-        for (const char* key : {"width", "height", "spp"}) render->erase(key);
+        for (const char* key : {"width", "height", "spp", "frames"}) render->erase(key);
+    ContentHash hash(content_hash);
     hash.add(canonical.dump());
-    add_scene_content(hash, scene);
     return hash.value();
 }
 
-} // namespace
-
-Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                  const MeshReaderSettings& reader) {
-    const Json document = parse_json(text, name);
-    Scene scene;
+ReadScene read_scene(const Json& document, AssetCache& assets, const std::string& name,
+                     const MeshReaderSettings& reader) {
+    ReadScene result;
+    Scene& scene = result.scene;
     scene.source = name;
-    AssetCache assets(folder);
-    ContentHash hash;
-    read_root(JsonNode(document, "", name), reader, scene, assets, hash);
+    ContentHash content;
+    read_root(JsonNode(document, "", name), reader, scene, assets, content);
     scene.warnings = std::move(assets.warnings());
     try {
         validate_scene(scene);
     } catch (const Error& error) {
         throw Error(error.kind(), {error.message(), name + ": " + error.where(), error.hint()});
     }
-    scene.hash = compute_hash(document, scene, hash);
-    return scene;
+    add_scene_content(content, scene);
+    result.content_hash = content.value();
+    scene.hash = hash_scene(document, result.content_hash);
+    return result;
+}
+
+std::vector<int> read_frames(const Json& document, const std::string& name) {
+    const auto render = JsonNode(document, "", name).find("render");
+    const auto frames = render ? render->find("frames") : std::nullopt;
+    return frames ? parse_frames_at(*frames) : std::vector<int>();
+}
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                  const MeshReaderSettings& reader) {
+    const Json document = parse_json(text, name);
+    const std::vector<int> frames = read_frames(document, name);
+    AssetCache assets(folder);
+    if (!is_animated(document)) return read_scene(document, assets, name, reader).scene;
+    return read_scene(evaluate_frame(document, frames.empty() ? 1 : frames.front(), name), assets, name,
+                      reader)
+        .scene;
 }
 
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {
