@@ -1,4 +1,5 @@
 // Scene files whose values change from frame to frame.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
