@@ -1,16 +1,11 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <memory>
-#include <optional>
-#include <set>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,21 +14,19 @@
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
-#include "common/report.h"
 #include "common/values.h"
 #include "denoiser_search.h"
-#include "edit_stream.h"
+#include "finish_picture.h"
 #include "inputs.h"
 #include "interrupt.h"
-#include "output.h"
 #include "pixel.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
-#include "relief/session.h"
+#include "relief/shot.h"
 #include "render_options.h"
+#include "render_series.h"
 #include "render_warnings.h"
-#include "statistics_report.h"
 
 namespace relief::cli {
 

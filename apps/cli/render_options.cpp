@@ -313,7 +313,7 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
         verb.get_option(name)->group(kResearchGroup);
     for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
                              "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
-                             "--color-space", "--clamp-indirect", "--skip-existing"})
+                             "--color-space", "--clamp-indirect", "--skip-existing", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 

@@ -52,6 +52,7 @@ Scene Shot::load(double frame) {
 
 std::optional<Shot::View> Shot::find_view(double frame) const {
     const Implementation& self = *implementation_;
+    if (!self.assets) return std::nullopt; // nothing is loaded
     Json document = evaluate_frame(self.document, frame, self.name);
     View view;
     if (const auto camera = document.find("camera"); camera != document.end()) {
@@ -61,8 +62,7 @@ std::optional<Shot::View> Shot::find_view(double frame) const {
     view.scene_hash = hash_scene(document, self.content_hash);
     Json loaded = self.loaded;
     document.erase("camera"), loaded.erase("camera");
-    if (self.assets && document == loaded) return view;
-    return std::nullopt;
+    return document == loaded ? std::optional(view) : std::nullopt;
 }
 
 } // namespace relief
