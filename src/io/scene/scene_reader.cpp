@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -52,16 +54,26 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
     return index;
 }
 
-Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets,
-               const MeshReaderSettings& reader) {
-    node.check_keys(scene_keys::kMesh);
+/// From memory or a file.
+Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader) {
     const JsonNode file = node.get("file");
-    const std::filesystem::path path = assets.resolve(file.as_string());
+    const std::string file_name = file.as_string();
+    const auto uv_set = node.find("uv_set");
+    if (std::optional<Mesh> mesh = file.with_place([&] { return assets.take_mesh(file_name); })) {
+        if (uv_set) uv_set->fail("is that of a file, and this mesh is in memory", "leave it out");
+        return std::move(*mesh);
+    }
     constexpr int kLastUvSet = 255;
     MeshReadOptions options;
     options.reader = reader;
-    if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
-    Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
+    if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    return file.with_place([&] { return load_mesh(assets.resolve(file_name), options); });
+}
+
+Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
+               const MeshReaderSettings& reader) {
+    node.check_keys(scene_keys::kMesh);
+    Mesh mesh = read_polygons(node, assets, reader);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
@@ -169,14 +181,11 @@ uint64_t compute_hash(const Json& document, const Scene& scene, ContentHash hash
     return hash.value();
 }
 
-} // namespace
-
-Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                  const MeshReaderSettings& reader) {
+Scene read_scene(std::string_view text, const std::string& name, AssetCache assets,
+                 const MeshReaderSettings& reader) {
     const Json document = parse_json(text, name);
     Scene scene;
     scene.source = name;
-    AssetCache assets(folder);
     ContentHash hash;
     read_root(JsonNode(document, "", name), reader, scene, assets, hash);
     scene.warnings = std::move(assets.warnings());
@@ -187,6 +196,18 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& folder, co
     }
     scene.hash = compute_hash(document, scene, hash);
     return scene;
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                  const MeshReaderSettings& reader) {
+    return read_scene(text, name, AssetCache(folder), reader);
+}
+
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
+                       const MeshReaderSettings& reader) {
+    return read_scene(text, "scene", AssetCache(folder, std::move(assets)), reader);
 }
 
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {
