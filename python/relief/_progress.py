@@ -1,6 +1,7 @@
 """Progress on the terminal: tqdm where it is installed, else a line."""
 from __future__ import annotations
 
+import importlib
 import sys
 from types import TracebackType
 from typing import Any, Callable, Optional, Union
@@ -17,7 +18,7 @@ class ProgressLine:
         self._bar: Any = None
         self._has_line = False
         try:
-            from tqdm.auto import tqdm
+            tqdm = importlib.import_module("tqdm.auto").tqdm
         except ImportError:
             return
         self._bar = tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}")

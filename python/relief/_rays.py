@@ -46,7 +46,8 @@ class Hits:
 
     @property
     def is_hit(self) -> Array:
-        return self.object != NOTHING
+        found: Array = self.object != NOTHING
+        return found
 
     def __len__(self) -> int:
         return len(self.records)

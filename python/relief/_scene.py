@@ -152,7 +152,8 @@ class Scene:
         if subdivision is not None:
             keys["subdivision"] = cast(Any, dict(subdivision))
         if environment is not None:
-            scene.environment = environment if isinstance(environment, Mapping) else Environment(_absolute(environment))
+            is_part = isinstance(environment, Mapping)
+            scene.environment = _fill(Environment(), environment) if is_part else Environment(_absolute(environment))
         scene.add(keys, displacement, material)
         parsed = scene._parse()
         parsed.complete()

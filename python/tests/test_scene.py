@@ -49,7 +49,7 @@ class SceneTest(unittest.TestCase):
         with self.assertRaises(relief.Error) as caught:
             scene.validate()
         self.assertIn("specular_roughness", caught.exception.hint)
-        self.assertIn("materials.clay", caught.exception.where)
+        self.assertIn("materials.clay", caught.exception.message)
         self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), str(caught.exception))
 
     def test_tiles_are_arrays_by_udim_numbers(self):
@@ -81,7 +81,7 @@ class SceneTest(unittest.TestCase):
         scene.camera = relief.Camera(from_=(0, 0, 4), to=(0, 0, 0), fov_degrees=np.float32(40))
         scene.environment = relief.Environment(np.ones((4, 8, 3), np.float32), strength=0.5)
         scene.lights = [relief.Light(type="point", position=np.array([0, 0, 2.0]), strength=3)]
-        self.assertTrue((self.render(scene)[:, :, :3] > 0).all())
+        self.assertGreater(self.render(scene)[:, :, :3].mean(), 0.1)
         scene.lights[0]["kind"] = "x"
         with self.assertRaises(relief.Error):
             scene.validate()

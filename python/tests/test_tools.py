@@ -46,7 +46,7 @@ class PackageTest(unittest.TestCase):
             if name not in ("NOTHING", "__version__"):
                 self.assertTrue(getattr(relief, name).__doc__, name)
         self.assertTrue(re.fullmatch(r"\d+\.\d+\.\d+", relief.__version__))
-        self.assertIn("scalar", relief.isas())
+        self.assertIn(relief.isas()[0], ("avx512", "avx2", "sse4", "neon", "scalar"))
         self.assertIsInstance(relief.devices(), list)
 
 
