@@ -1,6 +1,7 @@
 // Reading and writing of files: scenes, meshes, maps and images. In library relief_io; the core does not need
 // it. relief_io reads plain EXR itself; PNG, JPEG, TIFF, HDR and other EXR are read by the module
-// relief_pictures beside the program, loaded when the first such image is opened.
+// relief_pictures beside the program, loaded when the first such image is opened; a build without that module
+// reads PNG by libpng.
 #pragma once
 
 #include <cstdint>

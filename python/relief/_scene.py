@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 from typing import Any, Mapping, Optional, Union, cast
@@ -43,6 +44,8 @@ class _Collector:
         return name
 
     def convert(self, value: Any, place: str, key: str = "") -> Any:
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"{place}: {value} is no number of a scene file")
         if isinstance(value, (str, bool, int, float)) or value is None:
             return value
         name = self.name_picture(value, place)
@@ -53,9 +56,9 @@ class _Collector:
         if isinstance(value, os.PathLike):
             return os.fspath(value)
         if isinstance(value, np.generic):
-            return value.item()
+            return self.convert(value.item(), place)
         if is_array(value):
-            return to_numpy(value, place).tolist()
+            return self.convert(to_numpy(value, place).tolist(), place)
         if isinstance(value, (list, tuple)):
             return [self.convert(entry, f"{place}[{k}]") for k, entry in enumerate(value)]
         raise TypeError(f"{place}: {type(value).__name__} is no value of a scene file")

@@ -86,6 +86,13 @@ class SceneTest(unittest.TestCase):
         with self.assertRaises(relief.Error):
             scene.validate()
 
+    def test_numbers_that_are_none_are_named(self):
+        for camera in ({"from": (0, np.nan, 1)}, {"from": np.array([0, np.inf, 1])}, {"from": (0, 0, {1})}):
+            scene = scenes.make_scene()
+            scene.camera = camera
+            with self.assertRaisesRegex((ValueError, TypeError), r"camera.from\[[12]\]: "):
+                scene.validate()
+
     def test_aim_does_what_the_options_do(self):
         scene = scenes.make_scene()
         scene.aim(view="front", light=[(30, 40), (100, 20)], ground="shadow", env_strength=0.5)
