@@ -1,6 +1,8 @@
 #include "api/picture_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -102,6 +104,14 @@ Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes>
 PictureSpace make_picture_space(const PreparedScene& scene) {
     const scalar::CameraFrame camera = make_camera_frame(scene);
     return {scene.origin, camera.right, camera.up, -camera.forward};
+}
+
+void show_pictures(const Film& film, const PictureSpace& space, RenderControl& control) {
+    RenderObserver* const observer = control.observer;
+    const double interval_s =
+        observer ? observer->picture_interval_s() : std::numeric_limits<double>::infinity();
+    if (std::isinf(interval_s)) return;
+    control.show = {interval_s, [&film, space, observer] { observer->on_picture(film.resolve(space)); }};
 }
 
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {

@@ -46,9 +46,15 @@ struct Session::Implementation {
 
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
-        if (film) return engine->refresh(*film, observer);
+        const PictureSpace space = make_picture_space(*editor->scene());
+        RenderControl control(observer);
+        if (film) {
+            show_pictures(*film, space, control);
+            return engine->refresh(*film, control);
+        }
         auto fresh = std::make_unique<Film>(make_film(settings.image, mattes));
-        const bool is_complete = engine->render(*fresh, observer);
+        show_pictures(*fresh, space, control);
+        const bool is_complete = engine->render(*fresh, control);
         film = std::move(fresh);
         return is_complete;
     }

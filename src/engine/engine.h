@@ -14,13 +14,19 @@
 
 namespace relief {
 
-/// Who follows a render, and what is called every `save_interval_s` seconds while no sample is traced.
+/// What is called every so many seconds while no sample is traced.
+struct Interruption {
+    double interval_s = std::numeric_limits<double>::infinity();
+    std::function<void()> call; ///< may be empty
+};
+
+/// Who follows a render.
 struct RenderControl {
     RenderControl(RenderObserver* render_observer = nullptr) : observer(render_observer) {}
 
     RenderObserver* observer;
-    double save_interval_s = std::numeric_limits<double>::infinity();
-    std::function<void()> save; ///< may be empty
+    Interruption save;
+    Interruption show; ///< once as soon as every pixel has a sample, then at its intervals
 };
 
 class Engine {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,16 +55,26 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
     return index;
 }
 
-Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets,
-               const MeshReaderSettings& reader) {
-    node.check_keys(scene_keys::kMesh);
+/// From memory or a file.
+Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader) {
     const JsonNode file = node.get("file");
-    const std::filesystem::path path = assets.resolve(file.as_string());
+    const std::string file_name = file.as_string();
+    const auto uv_set = node.find("uv_set");
+    if (std::optional<Mesh> mesh = file.with_place([&] { return assets.take_mesh(file_name); })) {
+        if (uv_set) uv_set->fail("is that of a file, and this mesh is in memory", "leave it out");
+        return std::move(*mesh);
+    }
     constexpr int kLastUvSet = 255;
     MeshReadOptions options;
     options.reader = reader;
-    if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
-    Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
+    if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    return file.with_place([&] { return load_mesh(assets.resolve(file_name), options); });
+}
+
+Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
+               const MeshReaderSettings& reader) {
+    node.check_keys(scene_keys::kMesh);
+    Mesh mesh = read_polygons(node, assets, reader);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
@@ -197,15 +209,28 @@ std::vector<int> read_frames(const Json& document, const std::string& name) {
     return frames ? parse_frames_at(*frames) : std::vector<int>();
 }
 
-Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                  const MeshReaderSettings& reader) {
+namespace {
+
+/// At the first frame, or 1.
+Scene read_text(std::string_view text, const std::string& name, AssetCache assets,
+                const MeshReaderSettings& reader) {
     const Json document = parse_json(text, name);
     const std::vector<int> frames = read_frames(document, name);
-    AssetCache assets(folder);
     if (!is_animated(document)) return read_scene(document, assets, name, reader).scene;
-    return read_scene(evaluate_frame(document, frames.empty() ? 1 : frames.front(), name), assets, name,
-                      reader)
-        .scene;
+    const Json at_frame = evaluate_frame(document, frames.empty() ? 1 : frames.front(), name);
+    return read_scene(at_frame, assets, name, reader).scene;
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                  const MeshReaderSettings& reader) {
+    return read_text(text, name, AssetCache(folder), reader);
+}
+
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
+                       const MeshReaderSettings& reader) {
+    return read_text(text, "scene", AssetCache(folder, std::move(assets)), reader);
 }
 
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {
