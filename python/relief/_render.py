@@ -9,6 +9,7 @@ from typing import Any, Callable, Mapping, Optional, Sequence, Union
 
 from . import _relief
 from ._arrays import as_texels
+from ._parts import Camera
 from ._picture import Picture
 from ._progress import Callback, open_progress
 from ._scene import Path, Scene, parse_any
@@ -110,14 +111,28 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
 
 
 class Session:
-    """A scene that stays prepared while its displacement maps are edited: pictures after the first cost what changed.
+    """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
+    what changed.
 
     settings: the keywords of render() but for denoise. Not for several threads at once."""
 
     def __init__(self, scene: Union[Scene, Path], **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})
+        self._keywords = keywords
         self._entries = make_entries(keywords)
         self._session = _relief.Session(parse_any(scene), keywords)
+
+    def change_view(self, camera: Optional[Camera] = None, **settings: Any) -> None:
+        """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces,
+        noise, ... All of it is traced anew; trees stay where the levels of surfaces do. Layers stay those of the session."""
+        keywords = {**self._keywords, **{key: value for key, value in settings.items() if value is not None}}
+        parsed = None
+        if camera is not None:
+            scene = Scene()
+            scene.camera = camera
+            parsed = parse_any(scene)
+        self._session.change_view(parsed, keywords)
+        self._keywords, self._entries = keywords, make_entries(keywords)
 
     def edit(self, displacement: str, texels: Any, x: int = 0, y: int = 0, udim: int = 1001) -> int:
         """Replaces texels of a map from column x and row y on, row 0 at the top; (H, W) or (H, W, C), in the encoding of the

@@ -76,7 +76,9 @@ class PaintSession {
   public:
     /// The scene is used up.
     PaintSession(ParsedScene& parsed, const nb::dict& keywords)
-        : settings_(read_settings(keywords, parsed.scene.picture)) {
+        : camera_(parsed.scene.camera),
+          picture_(parsed.scene.picture),
+          settings_(read_settings(keywords, picture_)) {
         const GateVisit visit;
         const nb::gil_scoped_release release;
         session_ = std::make_unique<Session>(std::move(parsed.scene), settings_);
@@ -102,6 +104,19 @@ class PaintSession {
         return nb::make_tuple(report.patches, report.seconds);
     }
 
+    /// `parsed`: a scene with the camera, or null for the one that there is.
+    void change_view(const ParsedScene* parsed, const nb::dict& keywords) {
+        const auto lock = enter();
+        const RenderSettings settings = read_settings(keywords, picture_);
+        const Camera camera = parsed ? parsed->scene.camera : camera_;
+        {
+            const GateVisit visit;
+            const nb::gil_scoped_release release;
+            session_->change_view(camera, settings.image);
+        }
+        camera_ = camera, settings_.image = settings.image;
+    }
+
   private:
     std::unique_lock<std::mutex> enter() {
         std::unique_lock lock(mutex_, std::try_to_lock);
@@ -111,6 +126,8 @@ class PaintSession {
         return lock;
     }
 
+    Camera camera_;
+    PictureDefaults picture_;
     RenderSettings settings_;
     std::unique_ptr<Session> session_;
     std::mutex mutex_;
@@ -144,6 +161,7 @@ void add_renders(nb::module_& module) {
                 return session.render({std::move(on_progress), std::move(on_picture), picture_interval});
             },
             nb::arg("on_progress").none(), nb::arg("on_picture").none(), nb::arg("picture_interval"))
+        .def("change_view", &PaintSession::change_view, nb::arg("scene").none(), nb::arg("keywords"))
         .def("edit", &PaintSession::edit, nb::arg("displacement"), nb::arg("texels"), nb::arg("x"),
              nb::arg("y"), nb::arg("udim"));
 }

@@ -152,6 +152,21 @@ class SessionTest(unittest.TestCase):
         np.testing.assert_array_equal(after, relief.render(scene, spp=1).array)
         self.assertFalse((before == after).all())
 
+    def test_a_view_makes_the_picture_of_its_camera_and_size(self):
+        scene = scenes.make_scene()
+        session = relief.Session(scene, spp=1)
+        session.render()
+        scene.camera = relief.Camera(from_=(0.5, 1, 2.5), to=(0, 0, 0), fov_degrees=40)
+        session.change_view(scene.camera)
+        np.testing.assert_array_equal(session.render().array, relief.render(scene, spp=1).array)
+        session.change_view(size=(32, 40), spp=2)
+        picture = session.render()
+        self.assertEqual(picture.array.shape[:2], (40, 32))
+        np.testing.assert_array_equal(picture.array, relief.render(scene, size=(32, 40), spp=2).array)
+        for bad in (dict(camera=relief.Camera(from_=(0, 0, 0), to=(0, 0, 0))), dict(size=(0, 5)), dict(layers=("depth",))):
+            with self.assertRaises(relief.Error):
+                session.change_view(**bad)
+
     def test_bad_edits_are_refused(self):
         session = relief.Session(scenes.make_scene(), spp=1)
         for error, keys in ((relief.Error, dict(displacement="no", texels=np.zeros((2, 2, 3), np.float32))),
