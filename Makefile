@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test quick dev asan tsan fuzz docs coverage format clean packages peers release asan-slice fuzz-slice gpu-bundle
+.PHONY: help render test quick dev asan tsan fuzz docs coverage format clean packages peers release python wheel asan-slice fuzz-slice gpu-bundle
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -13,6 +13,8 @@ help:
 	@echo 'make render    build, and render the sample scene "pumpkin" to out/pumpkin.png'
 	@echo 'make test      build, and run all tests'
 	@echo 'make quick     build, and run the tests that take seconds: for each step of a change'
+	@echo 'make python    the Python module in an environment of its own: build/python/bin/python'
+	@echo 'make wheel     a wheel of it that brings its libraries: out/wheels'
 	@echo 'make peers     tests against Blender, Mitsuba and others, fetched from the Python package index (0.6 GB the first time)'
 	@echo 'make dev       optimised build with internal checks, all tests'
 	@echo 'make asan      all tests under the address and undefined-behaviour sanitizers'
@@ -44,7 +46,13 @@ render: packages
 	@echo "The picture is $(abspath out/pumpkin.png)"
 
 release: packages
-	$(call configure_and_build,release,,-DRELIEF_ISAS=all)
+	$(call configure_and_build,release,,-DRELIEF_ISAS=all $$(tools/make_python_build.sh build/python-build))
+
+python: packages
+	tools/install_python.sh build/python
+
+wheel: packages
+	tools/make_wheel.sh build/python-build out/wheels
 
 test: release
 	ctest --preset release -j $(JOBS)

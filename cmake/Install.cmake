@@ -54,7 +54,7 @@ foreach(file IN LISTS pkgconfig_files)
   install(FILES ${PROJECT_BINARY_DIR}/${file} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 endforeach()
 
-if(RELIEF_IO)
+if(TARGET relief_pictures)
   install(TARGETS relief_pictures LIBRARY DESTINATION ${module_folder} COMPONENT runtime)
   set_target_properties(relief_io_library PROPERTIES INSTALL_RPATH "$ORIGIN;$ORIGIN/relief")
   target_link_options(relief_io_library INTERFACE

@@ -1,6 +1,8 @@
 # Options of the build and flags that every target of Relief has, and none of those that use the library.
 include(CMakeDependentOption)
 option(RELIEF_IO "Build file readers and writers" ON)
+option(RELIEF_PICTURE_MODULE "Build the module that reads what neither OpenEXR nor libpng reads (OpenImageIO)" ON)
+option(RELIEF_PYTHON "Build the Python module" OFF)
 option(RELIEF_VULKAN "Build the Vulkan engine" ON)
 option(RELIEF_APPS "Build the programs; the relief command needs RELIEF_IO" ${PROJECT_IS_TOP_LEVEL})
 cmake_dependent_option(RELIEF_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL} RELIEF_APPS OFF)
@@ -16,7 +18,7 @@ option(RELIEF_COVERAGE "Instrument for llvm-cov" OFF)
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-if(BUILD_SHARED_LIBS)
+if(BUILD_SHARED_LIBS OR RELIEF_PYTHON)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 endif()
 

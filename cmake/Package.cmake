@@ -45,9 +45,11 @@ if(RELIEF_IO)
                  LIBRARIES fmt::fmt OpenEXR::OpenEXR PNG::PNG assimp::assimp
                            ${CMAKE_DL_LIBS})
   target_link_libraries(relief_io_library PUBLIC relief_library)
-  add_dependencies(relief_io_library relief_pictures)
-  # A program finds the module for pictures by its own run path, a shared librelief_io by the library's.
-  target_link_options(relief_io_library INTERFACE
-    "$<BUILD_INTERFACE:-Wl,-rpath,$<TARGET_FILE_DIR:relief_pictures>>")
+  if(TARGET relief_pictures)
+    add_dependencies(relief_io_library relief_pictures)
+    # A program finds the module for pictures by its own run path, a shared librelief_io by the library's.
+    target_link_options(relief_io_library INTERFACE
+      "$<BUILD_INTERFACE:-Wl,-rpath,$<TARGET_FILE_DIR:relief_pictures>>")
+  endif()
   list(APPEND relief_packages relief_io_library)
 endif()

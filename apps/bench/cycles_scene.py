@@ -151,6 +151,8 @@ def place_camera(camera):
     data = bpy.data.cameras.new("camera")
     data.sensor_fit = "VERTICAL"
     data.angle = math.radians(camera["fov_degrees"])
+    # With this sensor fit, in heights of the picture.
+    data.shift_x, data.shift_y = camera.get("shift", (0, 0))
     data.clip_start, data.clip_end = 1e-3, 1e5
     thing = bpy.data.objects.new("camera", data)
     bpy.context.scene.collection.objects.link(thing)

@@ -46,8 +46,8 @@ Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
     const Vec3f up = cross(right, forward);
     const float half_height = float(std::tan(double(camera.fov_degrees) * kPi / 360));
     const float scale = 2 * half_height / float(height);
-    const float across = (float(x) + 0.5f - 0.5f * float(width)) * scale;
-    const float down = (float(y) + 0.5f - 0.5f * float(height)) * scale;
+    const float across = (float(x) + 0.5f - 0.5f * float(width) + camera.shift.x * float(height)) * scale;
+    const float down = (float(y) + 0.5f - 0.5f * float(height) - camera.shift.y * float(height)) * scale;
     Ray ray;
     ray.origin = camera.from;
     ray.direction = normalize(add_scaled(add_scaled(forward, right, across), up, -down));

@@ -1,16 +1,11 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <memory>
-#include <optional>
-#include <set>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,39 +14,29 @@
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
-#include "common/report.h"
 #include "common/values.h"
 #include "denoiser_search.h"
-#include "edit_stream.h"
+#include "finish_picture.h"
 #include "inputs.h"
 #include "interrupt.h"
-#include "output.h"
 #include "pixel.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
-#include "relief/session.h"
+#include "relief/shot.h"
 #include "render_options.h"
+#include "render_series.h"
 #include "render_warnings.h"
-#include "statistics_report.h"
 
 namespace relief::cli {
 
 namespace {
 
-double get_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-Scene load_input(const RenderOptions& options) {
-    if (is_mesh_file(options.input)) return load_mesh_scene(options.input, options.mesh);
-    constexpr std::string_view kPictures[] = {".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg"};
+/// Calls `read`; its complaint about a file that is no scene says what scenes and meshes are.
+template <class Read> auto with_scene_hint(const RenderOptions& options, const Read& read) {
     const std::string extension = get_lower_extension(options.input);
-    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
-        throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
-                                       "a map goes with its mesh: relief render MESH --vdm MAP"});
     try {
-        return load_scene(options.input, make_mesh_reader());
+        return read();
     } catch (const Error& error) {
         if (extension == ".json" || !error.hint().empty()) throw;
         throw Error(error.kind(),
@@ -61,87 +46,12 @@ Scene load_input(const RenderOptions& options) {
     }
 }
 
-void write_statistics(const std::filesystem::path& file, const RenderResult& result,
-                      const RenderSettings& settings) {
-    write_text_file(file, write_json(describe_statistics(result, settings), 2));
-}
-
-void print_warnings(std::span<const std::string> warnings, bool is_mesh) {
-    for (const std::string& warning : warnings)
-        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
-}
-
-void print_summary(const RenderResult& result, const RenderSettings& settings) {
-    const Statistics& s = result.statistics;
-    const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
-    fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
-               s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
-    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
-               settings.image.width, settings.image.height, result.is_complete ? "" : "up to ",
-               settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
-    fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
-               s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
-}
-
-int get_exit_code(const RenderResult& result, const Saved& saved) {
-    if (saved.is_elsewhere) return int(ErrorKind::failed);
-    if (!result.is_complete && get_interrupt() != 0) return kExitSignalBase + get_interrupt();
-    return kExitDone;
-}
-
-/// Start of the wait for a picture, and the time spent reading.
-struct PendingTimes {
-    double start, load_s;
-};
-
-/// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;
-/// returns the exit code.
-int denoise_picture(const RenderOptions& options, RenderResult& result) {
-    const double start = get_seconds();
-    const auto is_interrupted = [] { return get_interrupt() != 0; };
-    int exit_code = kExitDone;
-    try {
-        if (!options.denoiser->denoise(result.image, is_interrupted)) {
-            fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
-            exit_code = kExitSignalBase + get_interrupt();
-        }
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "relief: error: the picture is not denoised: {}\n", error.what());
-        exit_code = int(ErrorKind::failed);
-    }
-    result.statistics.denoise_s = get_seconds() - start;
-    return exit_code;
-}
-
-/// `printed_warnings`: how many of the warnings were printed before the render.
-int finish_picture(const RenderOptions& options, const RenderSettings& settings,
-                   const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
-                   size_t printed_warnings) {
-    Statistics& statistics = result.statistics;
-    if (result.whole_samples == 0) {
-        fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
-        if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
-        return get_exit_code(result, {});
-    }
-    const int denoised = options.is_denoised ? denoise_picture(options, result) : kExitDone;
-    const double write_start = get_seconds();
-    add_picture_entries(options.aim, output, result.image);
-    const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
-    statistics.load_s = waiting.load_s;
-    statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
-    statistics.write_s = get_seconds() - write_start;
-    statistics.total_s = get_seconds() - waiting.start;
-    if (!options.progress.is_quiet)
-        print_warnings(
-            std::span(statistics.warnings).subspan(std::min(printed_warnings, statistics.warnings.size())),
-            true);
-    if (options.is_verbose) print_summary(result, settings);
-    fmt::print("wrote {}\n", saved.file.string());
-    std::fflush(stdout); // the sender of edits waits for it
-    if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
-    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
-    const int exit_code = get_exit_code(result, saved);
-    return exit_code != kExitDone ? exit_code : denoised;
+void refuse_picture(const RenderOptions& options) {
+    constexpr std::string_view kPictures[] = {".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg"};
+    const std::string extension = get_lower_extension(options.input);
+    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
+        throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
+                                       "a map goes with its mesh: relief render MESH --vdm MAP"});
 }
 
 /// What a resumed picture has of its own, beyond what this render was asked for.
@@ -176,22 +86,6 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }
 
-/// The pictures of a turntable, one after the other.
-int render_turns(const RenderOptions& options, const RenderSettings& settings, const Scene& scene,
-                 PendingTimes waiting) {
-    const std::vector<std::string> files = list_files(scene);
-    for (int k = 0; k < options.aim.turntable; ++k) keep_files(files, name_turn(options.output, k));
-    int exit_code = kExitDone;
-    for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
-        Scene turned = scene;
-        turned.camera = turn_camera(scene.camera, 360.0f * float(k) / float(options.aim.turntable));
-        exit_code =
-            render_picture(options, settings, std::move(turned), name_turn(options.output, k), waiting);
-        waiting = {get_seconds(), 0};
-    }
-    return exit_code;
-}
-
 /// The scene as it is rendered, for --save-scene.
 void save_aimed_scene(const RenderOptions& options, const RenderSettings& settings, Scene scene) {
     const ImageSettings& image = settings.image;
@@ -199,78 +93,6 @@ void save_aimed_scene(const RenderOptions& options, const RenderSettings& settin
     save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene,
                     list_picture_options(options.aim));
     fmt::print("wrote {}\n", options.aim.saved_scene.string());
-}
-
-void print_edit(const EditReport& report) {
-    fmt::print(stderr, "edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
-}
-
-/// Checks all lines of a file before the first render. Texels are read again when needed, because all of them
-/// together may exceed memory.
-void check_edits(const std::string& path, const std::string& only_displacement, const Session& session,
-                 const std::vector<std::string>& files) {
-    std::ifstream file(path);
-    EditStream edits(file, path, only_displacement);
-    std::set<std::filesystem::path> read, written; // sets: there may be thousands
-    while (const std::optional<EditLine> line = edits.next())
-        edits.with_place([&] {
-            session.check(line->edit);
-            const std::filesystem::path texels = find_place(line->edit.texels.file);
-            read.insert(texels);
-            if (written.contains(texels)) refuse_output(line->edit.texels.file);
-            if (line->output.empty()) return;
-            keep_files(files, line->output);
-            const std::filesystem::path output = find_place(line->output);
-            written.insert(output);
-            if (read.contains(output)) refuse_output(line->output);
-        });
-}
-
-/// The first picture, then one after each edit with an output.
-int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                 PendingTimes waiting) {
-    std::ifstream file;
-    if (options.edits != "-") file.open(options.edits);
-    std::vector<std::string> files = list_files(scene);
-    files.push_back(options.edits);
-    const std::string only_displacement =
-        scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
-    EditStream edits(options.edits == "-" ? std::cin : file,
-                     options.edits == "-" ? "standard input" : options.edits, only_displacement);
-    size_t printed_warnings = 0;
-    Session session(std::move(scene), settings);
-    if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
-    const auto show = [&](const std::filesystem::path& output) {
-        RenderResult result;
-        {
-            RenderWatcher watcher(options, printed_warnings);
-            result = session.render(&watcher);
-            if (watcher.is_refused()) return kExitWarnings;
-        }
-        return finish_picture(options, settings, output, waiting, result, printed_warnings);
-    };
-    int exit_code = show(options.output);
-    bool is_pending = false; // edits not shown in a picture yet
-    while (exit_code == kExitDone) {
-        await_input();
-        if (get_interrupt() != 0) { // it came with the last picture
-            fmt::print(stderr, "relief: interrupted while it waited for edits\n");
-            return kExitSignalBase + get_interrupt();
-        }
-        const std::optional<EditLine> line = edits.next();
-        poll_interrupts();
-        if (!line) break;
-        if (!is_pending) waiting.start = get_seconds() - line->read_s, waiting.load_s = 0;
-        edits.with_place([&] {
-            keep_files({line->edit.texels.file}, line->output);
-            keep_files(files, line->output);
-            const EditReport report = session.edit(line->edit);
-            if (options.is_verbose) print_edit(report);
-        });
-        is_pending = line->output.empty();
-        if (!is_pending) exit_code = show(line->output);
-    }
-    return exit_code;
 }
 
 /// The camera of a mesh alone is made for landscape pictures and its own angle: others frame it anew.
@@ -281,13 +103,11 @@ AimOptions choose_aim(const RenderOptions& options, const ImageSettings& image) 
     return aim;
 }
 
-int render_input(const RenderOptions& options, double start) {
-    catch_interrupts();
-    Scene scene = load_input(options);
+/// Checks what the picture would replace, and aims the scene; the settings of its picture.
+RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
     add_assumption_warnings(scene);
     if (options.tile && get_lower_extension(options.output) == ".png")
         scene.warnings.emplace_back("a tile as a PNG cannot be merged: name an .exr");
-    const double load_s = get_seconds() - start;
     const std::vector<std::string> files = list_files(scene);
     keep_files(files, options.output), keep_files(files, options.statistics_file);
     keep_files(files, options.aim.saved_scene);
@@ -297,14 +117,44 @@ int render_input(const RenderOptions& options, double start) {
     apply_background(options.aim, options.output, settings.image);
     aim_scene(scene, choose_aim(options, settings.image),
               float(settings.image.width) / float(settings.image.height));
+    return settings;
+}
+
+int render_scene(const RenderOptions& options, Scene scene, double start) {
+    const double load_s = get_seconds() - start;
+    const RenderSettings settings = prepare_picture(options, scene);
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
-    if (options.aim.turntable > 0) return render_turns(options, settings, scene, waiting);
+    if (options.aim.turntable > 0) return render_turns(options, settings, std::move(scene), waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
     explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
     if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
+}
+
+/// One picture of the first frame, or of all frames of the scene file or the command line.
+int render_shot(const RenderOptions& options, double start) {
+    refuse_picture(options);
+    Shot shot = with_scene_hint(options, [&] { return Shot(options.input, make_mesh_reader()); });
+    const std::vector<int>& frames = options.frames.empty() ? shot.frames() : options.frames;
+    const int first = frames.empty() ? 1 : frames.front();
+    const bool is_series = !options.frames.empty() || frames.size() > 1;
+    if (!is_series || options.pixel)
+        return render_scene(options, with_scene_hint(options, [&] { return shot.load(first); }), start);
+    check_series(options);
+    const auto load = [&](int frame) {
+        Scene scene = with_scene_hint(options, [&] { return shot.load(frame); });
+        const RenderSettings settings = prepare_picture(options, scene);
+        return std::pair(std::move(scene), settings);
+    };
+    return render_frames(options, shot, frames, load, {start, 0});
+}
+
+int render_input(const RenderOptions& options, double start) {
+    catch_interrupts();
+    if (!is_mesh_file(options.input)) return render_shot(options, start);
+    return render_scene(options, load_mesh_scene(options.input, options.mesh), start);
 }
 
 } // namespace

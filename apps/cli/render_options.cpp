@@ -13,6 +13,8 @@
 #include "map_options.h"
 #include "mesh_options.h"
 #include "relief/denoise.h"
+#include "relief/error.h"
+#include "relief/shot.h"
 
 namespace relief::cli {
 
@@ -136,6 +138,9 @@ void add_part_options(CLI::App& verb, RenderOptions& o) {
             if (range[0] >= range[1]) refuse_value("--samples", text, "A:B with A < B");
             o.samples = {int(range[0]), int(range[1])};
         });
+    add(verb, "--frames", "LIST", "of a scene file with keys: 1-100x2,150; OUT.####.exr, one each",
+        [&o](const std::string& text) { o.frames = parse_frames(text); });
+    verb.add_flag("--skip-existing", o.skips_existing, "keep frames whose whole pictures are there already");
     add(verb, "--edits", "FILE",
         "then a picture after each edit of a map in FILE (-: as they come on standard input); "
         "paths in it start from the current folder",
@@ -255,6 +260,16 @@ void check_aim(const RenderOptions& o) {
     check_text_writable(o.aim.saved_scene);
 }
 
+void check_frames(const RenderOptions& o) {
+    if (!o.frames.empty() && is_mesh_file(o.input))
+        throw Error(ErrorKind::usage, {"frames are those of a scene file", "--frames",
+                                       "--turntable N turns the camera about a mesh"});
+    if (!o.frames.empty()) check_series(o);
+    if (o.skips_existing && get_lower_extension(o.output) != ".exr")
+        throw Error(ErrorKind::usage,
+                    {"only .exr files say what they show", "--skip-existing", "-o FILE.####.exr"});
+}
+
 /// Parts of a picture differ at their edges and in their noise, so they are denoised when they are one.
 void check_denoise(const RenderOptions& o) {
     if (!o.tile && !o.samples) return;
@@ -269,6 +284,16 @@ void add_layers(std::span<const char* const> names, std::vector<std::string>& la
 }
 
 } // namespace
+
+void check_series(const RenderOptions& o) {
+    if (o.edits.empty() && !o.pixel && o.statistics_file.empty() && o.aim.turntable == 0 &&
+        o.aim.saved_scene.empty() && !o.checkpoint.is_on())
+        return;
+    throw Error(
+        ErrorKind::usage,
+        {"frames are several pictures", "--frames",
+         "leave out --edits, --pixel, --stats, --turntable, --save-scene, --checkpoint and --resume"});
+}
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {
     verb.add_option_function<std::string>(
@@ -286,9 +311,9 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name :
-         {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate", "--type", "--frame",
-          "--lengths", "--encoding", "--wrap", "--png-bits", "--color-space", "--clamp-indirect"})
+    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
+                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
+                             "--color-space", "--clamp-indirect", "--skip-existing", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 
@@ -324,6 +349,7 @@ void complete_render_options(RenderOptions& o) {
     } else if (!o.settings.image.layers.empty()) {
         throw Error(ErrorKind::usage, {"only .exr files hold layers", o.output.string(), "-o FILE.exr"});
     }
+    check_frames(o);
     if (o.is_denoised) add_layers(kDenoiserLayers, o.settings.image.layers);
     refuse_link_loop(o.edits, ErrorKind::bad_input);
     if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))

@@ -36,6 +36,8 @@ struct RenderOptions {
     std::optional<Tile> tile;
     std::optional<std::pair<int, int>> pixel;
     CheckpointOptions checkpoint;
+    std::vector<int> frames;     ///< empty: those of the scene file
+    bool skips_existing = false; ///< frames whose pictures are there
     bool is_denoised = false;
     std::shared_ptr<const Denoiser> denoiser; ///< where is_denoised
     ProgressOptions progress;
@@ -48,6 +50,9 @@ void add_render_options(CLI::App& verb, RenderOptions& options);
 /// Checks everything that does not need the scene: files and conflicting options. Fills in the default output
 /// name.
 void complete_render_options(RenderOptions& options);
+
+/// Throws Error{usage} for options that are of one picture.
+void check_series(const RenderOptions& options);
 
 /// Final settings: command line, then scene file, then defaults; with crop, tile and sample range applied.
 RenderSettings make_settings(const RenderOptions& options, const PictureDefaults& picture);

@@ -35,6 +35,7 @@ struct AimOptions {
     std::optional<float> strength;       ///< of the environment
     std::vector<SunDirection> suns;      ///< instead of the suns of the scene
     Ground ground = Ground::none;
+    friend bool operator==(const AimOptions&, const AimOptions&) = default;
 };
 
 /// Applies `options`. `aspect` is width / height of the picture: framed objects take about 85 % of its

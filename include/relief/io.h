@@ -1,12 +1,15 @@
 // Reading and writing of files: scenes, meshes, maps and images. In library relief_io; the core does not need
 // it. relief_io reads plain EXR itself; PNG, JPEG, TIFF, HDR and other EXR are read by the module
-// relief_pictures beside the program, loaded when the first such image is opened.
+// relief_pictures beside the program, loaded when the first such image is opened; a build without that module
+// reads PNG by libpng.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +42,19 @@ std::optional<int> run_mesh_reader(int argument_count, const char* const* argume
 /// Error{bad_input} with file, line and column, object and hint; for meshes as load_mesh, for images as
 /// read_image.
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader = {});
+
+/// Meshes and pictures in memory, by the names that a scene text calls their files by. Those of pictures may
+/// hold a token for tiles in the text ("hide.`<UDIM>`") and the number of a tile here ("hide.1001").
+struct SceneAssets {
+    std::map<std::string, Mesh>
+        meshes; ///< with their normals, tangents and creases; each for one mesh of the text
+    std::map<std::string, std::shared_ptr<const Texture>> textures; ///< as read_texture reads them
+};
+
+/// Reads the text of a scene file. A name of a mesh or picture that is in `assets` stands for what is there;
+/// other names are files, relative to `folder`. The rest as load_scene.
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets = {},
+                       const MeshReaderSettings& reader = {});
 
 /// Convention of a displacement map. Unset values come from the preset, then from the file; docs/formats.md
 /// lists the names.
@@ -96,6 +112,11 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
 
 /// A mesh in memory, displaced by `map` unless that is null, with automatic camera and light.
 Scene make_mesh_scene(Mesh mesh, const Displacement* map);
+
+/// Camera and light of a scene with one object, as load_mesh_scene chooses them: the picture of its
+/// environment lights it, where there is one. An object without a material gets one of clay. Throws as
+/// render().
+void complete_mesh_scene(Scene& scene);
 
 /// A map on a plane two units wide that faces +z, with automatic camera and light. Throws Error{bad_input}.
 Scene make_map_scene(const Displacement& map);

@@ -157,8 +157,9 @@ struct Progress {
     double elapsed_s = 0; ///< since the render started
 };
 
-/// Receives progress and requests cancellation. on_progress is called from one thread at a time, a few times
-/// a second; is_cancelled from any thread, often, also at once.
+/// Receives progress and pictures so far, and requests cancellation. on_progress is called from one thread at
+/// a time, a few times a second; is_cancelled from any thread, often, also at once; the others from the
+/// thread that renders.
 class RenderObserver {
   public:
     virtual ~RenderObserver() = default;
@@ -168,6 +169,13 @@ class RenderObserver {
     virtual bool is_cancelled() const = 0;
     /// Called once, before the first ray, with all warnings (Statistics::warnings) known by then.
     virtual void on_warnings(const std::vector<std::string>& warnings) { (void)warnings; }
+    /// Seconds between two calls of on_picture; infinity: it is never called. Asked once, before the first
+    /// ray.
+    virtual double picture_interval_s() const { return std::numeric_limits<double>::infinity(); }
+    /// The picture so far, as RenderResult::image has it, without metadata: called as soon as every pixel has
+    /// a sample, then every picture_interval_s(), up to the time that a tile takes, while no sample is
+    /// traced.
+    virtual void on_picture(Image picture) { (void)picture; }
 };
 
 /// Keeps the sums of all samples, so that a render can go on from them.
@@ -197,6 +205,10 @@ struct RenderResult {
 /// Throws Error (usage for settings out of range, bad_input, device_missing, out_of_memory). Thread safe.
 RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver* observer = nullptr,
                     const Checkpoints& checkpoints = {});
+
+/// Header entry "relief:settings" of pictures: what the mean of a pixel depends on beside the scene, alike on
+/// all engines and structures.
+std::string describe_settings(const RenderSettings& settings);
 
 /// Traversals of a structure that an engine supports, the default first.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);

@@ -22,6 +22,7 @@ inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
 inline constexpr float kMaxNormalScale = 1000;
+inline constexpr float kMaxLensShift = 100;     ///< either way
 inline constexpr float kInfiniteSharpness = 10; ///< of a crease
 inline constexpr size_t kMaxLightGroupName = 64;
 
@@ -291,6 +292,9 @@ struct Camera {
     float fov_degrees = 35;    ///< vertical, in (0, 180)
     float aperture_radius = 0; ///< scene units; 0 is a pinhole
     float focus_distance = 1;  ///< scene units along the view axis, > 0
+    /// Of the lens: the middle of the picture lies so far to the right and above of the view axis, in heights
+    /// of the picture.
+    Vec2f shift{0, 0};
 };
 
 /// Latitude-longitude environment map of radiance; the centre of the image is seen along -z, rotated by
@@ -357,6 +361,9 @@ struct Scene {
 /// Checks all indices and ranges, and that values are finite. Throws Error{bad_input} naming the offending
 /// object.
 void validate_scene(const Scene& scene);
+
+/// The same for a camera.
+void validate_camera(const Camera& camera);
 
 /// The same for one mesh, which messages call by its name, or by `index` if it has none.
 void validate_mesh(const Mesh& mesh, size_t index = 0);

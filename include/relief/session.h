@@ -1,4 +1,5 @@
-// Interactive rendering: a scene that stays prepared between pictures while its displacement maps are edited.
+// Interactive rendering: a scene that stays prepared between pictures while its displacement maps are edited
+// and its camera moves.
 #pragma once
 
 #include <cstdint>
@@ -47,6 +48,12 @@ class Session {
     /// nothing, for an unknown name or tile, a rectangle outside the map, and values that are not finite or
     /// displace by more than 1e18 scene units.
     EditReport edit(const MapEdit& edit);
+
+    /// The next picture is of another view of the scene, all of it traced anew. The CPU engine's default
+    /// traversal keeps its trees; others are made anew. `image` may differ from that of the session in all
+    /// but its layers; `scene_hash` names what it shows as Scene::hash does, 0: made of the old one and the
+    /// camera. Throws as render(), and Error{usage} for other layers; nothing changes then.
+    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0);
 
     /// Throws what edit() would throw; changes nothing.
     void check(const MapEdit& edit) const;

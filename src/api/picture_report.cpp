@@ -1,6 +1,8 @@
 #include "api/picture_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -62,8 +64,9 @@ void add_cache_warning(Statistics& statistics) {
         100 * lost / stages, statistics.bottom_rebuilt, statistics.bottom_cache_bytes >> 20));
 }
 
-/// What the mean of a pixel depends on beside the scene, alike on all engines and structures.
-std::string describe_light_and_surface(const RenderSettings& settings) {
+} // namespace
+
+std::string describe_settings(const RenderSettings& settings) {
     const ImageSettings& image = settings.image;
     const SurfaceSettings& surface = settings.surface;
     const std::string background = image.background ? fmt::format("{} {} {}", image.background->x,
@@ -79,8 +82,6 @@ std::string describe_light_and_surface(const RenderSettings& settings) {
                        surface.bounce_levels == BounceLevels::automatic ? "auto" : "camera",
                        surface.leaf == LeafKind::exact ? "exact" : "box");
 }
-
-} // namespace
 
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
                         Statistics& statistics) {
@@ -105,6 +106,14 @@ PictureSpace make_picture_space(const PreparedScene& scene) {
     return {scene.origin, camera.right, camera.up, -camera.forward};
 }
 
+void show_pictures(const Film& film, const PictureSpace& space, RenderControl& control) {
+    RenderObserver* const observer = control.observer;
+    const double interval_s =
+        observer ? observer->picture_interval_s() : std::numeric_limits<double>::infinity();
+    if (std::isinf(interval_s)) return;
+    control.show = {interval_s, [&film, space, observer] { observer->on_picture(film.resolve(space)); }};
+}
+
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash) {
     const ImageSettings& image = settings.image;
     // Layers of which no sums are kept, and their order, do not matter.
@@ -116,7 +125,7 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
                        "engine {}",
                        RELIEF_VERSION_STRING, scene_hash, image.width, image.height, image.crop.x0,
                        image.crop.y0, image.crop.x1, image.crop.y1, image.seed, image.first_sample,
-                       describe_light_and_surface(settings), fmt::join(layers, ","), image.noise,
+                       describe_settings(settings), fmt::join(layers, ","), image.noise,
                        settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
 }
 
@@ -131,7 +140,7 @@ void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_c
     image.metadata["relief:samples"] =
         fmt::format("{}:{}", settings.image.first_sample, settings.image.first_sample + samples);
     image.metadata["relief:scene_hash"] = fmt::format("{:016x}", scene_hash);
-    image.metadata["relief:settings"] = describe_light_and_surface(settings);
+    image.metadata["relief:settings"] = describe_settings(settings);
     if (const Window& whole = settings.image.whole_window; whole != Window{})
         image.metadata["relief:whole_window"] =
             fmt::format("{},{},{},{}", whole.x0, whole.y0, whole.x1, whole.y1);

@@ -29,4 +29,7 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
                   Image& image);
 
+/// Has the observer of `control`, if it wants any, shown the picture so far; the film outlives the render.
+void show_pictures(const Film& film, const PictureSpace& space, RenderControl& control);
+
 } // namespace relief

@@ -19,7 +19,7 @@ namespace relief {
 RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* observer,
                     const Checkpoints& checkpoints) {
     validate_settings(given);
-    const RenderSettings settings = complete_settings(given, scene);
+    const RenderSettings settings = complete_settings(given, has_shadow_catchers(scene));
     validate_method(settings, scene.camera);
     const uint64_t scene_hash = scene.hash;
     RenderResult result;
@@ -38,20 +38,22 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         if (observer) observer->on_warnings(prepared->warnings);
         const Timer timer;
         RenderControl control(observer);
-        control.save_interval_s = checkpoints.interval_s;
+        control.save.interval_s = checkpoints.interval_s;
         if (checkpoints.save)
-            control.save = [&] {
+            control.save.call = [&] {
                 if (film.most_samples() > 0)
                     checkpoints.save([&](std::ostream& s) { film.write(s, identity); });
             };
+        show_pictures(film, make_picture_space(*prepared), control);
         try {
             result.is_complete = engine->render(film, control);
         } catch (...) {
-            if (control.save) control.save(); // samples are added whole: a lost device loses no others
+            if (control.save.call)
+                control.save.call(); // samples are added whole: a lost device loses no others
             throw;
         }
         statistics.render_s = timer.seconds();
-        if (control.save) control.save();
+        if (control.save.call) control.save.call();
 
         collect_statistics(*engine, film, *prepared, statistics);
         const PictureSpace space = make_picture_space(*prepared);

@@ -12,20 +12,22 @@
 #include "base/timer.h"
 #include "prepare/scene_edit.h"
 #include "prepare/validate_settings.h"
+#include "relief/error.h"
 
 namespace relief {
 
 struct Session::Implementation {
     RenderSettings settings;
-    double prepare_s = 0; ///< since the last picture
+    std::vector<std::string> layers; ///< as the caller gave them
+    double prepare_s = 0;            ///< since the last picture
     std::shared_ptr<const InstanceMattes> mattes;
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
 
-    Implementation(Scene scene, const RenderSettings& given) : settings(given) {
+    Implementation(Scene scene, const RenderSettings& given) : layers(given.image.layers) {
         validate_settings(given);
-        settings = complete_settings(given, scene);
+        settings = complete_settings(given, has_shadow_catchers(scene));
         validate_method(settings, scene.camera);
         const Timer timer;
         mattes = make_instance_mattes(scene, settings.image.layers);
@@ -44,11 +46,35 @@ struct Session::Implementation {
 
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
-        if (film) return engine->refresh(*film, observer);
+        const PictureSpace space = make_picture_space(*editor->scene());
+        RenderControl control(observer);
+        if (film) {
+            show_pictures(*film, space, control);
+            return engine->refresh(*film, control);
+        }
         auto fresh = std::make_unique<Film>(make_film(settings.image, mattes));
-        const bool is_complete = engine->render(*fresh, observer);
+        show_pictures(*fresh, space, control);
+        const bool is_complete = engine->render(*fresh, control);
         film = std::move(fresh);
         return is_complete;
+    }
+
+    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
+        const Timer timer;
+        if (image.layers != layers)
+            throw Error(ErrorKind::usage,
+                        {"a session keeps its layers", "image.layers", "begin another session"});
+        RenderSettings changed = settings;
+        changed.image = image;
+        validate_settings(changed);
+        validate_camera(camera);
+        validate_method(changed, camera);
+        changed = complete_settings(changed, editor->scene()->has_shadow_catchers);
+        settings = changed;
+        film.reset();
+        if (!engine->change_view(editor->change_view(camera, settings, scene_hash), settings.image))
+            start_engine();
+        prepare_s += timer.seconds();
     }
 
     EditReport apply(const MapEdit& edit) {
@@ -56,8 +82,10 @@ struct Session::Implementation {
         const CheckedEdit checked = editor->check(edit);
         // If anything fails from here on, the next picture is rendered from scratch.
         std::unique_ptr<Film> kept = std::move(film);
+        const bool was_enclosed = editor->scene()->may_enclose_camera;
         const std::vector<SurfaceChange> changes = editor->apply(checked);
-        if (engine->apply_changes(changes))
+        // All bounce rays see other levels once the camera comes to be in a body.
+        if (editor->scene()->may_enclose_camera == was_enclosed && engine->apply_changes(changes))
             film = std::move(kept);
         else
             start_engine();
@@ -102,6 +130,11 @@ EditReport Session::edit(const MapEdit& edit) {
     EditReport report;
     with_threads(implementation_->settings.device.threads, [&] { report = implementation_->apply(edit); });
     return report;
+}
+
+void Session::change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
+    with_threads(implementation_->settings.device.threads,
+                 [&] { implementation_->change_view(camera, image, scene_hash); });
 }
 
 void Session::check(const MapEdit& edit) const {

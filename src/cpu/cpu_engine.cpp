@@ -43,6 +43,15 @@ class CpuEngine final : public Engine, private PassTracer {
         return true;
     }
 
+    bool change_view(std::span<const SurfaceChange> changes, const ImageSettings& image) override {
+        std::vector<Box> places;
+        if (!tracer_.change_view(changes, places)) return false;
+        lights_.follow_surfaces();
+        footprints_.reset();
+        settings_.image = image;
+        return true;
+    }
+
     void expect_changes() override { expects_changes_ = !tracer_.displaced_bounds().is_empty(); }
 
     bool render(Film& film, const RenderControl& control) override {

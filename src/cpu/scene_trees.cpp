@@ -22,13 +22,20 @@ size_t SceneTrees::byte_count() const {
 
 SceneTreeHolder::SceneTreeHolder(const PreparedScene& scene, const Kernels& kernels,
                                  std::span<const PolygonTree> polygon_trees)
-    : scene_(scene),
-      kernels_(kernels),
-      polygon_trees_(polygon_trees),
-      rays_to_come_(kRaysPerVertex *
-                    int64_t(PatchBoxes(scene, kernels, BoxSource::vertices).count_vertices())),
-      is_improved_(rays_to_come_ == 0),
-      trees_(make_trees(BoxSource::bounds)) {}
+    : scene_(scene), kernels_(kernels), polygon_trees_(polygon_trees) {
+    start();
+}
+
+void SceneTreeHolder::start() {
+    rays_to_come_ =
+        kRaysPerVertex * int64_t(PatchBoxes(scene_, kernels_, BoxSource::vertices).count_vertices());
+    is_improved_ = rays_to_come_ == 0;
+    trees_ = make_trees(BoxSource::bounds);
+}
+
+void SceneTreeHolder::forget_levels() {
+    if (trees_->source == BoxSource::vertices) start();
+}
 
 std::shared_ptr<const SceneTrees> SceneTreeHolder::current() const {
     const std::lock_guard lock(mutex_);

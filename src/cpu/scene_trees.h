@@ -40,7 +40,12 @@ class SceneTreeHolder {
     /// As Engine::apply_changes: not while rays are traced. Adds boxes of what changed, world space.
     void apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
+    /// The levels of instances have changed: trees of vertices at the old ones are given up for those of the
+    /// bounds of maps, which hold all levels. Not while rays are traced.
+    void forget_levels();
+
   private:
+    void start();
     std::shared_ptr<SceneTrees> make_trees(BoxSource source) const;
     WideBvh make_instance_tree(std::span<const WideBvh> surfaces) const;
     void add_places(const SurfaceChange& change, const WideBvh& tree, std::vector<Box>& places) const;
@@ -48,9 +53,9 @@ class SceneTreeHolder {
     const PreparedScene& scene_;
     const Kernels& kernels_;
     std::span<const PolygonTree> polygon_trees_;
-    std::atomic<int64_t> rays_to_come_; ///< until it pays; 0 or less: it does
-    std::atomic<bool> is_improved_;     ///< or there is nothing to be made smaller
-    mutable std::mutex mutex_;          ///< of the pointer
+    std::atomic<int64_t> rays_to_come_{0}; ///< until it pays; 0 or less: it does
+    std::atomic<bool> is_improved_{false}; ///< or there is nothing to be made smaller
+    mutable std::mutex mutex_;             ///< of the pointer
     std::shared_ptr<SceneTrees> trees_;
 };
 

@@ -362,10 +362,11 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
                                                         is_from_behind(lanes, lane, direction)));
     active_[next] = active_[k];
     rays_[next] = {get_lane(lanes.bounce_origin, lane), 0, direction, kInfinity, uint32_t(hits_[k].lod_bias)};
-    // A body is left on the surface that it was entered on: between the two there would be no way out.
-    coarse_from_[next] = body ? kInfinity
-                              : scalar::find_coarse_distance(bounce_lod_, rays_[next].origin,
-                                                             rays_[next].lod_bias, path.bsdf_pdf);
+    // Within a body, between the two surfaces there would be a way in, or none out.
+    const bool is_inside = body || dot(points_[k].geometric_normal, direction) < 0;
+    coarse_from_[next] = is_inside ? kInfinity
+                                   : scalar::find_coarse_distance(bounce_lod_, rays_[next].origin,
+                                                                  rays_[next].lod_bias, path.bsdf_pdf);
     return true;
 }
 

@@ -44,6 +44,7 @@ struct Tracer::Implementation {
     SceneView view;                         ///< but for the scene trees
     std::unique_ptr<SceneTreeHolder> trees; ///< null: those of a walk requested by name
     size_t most_tree_bytes = 0;
+    float pixel_error = 1;
 
     void make_trees(const PreparedScene& scene) {
         if (walk) return;
@@ -55,6 +56,14 @@ struct Tracer::Implementation {
     /// An only instance is entered without a look at its mask.
     bool is_hidden(uint32_t mask) const {
         return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
+    }
+
+    /// Takes what the camera decides from the scene.
+    void follow_camera(const PreparedScene& scene) {
+        const float pixel =
+            float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / scene.height);
+        view.pixel_angle = pixel_error * pixel;
+        find_most_tree_bytes();
     }
 
     /// Of the trees of all patches, if those of an instance all had its finest level.
@@ -140,16 +149,14 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.walk = std::move(walk);
     self.make_trees(*scene_);
     self.cache = std::make_unique<PatchTreeCache>(make_limits(settings.surface), self.kernels->build_tree);
-    const float pixel =
-        float(2 * std::tan(scene_->camera.fov_degrees * std::numbers::pi / 360) / scene_->height);
     self.view.instances = scene_->instances.data();
     self.view.surfaces = scene_->surfaces.data();
     self.view.instance_count = uint32_t(scene_->instances.size());
     self.view.polygon_trees = self.polygon_trees.data();
     self.view.cache = self.cache.get();
     self.view.leaf = settings.surface.leaf, self.view.lod = settings.surface.lod;
-    self.view.pixel_angle = settings.surface.pixel_error * pixel;
-    self.find_most_tree_bytes();
+    self.pixel_error = settings.surface.pixel_error;
+    self.follow_camera(*scene_);
 }
 
 Tracer::~Tracer() = default;
@@ -186,6 +193,14 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
         });
     });
     return true;
+}
+
+bool Tracer::change_view(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
+    Implementation& self = *implementation_;
+    if (!self.trees) return false;
+    self.trees->forget_levels();
+    self.follow_camera(*scene_);
+    return apply_changes(changes, places);
 }
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth,

@@ -76,6 +76,9 @@ class Tracer {
     /// As Engine::apply_changes. Adds boxes of what changed, before and after, world space, to `places`.
     bool apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
+    /// As Engine::change_view.
+    bool change_view(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 

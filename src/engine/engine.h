@@ -14,13 +14,19 @@
 
 namespace relief {
 
-/// Who follows a render, and what is called every `save_interval_s` seconds while no sample is traced.
+/// What is called every so many seconds while no sample is traced.
+struct Interruption {
+    double interval_s = std::numeric_limits<double>::infinity();
+    std::function<void()> call; ///< may be empty
+};
+
+/// Who follows a render.
 struct RenderControl {
     RenderControl(RenderObserver* render_observer = nullptr) : observer(render_observer) {}
 
     RenderObserver* observer;
-    double save_interval_s = std::numeric_limits<double>::infinity();
-    std::function<void()> save; ///< may be empty
+    Interruption save;
+    Interruption show; ///< once as soon as every pixel has a sample, then at its intervals
 };
 
 class Engine {
@@ -30,6 +36,13 @@ class Engine {
     /// The scene's editor has changed it in place: texels, bounds and levels of these patches, one change a
     /// surface. Not while rays are traced. False: the engine does not support that, a new one has to be made.
     virtual bool apply_changes(std::span<const SurfaceChange> changes) = 0;
+
+    /// The scene's editor has changed the camera, the size of pictures and with them levels in place; these
+    /// patches read other copies of maps. `image` takes the place of those settings. As apply_changes() else.
+    virtual bool change_view(std::span<const SurfaceChange> changes, const ImageSettings& image) {
+        (void)changes, (void)image;
+        return false;
+    }
 
     /// Adds those of samples [settings.image.first_sample, + spp) of every pixel of the film's window that it
     /// lacks. Returns false when the observer cancelled; the film then holds what was done.

@@ -30,7 +30,8 @@ void PassMonitor::start_pass(double fraction, uint64_t pixel_samples) {
 }
 
 void PassMonitor::finish_task(uint64_t pixel_samples, uint64_t rays) {
-    done_ += pixel_samples, rays_ += rays, has_news_ = true;
+    done_ += pixel_samples, rays_ += rays;
+    is_unsaved_ = is_unseen_ = true;
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (lock && timer_.seconds() - progress_.elapsed_s >= kReportInterval) report();
 }
@@ -42,10 +43,17 @@ void PassMonitor::finish_pass(int samples_a_pixel) {
     report();
 }
 
-void PassMonitor::save() {
-    control_.save();
-    has_news_ = false;
-    save_timer_ = {};
+void PassMonitor::interrupt() {
+    if (must_save()) {
+        control_.save.call();
+        is_unsaved_ = false;
+        save_timer_ = {};
+    }
+    if (must_show()) {
+        control_.show.call();
+        is_unseen_ = false, has_shown_ = true;
+        show_timer_ = {};
+    }
 }
 
 void PassMonitor::report() {
@@ -78,10 +86,11 @@ PassReport render_passes(Film& film, const ImageSettings& image, const RenderCon
                 return report;
             }
             if (monitor.is_out_of_time()) return report;
-            if (monitor.must_save()) monitor.save();
+            monitor.interrupt();
         }
         if (report.first_image_s == 0) report.first_image_s = monitor.seconds();
         monitor.finish_pass(plan.target());
+        monitor.interrupt();
     }
     return report;
 }

@@ -1,5 +1,5 @@
-// What both engines do around the tracing of samples: passes, progress, cancellation, time limits and
-// checkpoints.
+// What both engines do around the tracing of samples: passes, progress, cancellation, time limits,
+// checkpoints and pictures so far.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ class PassMonitor {
 
     bool is_cancelled() const { return control_.observer && control_.observer->is_cancelled(); }
     /// Whether tracing is to end before the next task, or within one where that is possible.
-    bool must_stop() const { return is_cancelled() || is_out_of_time() || must_save(); }
+    bool must_stop() const { return is_cancelled() || is_out_of_time() || must_save() || must_show(); }
     bool is_out_of_time() const;
     /// A task is done: so many samples and rays. Reports progress now and then.
     void finish_task(uint64_t pixel_samples, uint64_t rays);
@@ -28,25 +28,29 @@ class PassMonitor {
     void start(int samples_a_pixel);
     void start_pass(double fraction, uint64_t pixel_samples);
     void finish_pass(int samples_a_pixel);
-    /// Never twice without a task between.
-    bool must_save() const {
-        return control_.save && has_news_ && save_timer_.seconds() >= control_.save_interval_s;
-    }
-    void save();
+    /// Saves and shows what is due. Never twice without a task between.
+    void interrupt();
     double seconds() const { return timer_.seconds(); }
 
   private:
     void report();
+    bool must_save() const {
+        return control_.save.call && is_unsaved_ && save_timer_.seconds() >= control_.save.interval_s;
+    }
+    bool must_show() const {
+        return control_.show.call && has_first_pass_ && is_unseen_ &&
+               (!has_shown_ || show_timer_.seconds() >= control_.show.interval_s);
+    }
 
     const RenderControl& control_;
     double time_limit_s_;
-    bool has_first_pass_ = false;
-    std::atomic<bool> has_news_{false};       ///< since the last save()
-    std::atomic<uint64_t> done_{0}, rays_{0}; ///< done: pixel samples of this pass
+    bool has_first_pass_ = false, has_shown_ = false;
+    std::atomic<bool> is_unsaved_{false}, is_unseen_{false}; ///< samples since the last call
+    std::atomic<uint64_t> done_{0}, rays_{0};                ///< done: pixel samples of this pass
     double fraction_ = 0, share_of_sample_ = 0;
     std::mutex mutex_;
     Progress progress_;
-    Timer timer_, save_timer_;
+    Timer timer_, save_timer_, show_timer_;
 };
 
 /// The part of an engine that traces.

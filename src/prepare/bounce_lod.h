@@ -6,7 +6,8 @@
 
 namespace relief {
 
-/// Off, with a cell_angle of 0, where no surface has automatic levels or the settings say so.
+/// Off, with a cell_angle of 0, where no surface has automatic levels, the camera may look out of a displaced
+/// body, or the settings say so.
 scalar::BounceLod make_bounce_lod(const PreparedScene& scene, const RenderSettings& settings);
 
 } // namespace relief

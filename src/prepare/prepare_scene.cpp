@@ -1,6 +1,4 @@
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <tuple>
@@ -10,8 +8,10 @@
 #include "base/parallel.h"
 #include "formulas/mips.h"
 #include "math/affine.h"
+#include "prepare/camera_enclosure.h"
 #include "prepare/editable_scene.h"
 #include "prepare/local_origins.h"
+#include "prepare/scene_levels.h"
 #include "prepare/scene_warnings.h"
 #include "prepare/space_warnings.h"
 #include "prepare/tessellate.h"
@@ -52,16 +52,6 @@ void check_visibility(const Scene& scene) {
                                                scene.objects[k].name.empty() ? "object " + std::to_string(k)
                                                                              : scene.objects[k].name,
                                                "leave the object out, or set a bit"});
-}
-
-LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& settings) {
-    LevelFieldConfig config;
-    config.fixed_level = settings.surface.level == kAutoLevel ? -1 : settings.surface.level;
-    config.pixel_error = settings.surface.pixel_error;
-    config.camera = camera.from;
-    config.pixel_angle =
-        float(2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
-    return config;
 }
 
 std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
@@ -278,16 +268,10 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     add_tangents(*prepared);
     place_instances(scene, taken_off, origin, *prepared);
 
-    prepared->levels = make_level_config(prepared->camera, settings);
-    parallel_for("level_fields", prepared->instances.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            Instance& instance = prepared->instances[k];
-            instance.levels = std::make_shared<const LevelField>(LevelField::compute(
-                prepared->surfaces[instance.surface], instance.world_from_object, prepared->levels));
-        }
-    });
+    update_scene_levels(*prepared, settings);
     for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
         prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
+    prepared->may_enclose_camera = may_enclose_camera(*prepared);
     prepared->terminators = find_terminators(*prepared);
     if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(*prepared);
     if (settings.surface.mode == SurfaceMode::tessellated)

@@ -84,7 +84,8 @@ struct PreparedScene {
     uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture
     Vec3f origin{}; ///< world space is measured from here, camera and lights included: SceneOrigin::camera
-    LevelFieldConfig levels; ///< what the instances' levels were computed with
+    LevelFieldConfig levels;         ///< what the instances' levels were computed with
+    bool may_enclose_camera = false; ///< see prepare/camera_enclosure.h
     std::vector<std::string> warnings;
 };
 

@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 
 #include "base/content_hash.h"
+#include "prepare/camera_enclosure.h"
 #include "prepare/editable_scene.h"
 #include "prepare/local_origins.h"
+#include "prepare/scene_levels.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
 #include "surface/patch/map_edit.h"
@@ -46,6 +48,14 @@ uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
     sum.add(std::array{uint32_t(edit.udim), uint32_t(edit.x), uint32_t(edit.y), uint32_t(edit.texels.width),
                        uint32_t(edit.texels.height)});
     sum.add(edit.texels.floats), sum.add(edit.texels.halves);
+    return sum.value();
+}
+
+uint64_t hash_view(uint64_t hash, const Camera& camera) {
+    ContentHash sum(hash);
+    const auto& [from, to, up, fov_degrees, aperture_radius, focus_distance, shift] = camera;
+    sum.add(std::vector<Vec3f>{from, to, up});
+    sum.add(std::vector<float>{fov_degrees, aperture_radius, focus_distance, shift.x, shift.y});
     return sum.value();
 }
 
@@ -279,7 +289,29 @@ std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
         extend_reach(changes[k].surface, reaches[k]);
         find_different_patches(readings, reaches[k], changes[k]);
     }
+    scene_->may_enclose_camera = may_enclose_camera(*scene_);
     hash_ = hash_edit(hash_, edit.edit_);
+    return changes;
+}
+
+std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const RenderSettings& settings,
+                                                    uint64_t scene_hash) {
+    PreparedScene& scene = *scene_;
+    scene.camera = camera;
+    scene.camera.from = camera.from - scene.origin, scene.camera.to = camera.to - scene.origin;
+    scene.width = settings.image.width, scene.height = settings.image.height;
+    update_scene_levels(scene, settings);
+    std::vector<SurfaceChange> changes;
+    for (uint32_t k = 0; k < scene.surfaces.size(); ++k)
+        if (scene.surfaces[k].has_displacement)
+            changes.push_back({k, std::vector<uint8_t>(scene.surfaces[k].patch_count()), {}});
+    update_mips(changes);
+    std::erase_if(changes, [](const SurfaceChange& c) {
+        return std::ranges::find(c.is_changed, 1) == c.is_changed.end();
+    });
+    for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
+    scene.may_enclose_camera = may_enclose_camera(scene);
+    hash_ = scene_hash != 0 ? scene_hash : hash_view(hash_, camera);
     return changes;
 }
 

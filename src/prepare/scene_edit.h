@@ -26,8 +26,9 @@ class CheckedEdit {
     std::vector<size_t> maps_; ///< of PreparedScene::maps, each texture once
 };
 
-/// Changes a scene in place: texels, bounds of maps and their smaller copies, levels of instances, mips of
-/// patches. Surfaces' meshes, instances' places, materials and lights never change. Not thread safe.
+/// Changes a scene in place: texels, bounds of maps and their smaller copies, the camera, levels of
+/// instances, mips of patches. Surfaces' meshes, instances' places, materials and lights never change. Not
+/// thread safe.
 class SceneEditor {
   public:
     /// As prepare_scene(), with maps copied, as they may be shared. Error{usage} for tessellated surfaces.
@@ -43,6 +44,11 @@ class SceneEditor {
 
     /// What has changed then, one a surface.
     std::vector<SurfaceChange> apply(const CheckedEdit& edit);
+
+    /// Another camera and size of the picture, which have been validated; the patches that read other copies
+    /// of their maps for them. `scene_hash` as for Session::change_view.
+    std::vector<SurfaceChange> change_view(const Camera& camera, const RenderSettings& settings,
+                                           uint64_t scene_hash);
 
   private:
     /// What a surface reads of an image, and where that has changed, in the image and its copies.

@@ -118,8 +118,8 @@ bool has_shadow_catchers(const Scene& scene) {
     return std::ranges::any_of(scene.objects, &Object::is_shadow_catcher);
 }
 
-RenderSettings complete_settings(RenderSettings s, const Scene& scene) {
-    if (!has_shadow_catchers(scene)) return s;
+RenderSettings complete_settings(RenderSettings s, bool has_catchers) {
+    if (!has_catchers) return s;
     require(s.image.background == Vec3f{},
             "a shadow catcher shows the shadow before a background that shines through, and there is none",
             "image.background = transparent, or a colour for a .png");

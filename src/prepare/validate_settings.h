@@ -13,8 +13,8 @@ void validate_method(const RenderSettings& settings, const Camera& camera);
 
 bool has_shadow_catchers(const Scene& scene);
 
-/// With the layer that pictures of shadow catchers have besides, where the scene has some. Throws
-/// Error{usage} for a setting that does not go with them.
-RenderSettings complete_settings(RenderSettings settings, const Scene& scene);
+/// With the layer that pictures of shadow catchers have besides, where there are some. Throws Error{usage}
+/// for a setting that does not go with them.
+RenderSettings complete_settings(RenderSettings settings, bool has_catchers);
 
 } // namespace relief

@@ -286,21 +286,6 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
              "export the mesh with texture coordinates");
 }
 
-void check_camera(const Camera& camera) {
-    const std::string where = "camera";
-    if (!is_finite(camera.from) || !is_finite(camera.to) || !is_finite(camera.up))
-        fail(where, "is not finite");
-    const Vec3f axis = normalize(camera.to - camera.from);
-    if (length(axis) == 0) fail(where, "'from' and 'to' are the same point");
-    if (length(cross(axis, normalize(camera.up))) < 1e-5f)
-        fail(where, "'up' has no length or points along the view", "use another 'up', for example [0, 0, 1]");
-    if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
-        fail(where, fmt::format("fov_degrees is {}, not in (0, 180)", camera.fov_degrees));
-    check_range(where, "aperture_radius", camera.aperture_radius, 0, kHuge);
-    if (!(camera.focus_distance > 0 && camera.focus_distance <= kHuge))
-        fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
-}
-
 /// Squares of lengths from here to kFarthest are floats without loss.
 constexpr float kSmallestFace = 1e-18f;
 
@@ -387,6 +372,23 @@ void check_picture(const PictureDefaults& picture) {
 
 } // namespace
 
+void validate_camera(const Camera& camera) {
+    const std::string where = "camera";
+    if (!is_finite(camera.from) || !is_finite(camera.to) || !is_finite(camera.up))
+        fail(where, "is not finite");
+    const Vec3f axis = normalize(camera.to - camera.from);
+    if (length(axis) == 0) fail(where, "'from' and 'to' are the same point");
+    if (length(cross(axis, normalize(camera.up))) < 1e-5f)
+        fail(where, "'up' has no length or points along the view", "use another 'up', for example [0, 0, 1]");
+    if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+        fail(where, fmt::format("fov_degrees is {}, not in (0, 180)", camera.fov_degrees));
+    check_range(where, "aperture_radius", camera.aperture_radius, 0, kHuge);
+    if (!(camera.focus_distance > 0 && camera.focus_distance <= kHuge))
+        fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
+    check_range(where, "shift", camera.shift.x, -kMaxLensShift, kMaxLensShift);
+    check_range(where, "shift", camera.shift.y, -kMaxLensShift, kMaxLensShift);
+}
+
 void validate_scene(const Scene& scene) {
     for (size_t i = 0; i < scene.meshes.size(); ++i) validate_mesh(scene.meshes[i], i);
     for (size_t i = 0; i < scene.displacements.size(); ++i) check_displacement(scene.displacements[i], i);
@@ -405,7 +407,7 @@ void validate_scene(const Scene& scene) {
         check_light_group("environment", environment.light_group);
         if (environment.texture) check_texture("environment", *environment.texture);
     }
-    check_camera(scene.camera);
+    validate_camera(scene.camera);
     check_picture(scene.picture);
 }
 

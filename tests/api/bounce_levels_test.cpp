@@ -1,4 +1,6 @@
 // Levels that bounce rays see, as the settings choose them.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "relief/render.h"
@@ -18,11 +20,13 @@ Scene make_scene() {
     return scene;
 }
 
-RenderResult render_body(BounceLevels bounce_levels, int level) {
+RenderResult render_body(BounceLevels bounce_levels, int level, float camera_z = 4) {
     RenderSettings settings;
     settings.image.width = settings.image.height = 96, settings.image.spp = 2, settings.image.bounces = 2;
     settings.surface.level = level, settings.surface.bounce_levels = bounce_levels;
-    return render(make_scene(), settings);
+    Scene scene = make_scene();
+    scene.camera.from.z = camera_z;
+    return render(std::move(scene), settings);
 }
 
 TEST(BounceLevelsSetting, are_those_of_the_camera_with_a_fixed_level_or_on_request) {
@@ -32,6 +36,13 @@ TEST(BounceLevelsSetting, are_those_of_the_camera_with_a_fixed_level_or_on_reque
     const RenderResult camera = render_body(BounceLevels::camera, kAutoLevel);
     EXPECT_FALSE(coarse.image.pixels == camera.image.pixels);
     EXPECT_GT(coarse.statistics.bottom_built, camera.statistics.bottom_built);
+}
+
+TEST(BounceLevelsSetting, are_those_of_the_camera_within_a_body) {
+    constexpr float kTubeRadius = 1;
+    const RenderResult inner = render_body(BounceLevels::automatic, kAutoLevel, kTubeRadius);
+    EXPECT_TRUE(inner.image.pixels ==
+                render_body(BounceLevels::camera, kAutoLevel, kTubeRadius).image.pixels);
 }
 
 } // namespace

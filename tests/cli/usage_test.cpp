@@ -96,8 +96,8 @@ TEST_F(Usage, only_what_exists_can_be_chosen) {
                    "valid there: stack");
     expect_refused({"render", "plane.obj", "--engine", "vulkan", "--method", "raster"},
                    "one of: compute, fragment, hybrid");
-    expect_refused({"render", "plane.obj", "--frames", "0"}, "--frames");
-    EXPECT_FALSE(contains(run({"render", "--help"}).output, "--frames "));
+    expect_refused({"render", "plane.obj", "--frames", "0"}, "frames are those of a scene file");
+    expect_refused({"render", "plane.obj", "--shutter", "0,0.5"}, "--shutter");
     expect_refused({"render", "plane.obj", "--surface", "tesselated"}, "'tessellated'");
     expect_refused({"render", "plane.obj", "--layers", "depth,Normal"}, "unknown layer 'Normal'");
     expect_refused({"render", "plane.obj", "--layers", "diffuse-direct"}, "did you mean 'diffuse_direct'");

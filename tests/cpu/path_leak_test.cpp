@@ -85,7 +85,6 @@ uint64_t ray_count() {
 RenderSettings make_settings(uint64_t rays) {
     RenderSettings settings = make_small_settings(kSize, int(rays / (kSize * kSize * kRaysAPath)) + 1, 4);
     settings.surface.pixel_error = 3; // coarse enough that the view decides the levels
-    settings.surface.bounce_levels = BounceLevels::camera;
     return settings;
 }
 

@@ -213,12 +213,13 @@ TEST_F(Aim, a_copy_of_a_mesh_scene_names_its_files_and_reads_back) {
     AimOptions aim;
     aim.view = View::left, aim.ground = Ground::plane, aim.suns = {{10, 20}};
     aim_scene(scene, aim, 1);
-    scene.picture.width = 64;
+    scene.picture.width = 64, scene.camera.shift = {0.125f, -0.5f};
     const std::filesystem::path file = folder_ / "copies" / "s.json";
     save_scene_copy(scene, folder_ / "plane.obj", options, file);
     const Scene read = load_scene(file);
     EXPECT_EQ(read.camera.from, scene.camera.from);
     EXPECT_EQ(read.camera.focus_distance, scene.camera.focus_distance);
+    EXPECT_EQ(read.camera.shift, scene.camera.shift);
     EXPECT_EQ(read.picture.width, 64);
     ASSERT_EQ(read.objects.size(), 2u);
     EXPECT_EQ(read.meshes[0].subdivision, scene.meshes[0].subdivision);

@@ -32,7 +32,8 @@ TEST_F(SceneFiles, every_field_is_read) {
     write_pixels<uint8_t>("color.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});
     const Scene scene = parse(R"({ "version": 1, // comment
       "render": {"width": 64, "height": 32, "spp": 4, "bounces": 2, "seed": 4294967295},
-      "camera": {"from": [0, 0, 4], "to": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 50, "aperture_radius": 0.5},
+      "camera": {"from": [0, 0, 4], "to": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 50, "aperture_radius": 0.5,
+        "shift": [0.25, -1]},
       "environment": {"file": "env.exr", "color": [1, 1, 0.5], "strength": 2, "rotate_degrees": 40}, /* more */
       "materials": {"clay": {"base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metallic": 1, "ior": 1.3,
         "emission": [1, 2, 3], "base_color_texture": "color.png",
@@ -49,6 +50,7 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.picture.seed, 4294967295u);
     EXPECT_EQ(scene.picture.width, 64);
     EXPECT_EQ(scene.camera.focus_distance, 4);
+    EXPECT_EQ(scene.camera.shift, (Vec2f{0.25f, -1}));
     EXPECT_EQ(scene.environment->texture->floats.at(4), 4);
     EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
     EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
@@ -163,6 +165,8 @@ TEST_F(SceneFiles, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of(with_object(R"(, "transform": {"matrix": [1, 2]})")), "16 numbers");
     EXPECT_HAS(error_of(with_object(R"(, "shadow_catcher": "yes")")), "objects[0].shadow_catcher");
     EXPECT_HAS(error_of(R"({"camera": {"fov_degrees": 200}})"), "camera.fov_degrees: must be in");
+    EXPECT_HAS(error_of(R"({"camera": {"shift": [0, 101]}})"), "camera.shift[1]: must be in");
+    EXPECT_HAS(error_of(R"({"camera": {"shift": [0]}})"), "camera.shift: must be 2 numbers, not 1");
     EXPECT_HAS(error_of(R"({"render": {"width": 0}})"), "render.width");
     EXPECT_HAS(error_of(R"({"render": {"spp": -4}})"), "render.spp");
     EXPECT_HAS(error_of(R"({"materials": {"m": {"base_color": [1, 2, 0]}}})"), "materials.m.base_color[1]");

@@ -30,6 +30,7 @@ ALLOWED = {
 }
 
 # What an application may include of src/ besides include/relief.
+PYTHON = ["base", "math"]  # the same for python/src, which has the reports of apps as well
 APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"]}
 
 # Libraries that only these folders may see; a folder stands for all below it. Tests may see all of them.
@@ -44,8 +45,9 @@ LIBRARIES = {
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],
     r"embree3/": ["apps/bench"],
-    r"fmt/": ["src", "apps"],
+    r"fmt/": ["src", "apps", "python/src"],
     r"vulkan/vulkan": ["src/vulkan", "src/lab/vulkan"],
+    r"nanobind/": ["python/src"],
     r"immintrin\.h|.*mmintrin\.h|arm_neon\.h": [],
 }
 
@@ -75,6 +77,9 @@ def check_own_include(root, file, name, reachable):
     if place.parts[0] == "apps":
         here = [file.parent, root / "apps", root / "apps" / place.parts[1]]
         return None if any((p / name).is_file() for p in here) else "applications include relief/ and their own files only"
+    if place.parts[0] == "python":
+        here = [file.parent, root / "apps", *([root / "src"] if parts[0] in PYTHON else [])]
+        return None if any((p / name).is_file() for p in here) else "the Python module includes relief/, base/, math/ and reports"
     if place.parts[0] != "src":
         return None
     if name == "kernel_isas.h":  # made by cmake/Kernels.cmake

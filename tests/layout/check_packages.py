@@ -25,6 +25,9 @@ PACKAGES = {
     # Only `relief bench triangles` needs it.
     "embree": ["libembree-dev"],
     "Python3": ["python3"],
+    "Python": ["python3-dev", "python3-venv"],
+    # From the Python package index, as a part of the build of the Python module.
+    "nanobind": [],
     # What the tests of an installed Relief look for.
     "relief": ["pkgconf"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.

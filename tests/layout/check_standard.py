@@ -24,6 +24,7 @@ DECLARED = {
         isinf isnan isnormal ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering",
     "concepts": "floating_point integral same_as",
+    "condition_variable": "condition_variable",
     "csignal": "signal",
     "cstddef": "byte ptrdiff_t",
     "cstdio": "fclose fflush fgetc fopen fprintf fputs fread fseek ftell fwrite printf snprintf",

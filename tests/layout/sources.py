@@ -17,7 +17,7 @@ def list_files(root, folders=None):
     return sorted(files)
 
 
-def list_code(root, folders=("include", "src", "apps", "tests", "fuzz", "bench")):
+def list_code(root, folders=("include", "src", "apps", "tests", "fuzz", "bench", "python")):
     return [p for p in list_files(root, folders) if p.suffix in CODE]
 
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 #include "cast_fixture.h"
 #include "cpu/cpu_engine.h"
@@ -87,6 +88,18 @@ TEST_F(EngineTest, renders_what_the_cpu_engine_renders) {
     EXPECT_EQ(statistics.camera_rays, 3u * 48 * 32);
     EXPECT_GT(statistics.bottom_built, 0u);
     EXPECT_GE(statistics.pairs_emitted, statistics.pairs_with_hit);
+}
+
+TEST_F(EngineTest, shows_pictures_of_whole_passes_and_changes_nothing) {
+    prepare();
+    Film film = make_film(), alone = make_film();
+    std::vector<uint32_t> samples;
+    RenderControl control;
+    control.show = {0, [&] { samples.push_back(film.least_samples()); }};
+    EXPECT_TRUE(engine_->render(film, control));
+    EXPECT_EQ(samples, (std::vector<uint32_t>{1, 2, 3}));
+    EXPECT_TRUE(engine_->render(alone, nullptr));
+    EXPECT_EQ(film.resolve().pixels, alone.resolve().pixels);
 }
 
 TEST_F(EngineTest, cancelled_leaves_a_picture_of_whole_passes) {

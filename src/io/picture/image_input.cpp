@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <functional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include "io/picture/exr_source.h"
 #include "io/picture/picture_library.h"
 #include "io/picture/png_header.h"
+#include "io/picture/png_source.h"
 #include "io/picture/tiff_header.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -91,13 +91,22 @@ void check_attributes(std::istream& stream, const std::string& name, uint64_t fi
     stream.seekg(0);
 }
 
-/// Plain EXR files are read at once; all else is left to the library of pictures.
-std::unique_ptr<PixelSource> open(std::unique_ptr<std::istream> stream, const std::string& name,
-                                  uint64_t file_bytes,
-                                  const std::function<std::unique_ptr<PixelSource>()>& open_other) {
+#ifdef RELIEF_PICTURES
+constexpr bool kHasPictureLibrary = true;
+#else
+constexpr bool kHasPictureLibrary = false;
+#endif
+
+/// Plain EXR files are read at once, and PNG files where there is no library of pictures; all else is left to
+/// that.
+template <class OpenStream, class OpenOther>
+std::unique_ptr<PixelSource> open(const OpenStream& open_stream, const std::string& name, uint64_t file_bytes,
+                                  const OpenOther& open_other) {
+    std::unique_ptr<std::istream> stream = open_stream();
     check_start(*stream, name);
     check_attributes(*stream, name, file_bytes);
     std::unique_ptr<PixelSource> source = open_plain_exr(std::move(stream), name);
+    if (!source && !kHasPictureLibrary) source = open_png(open_stream(), name);
     if (!source) source = open_other();
     check_size(source->header(), name, file_bytes);
     return source;
@@ -126,13 +135,13 @@ std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file) {
     refuse_foreign_file(file);
     const std::string name = file.string();
     check_extension(name);
-    return open(std::make_unique<std::ifstream>(file, std::ios::binary), name,
+    return open([&] { return std::make_unique<std::ifstream>(file, std::ios::binary); }, name,
                 std::filesystem::file_size(file), [&] { return get_picture_library(name).open_file(name); });
 }
 
 std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std::string& name) {
     check_extension(name);
-    return open(std::make_unique<std::istringstream>(std::string(bytes)), name, bytes.size(),
+    return open([&] { return std::make_unique<std::istringstream>(std::string(bytes)); }, name, bytes.size(),
                 [&] { return get_picture_library(name).open_bytes(bytes, name); });
 }
 

@@ -12,6 +12,8 @@ namespace relief {
 
 namespace {
 
+#ifdef RELIEF_PICTURES
+
 using Entry = const PictureLibrary* (*)();
 
 #define RELIEF_QUOTE(text) #text
@@ -29,7 +31,11 @@ std::string find_module() {
     throw Error(ErrorKind::failed, {fmt::format("cannot be opened: {}", dlerror()), name, hint});
 }
 
+#endif
+
 } // namespace
+
+#ifdef RELIEF_PICTURES
 
 const PictureLibrary& load_picture_library(const std::string& module, const std::string& name) {
     // Never unloaded: its libraries have threads and destructors of their own.
@@ -49,5 +55,15 @@ const PictureLibrary& get_picture_library(const std::string& name) {
     static const PictureLibrary& library = load_picture_library(find_module(), name);
     return library;
 }
+
+#else
+
+const PictureLibrary& get_picture_library(const std::string& name) {
+    throw Error(ErrorKind::failed,
+                {"needs OpenImageIO and OpenColorIO, which this build of Relief is without", name,
+                 "EXR and PNG need neither; Python takes arrays in place of pictures"});
+}
+
+#endif
 
 } // namespace relief

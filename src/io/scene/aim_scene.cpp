@@ -133,6 +133,7 @@ uint64_t hash_aimed(const Scene& scene, Ground ground) {
     const Camera& camera = scene.camera;
     add(camera.from), add(camera.to), add(camera.up);
     add({camera.fov_degrees, camera.aperture_radius, camera.focus_distance});
+    if (camera.shift != Vec2f{}) add({camera.shift.x, camera.shift.y, 0});
     if (scene.environment) add({scene.environment->strength, scene.environment->rotate_degrees, 0});
     for (const Light& light : scene.lights) add(light.direction);
     if (ground != Ground::none) hash.add("ground");

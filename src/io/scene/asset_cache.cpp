@@ -111,28 +111,59 @@ fs::path AssetCache::resolve(const std::string& file) const {
     return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
 }
 
+std::optional<Mesh> AssetCache::take_mesh(const std::string& file) {
+    const auto found = given_.meshes.find(file);
+    if (found == given_.meshes.end()) return std::nullopt;
+    if (found->second.face_sizes.empty() && found->second.positions.empty())
+        throw Error(ErrorKind::bad_input, {"is empty, or named twice", file, "a mesh in memory is one mesh"});
+    return std::exchange(found->second, Mesh{});
+}
+
+std::shared_ptr<const Texture> AssetCache::find_given(const std::string& file) const {
+    const auto found = given_.textures.find(file);
+    return found == given_.textures.end() ? nullptr : found->second;
+}
+
 std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel,
                                                 const std::string& space) {
-    const fs::path path = resolve(file);
-    std::shared_ptr<const Texture>& cached = textures_[{path.string(), use, channel, space}];
+    const std::shared_ptr<const Texture> given = find_given(file);
+    if (given && use == TextureUse::data && channel == 0) return given;
+    const fs::path path = given ? fs::path(file) : resolve(file);
+    const TextureKey key(path.string(), use, channel, space);
+    std::shared_ptr<const Texture>& cached = textures_[key];
     if (cached) return cached;
-    auto texture = std::make_shared<Texture>(read_texture(path));
+    if (const auto earlier = earlier_.find(key); earlier != earlier_.end()) return cached = earlier->second;
+    auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
+    return cached = decode(std::move(texture), use, channel, space);
+}
+
+std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> texture, TextureUse use,
+                                                  uint32_t channel, const std::string& space) {
     if (use == TextureUse::number) {
         check_finite(*texture, 0);
         if (!space.empty()) decode_texture(space, *texture);
         pick_channel(*texture, channel);
-        return cached = std::move(texture);
+        return texture;
     }
     if (channel > 0) move_first(*texture, channel);
-    if (use != TextureUse::data) {
-        check_finite(*texture, 0);
-        if (use == TextureUse::colour && space.empty()) decode_colours(*texture);
-        if (use != TextureUse::vector) spread_grey(*texture);
-        if (!space.empty()) decode_texture(space, *texture);
-        if (use == TextureUse::radiance && lift_negatives(*texture))
-            warnings_.push_back(fmt::format("{}: negative radiance counts as 0", path.string()));
-    }
-    return cached = std::move(texture);
+    if (use == TextureUse::data) return texture;
+    check_finite(*texture, 0);
+    if (use == TextureUse::colour && space.empty()) decode_colours(*texture);
+    if (use != TextureUse::vector) spread_grey(*texture);
+    if (!space.empty()) decode_texture(space, *texture);
+    if (use == TextureUse::radiance && lift_negatives(*texture))
+        warnings_.push_back(fmt::format("{}: negative radiance counts as 0", texture->file));
+    return texture;
+}
+
+std::vector<MapTile> AssetCache::load_given_tiles(const std::string& pattern, TextureUse use,
+                                                  uint32_t channel, const std::string& space) {
+    std::vector<std::string> names;
+    for (const auto& [name, texture] : given_.textures) names.push_back(name);
+    std::vector<MapTile> tiles;
+    for (const auto& [udim, name] : choose_tiles(pattern, names))
+        tiles.push_back({udim, load(name, use, channel, space)});
+    return tiles;
 }
 
 std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse use, uint32_t channel,
@@ -140,6 +171,7 @@ std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse 
     std::vector<MapTile> tiles;
     if (!has_tile_token(file)) {
         tiles.push_back({1001, load(file, use, channel, space)});
+        if (find_given(file)) return tiles;
         if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
             warnings_.push_back(
                 fmt::format("{}: is one tile of several, and the only one read; name them all "
@@ -147,6 +179,7 @@ std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse 
                             file, pattern));
         return tiles;
     }
+    if (tiles = load_given_tiles(file, use, channel, space); !tiles.empty()) return tiles;
     for (const auto& [udim, path] : find_tiles(resolve(file)))
         tiles.push_back({udim, load(fs::absolute(path).string(), use, channel, space)});
     return tiles;

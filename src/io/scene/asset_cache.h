@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "relief/io.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -22,7 +24,8 @@ inline constexpr uint32_t kLuminanceChannel = 4;
 
 class AssetCache {
   public:
-    explicit AssetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit AssetCache(std::filesystem::path folder, SceneAssets given = {})
+        : folder_(std::move(folder)), given_(std::move(given)) {}
 
     std::filesystem::path resolve(const std::string& file) const;
     /// `channel`, from 0, comes first in the texture; `space` of colours and radiance: as the file holds them
@@ -40,13 +43,25 @@ class AssetCache {
         return load_tiles(file, TextureUse::data);
     }
 
+    /// Textures of another cache are not read again.
+    void reuse(AssetCache& other) { earlier_ = std::move(other.textures_); }
+    /// Moves a mesh in memory out of the assets; nullopt for a file. Throws Error{bad_input} the second time.
+    std::optional<Mesh> take_mesh(const std::string& file);
+
     /// What was noticed while reading, in order.
     std::vector<std::string>& warnings() { return warnings_; }
 
   private:
+    std::shared_ptr<const Texture> find_given(const std::string& file) const;
+    std::shared_ptr<const Texture> decode(std::shared_ptr<Texture> texture, TextureUse use, uint32_t channel,
+                                          const std::string& space);
+    std::vector<MapTile> load_given_tiles(const std::string& pattern, TextureUse use, uint32_t channel,
+                                          const std::string& space);
+
     std::filesystem::path folder_;
-    std::map<std::tuple<std::string, TextureUse, uint32_t, std::string>, std::shared_ptr<const Texture>>
-        textures_;
+    using TextureKey = std::tuple<std::string, TextureUse, uint32_t, std::string>;
+    SceneAssets given_;
+    std::map<TextureKey, std::shared_ptr<const Texture>> textures_, earlier_;
     std::vector<std::string> warnings_;
 };
 

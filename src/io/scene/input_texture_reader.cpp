@@ -23,13 +23,9 @@ constexpr double kFarthestUv = 1e6;
 
 /// One number stands for both.
 Vec2f read_pair(const JsonNode& node) {
-    if (!node.is_array()) {
-        const float both = node.as_float(-kFarthestUv, kFarthestUv);
-        return {both, both};
-    }
-    const std::vector<JsonNode> numbers = node.elements();
-    if (numbers.size() != 2) node.fail(fmt::format("must be 2 numbers, not {}", numbers.size()));
-    return {numbers[0].as_float(-kFarthestUv, kFarthestUv), numbers[1].as_float(-kFarthestUv, kFarthestUv)};
+    if (node.is_array()) return node.as_vec2(-kFarthestUv, kFarthestUv);
+    const float both = node.as_float(-kFarthestUv, kFarthestUv);
+    return {both, both};
 }
 
 void check_texture_keys(const JsonNode& node, const MaterialInputKind& kind, bool is_own_key) {

@@ -211,12 +211,20 @@ std::string JsonNode::as_string() const {
     return value_->get<std::string>();
 }
 
+/// Of so many numbers, each an element.
+std::vector<JsonNode> JsonNode::numbers(size_t count) const {
+    if (!value_->is_array()) fail_type(fmt::format("an array of {} numbers", count));
+    if (value_->size() != count) fail(fmt::format("must be {} numbers, not {}", count, value_->size()));
+    return elements();
+}
+
+Vec2f JsonNode::as_vec2(double low, double high) const {
+    const std::vector<JsonNode> parts = numbers(2);
+    return {parts[0].as_float(low, high), parts[1].as_float(low, high)};
+}
+
 Vec3f JsonNode::as_vec3(double low, double high) const {
-    if (!value_->is_array() || value_->size() != 3) {
-        if (value_->is_array()) fail(fmt::format("must be 3 numbers, not {}", value_->size()));
-        fail_type("an array of 3 numbers");
-    }
-    const std::vector<JsonNode> parts = elements();
+    const std::vector<JsonNode> parts = numbers(3);
     return {parts[0].as_float(low, high), parts[1].as_float(low, high), parts[2].as_float(low, high)};
 }
 

@@ -45,6 +45,7 @@ class JsonNode {
     int64_t as_integer(int64_t low, int64_t high) const;
     bool as_bool() const;
     std::string as_string() const;
+    Vec2f as_vec2(double low = -double(FLT_MAX), double high = FLT_MAX) const;
     Vec3f as_vec3(double low = -double(FLT_MAX), double high = FLT_MAX) const;
     /// Three numbers, or one that stands for all.
     Vec3f as_vec3_or_number() const;
@@ -62,6 +63,7 @@ class JsonNode {
     }
 
   private:
+    std::vector<JsonNode> numbers(size_t count) const;
     [[noreturn]] void rethrow_with_place(const Error& error) const;
     [[noreturn]] void fail_type(const std::string& wanted) const;
 

@@ -65,20 +65,24 @@ uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
     return hash.value();
 }
 
+void add_clay(Scene& scene) {
+    Material clay;
+    clay.name = "clay";
+    clay.base_color = {0.75f, 0.55f, 0.45f};
+    clay.roughness = 0.6f;
+    scene.objects.front().material = uint32_t(scene.materials.size());
+    scene.materials.push_back(clay);
+}
+
 /// One object of clay; not framed and not lit yet.
 Scene make_clay_scene(Mesh mesh) {
     Scene scene;
     scene.source = mesh.source;
     scene.meshes.push_back(std::move(mesh));
-    Material clay;
-    clay.name = "clay";
-    clay.base_color = {0.75f, 0.55f, 0.45f};
-    clay.roughness = 0.6f;
-    scene.materials.push_back(clay);
     Object object;
     object.name = scene.meshes.front().name;
-    object.material = 0;
     scene.objects.push_back(object);
+    add_clay(scene);
     return scene;
 }
 
@@ -119,6 +123,20 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     validate_scene(scene);
     scene.hash = compute_hash(scene, options);
     return scene;
+}
+
+void complete_mesh_scene(Scene& scene) {
+    validate_scene(scene);
+    if (scene.objects.size() != 1)
+        throw Error(ErrorKind::usage, {fmt::format("{} objects: one is needed", scene.objects.size()),
+                                       scene.source, "give a mesh alone"});
+    const Vec3f view = place_camera(scene);
+    if (scene.objects.front().material == kNoIndex) add_clay(scene);
+    scene.lights.clear();
+    if (scene.environment && scene.environment->texture)
+        add_image_light(scene, scene.environment->texture, view);
+    else
+        add_default_light(scene, view);
 }
 
 Scene make_mesh_scene(Mesh mesh, const Displacement* map) {

@@ -12,9 +12,10 @@ template <class... Text> constexpr auto make_keys(Text... text) {
 
 inline constexpr auto kRoot = make_keys("version", "render", "camera", "environment", "materials",
                                         "displacements", "meshes", "objects", "lights");
-inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed");
+inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed", "frames");
+inline constexpr auto kKeyed = make_keys("keys", "interpolation");
 inline constexpr auto kCamera =
-    make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance");
+    make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift");
 inline constexpr auto kEnvironment =
     make_keys("file", "color_space", "color", "strength", "rotate_degrees", "light_group");
 inline constexpr auto kMaterial = make_keys(

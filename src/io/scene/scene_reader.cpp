@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,6 +13,7 @@
 #include "io/mesh/point_ply.h"
 #include "io/scene/error_list.h"
 #include "io/scene/json_node.h"
+#include "io/scene/keyed_values.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/scene_sections.h"
@@ -52,16 +55,26 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
     return index;
 }
 
-Mesh read_mesh(const JsonNode& node, const std::string& name, const AssetCache& assets,
-               const MeshReaderSettings& reader) {
-    node.check_keys(scene_keys::kMesh);
+/// From memory or a file.
+Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader) {
     const JsonNode file = node.get("file");
-    const std::filesystem::path path = assets.resolve(file.as_string());
+    const std::string file_name = file.as_string();
+    const auto uv_set = node.find("uv_set");
+    if (std::optional<Mesh> mesh = file.with_place([&] { return assets.take_mesh(file_name); })) {
+        if (uv_set) uv_set->fail("is that of a file, and this mesh is in memory", "leave it out");
+        return std::move(*mesh);
+    }
     constexpr int kLastUvSet = 255;
     MeshReadOptions options;
     options.reader = reader;
-    if (const auto uv_set = node.find("uv_set")) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
-    Mesh mesh = file.with_place([&] { return load_mesh(path, options); });
+    if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    return file.with_place([&] { return load_mesh(assets.resolve(file_name), options); });
+}
+
+Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
+               const MeshReaderSettings& reader) {
+    node.check_keys(scene_keys::kMesh);
+    Mesh mesh = read_polygons(node, assets, reader);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
@@ -159,34 +172,65 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     errors.throw_if_any();
 }
 
-/// Size and samples of the picture may change without its being another picture.
-uint64_t compute_hash(const Json& document, const Scene& scene, ContentHash hash) {
+} // namespace
+
+/// Size, samples and frames of the picture may change without its being another picture.
+uint64_t hash_scene(const Json& document, uint64_t content_hash) {
     nlohmann::json canonical = document; // sorts the keys
     if (const auto render = canonical.find("render"); render != canonical.end())
-        for (const char* key : {"width", "height", "spp"}) render->erase(key);
+        for (const char* key : {"width", "height", "spp", "frames"}) render->erase(key);
+    ContentHash hash(content_hash);
     hash.add(canonical.dump());
-    add_scene_content(hash, scene);
     return hash.value();
 }
 
-} // namespace
-
-Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                  const MeshReaderSettings& reader) {
-    const Json document = parse_json(text, name);
-    Scene scene;
+ReadScene read_scene(const Json& document, AssetCache& assets, const std::string& name,
+                     const MeshReaderSettings& reader) {
+    ReadScene result;
+    Scene& scene = result.scene;
     scene.source = name;
-    AssetCache assets(folder);
-    ContentHash hash;
-    read_root(JsonNode(document, "", name), reader, scene, assets, hash);
+    ContentHash content;
+    read_root(JsonNode(document, "", name), reader, scene, assets, content);
     scene.warnings = std::move(assets.warnings());
     try {
         validate_scene(scene);
     } catch (const Error& error) {
         throw Error(error.kind(), {error.message(), name + ": " + error.where(), error.hint()});
     }
-    scene.hash = compute_hash(document, scene, hash);
-    return scene;
+    add_scene_content(content, scene);
+    result.content_hash = content.value();
+    scene.hash = hash_scene(document, result.content_hash);
+    return result;
+}
+
+std::vector<int> read_frames(const Json& document, const std::string& name) {
+    const auto render = JsonNode(document, "", name).find("render");
+    const auto frames = render ? render->find("frames") : std::nullopt;
+    return frames ? parse_frames_at(*frames) : std::vector<int>();
+}
+
+namespace {
+
+/// At the first frame, or 1.
+Scene read_text(std::string_view text, const std::string& name, AssetCache assets,
+                const MeshReaderSettings& reader) {
+    const Json document = parse_json(text, name);
+    const std::vector<int> frames = read_frames(document, name);
+    if (!is_animated(document)) return read_scene(document, assets, name, reader).scene;
+    const Json at_frame = evaluate_frame(document, frames.empty() ? 1 : frames.front(), name);
+    return read_scene(at_frame, assets, name, reader).scene;
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                  const MeshReaderSettings& reader) {
+    return read_text(text, name, AssetCache(folder), reader);
+}
+
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
+                       const MeshReaderSettings& reader) {
+    return read_text(text, "scene", AssetCache(folder, std::move(assets)), reader);
 }
 
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {

@@ -10,6 +10,7 @@
 #include "io/scene/input_texture_reader.h"
 #include "io/scene/scene_keys.h"
 #include "math/affine.h"
+#include "relief/shot.h"
 #include "scene/displacement_conventions.h"
 
 namespace relief {
@@ -101,6 +102,15 @@ Affine read_matrix(const JsonNode& node) {
 
 } // namespace
 
+std::vector<int> parse_frames_at(const JsonNode& node) {
+    const std::string text = node.as_string();
+    try {
+        return parse_frames(text);
+    } catch (const Error& error) {
+        node.fail(error.message(), error.hint());
+    }
+}
+
 PictureDefaults read_picture(const JsonNode& node) {
     node.check_keys(scene_keys::kPicture);
     PictureDefaults picture;
@@ -110,6 +120,7 @@ PictureDefaults read_picture(const JsonNode& node) {
     picture.bounces = read_int(node, "bounces", 0, kMaxBounces);
     if (const auto seed = node.find("seed"))
         picture.seed = uint32_t(seed->as_integer(0, std::numeric_limits<uint32_t>::max()));
+    if (const auto frames = node.find("frames")) parse_frames_at(*frames);
     return picture;
 }
 
@@ -124,6 +135,7 @@ Camera read_camera(const JsonNode& node) {
     const float distance = length(camera.to - camera.from);
     if (distance > 0) camera.focus_distance = distance;
     read_float(node, "focus_distance", camera.focus_distance, FLT_MIN);
+    if (const auto shift = node.find("shift")) camera.shift = shift->as_vec2(-kMaxLensShift, kMaxLensShift);
     return camera;
 }
 

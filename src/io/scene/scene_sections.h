@@ -1,12 +1,16 @@
 // The sections of a scene file, one reader each. All throw bad_input with file and path.
 #pragma once
 
+#include <vector>
+
 #include "io/scene/asset_cache.h"
 #include "io/scene/json_node.h"
 #include "relief/scene.h"
 
 namespace relief {
 
+/// A list of frames, as parse_frames takes it.
+std::vector<int> parse_frames_at(const JsonNode& node);
 PictureDefaults read_picture(const JsonNode& node);
 Camera read_camera(const JsonNode& node);
 Affine read_transform(const JsonNode& node);

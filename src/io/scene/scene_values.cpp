@@ -23,12 +23,14 @@ Json write_picture(const PictureDefaults& picture) {
 }
 
 Json write_camera(const Camera& camera) {
-    return {{"from", to_json(camera.from)},
-            {"to", to_json(camera.to)},
-            {"up", to_json(camera.up)},
-            {"fov_degrees", to_json(camera.fov_degrees)},
-            {"aperture_radius", to_json(camera.aperture_radius)},
-            {"focus_distance", to_json(camera.focus_distance)}};
+    Json node = {{"from", to_json(camera.from)},
+                 {"to", to_json(camera.to)},
+                 {"up", to_json(camera.up)},
+                 {"fov_degrees", to_json(camera.fov_degrees)},
+                 {"aperture_radius", to_json(camera.aperture_radius)},
+                 {"focus_distance", to_json(camera.focus_distance)}};
+    if (camera.shift != Vec2f{}) node["shift"] = {to_json(camera.shift.x), to_json(camera.shift.y)};
+    return node;
 }
 
 void write_layers(const Material& material, Json& node) {

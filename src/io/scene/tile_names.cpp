@@ -73,25 +73,39 @@ const TileToken* find_token(const std::string& name) {
     return nullptr;
 }
 
+/// The tile that a name is by a pattern with the token at `at`.
+std::optional<int> match_tile(std::string_view name, std::string_view pattern, size_t at,
+                              const TileToken& token) {
+    const std::string_view prefix = pattern.substr(0, at), suffix = pattern.substr(at + token.text.size());
+    if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix))
+        return std::nullopt;
+    return token.read(name.substr(prefix.size(), name.size() - prefix.size() - suffix.size()));
+}
+
 std::vector<std::pair<int, fs::path>> list_tiles(const fs::path& pattern, const TileToken& token) {
     const std::string name = pattern.filename().string();
     const size_t at = name.find(token.text);
     std::vector<std::pair<int, fs::path>> tiles;
     if (at == std::string::npos) return tiles;
-    const std::string prefix = name.substr(0, at), suffix = name.substr(at + token.text.size());
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::error_code code;
-    for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-        const std::string entry = it->path().filename().string();
-        if (entry.size() <= prefix.size() + suffix.size() || !entry.starts_with(prefix) ||
-            !entry.ends_with(suffix))
-            continue;
-        const std::string_view middle(entry.data() + prefix.size(),
-                                      entry.size() - prefix.size() - suffix.size());
-        if (const std::optional<int> tile = token.read(middle)) tiles.emplace_back(*tile, it->path());
-    }
+    for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code))
+        if (const auto tile = match_tile(it->path().filename().string(), name, at, token))
+            tiles.emplace_back(*tile, it->path());
     std::sort(tiles.begin(), tiles.end());
     return tiles;
+}
+
+void check_tiles(const std::vector<std::pair<int, std::string>>& tiles, const std::string& pattern) {
+    if (tiles.size() > size_t(kMaxMapTiles))
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxMapTiles), pattern,
+                     "split the mesh"});
+    for (size_t k = 1; k < tiles.size(); ++k)
+        if (tiles[k].first == tiles[k - 1].first)
+            throw Error(ErrorKind::bad_input, {fmt::format("two files are tile {}: {} and {}", tiles[k].first,
+                                                           tiles[k - 1].second, tiles[k].second),
+                                               pattern, "keep one of them"});
 }
 
 /// Where a word as a token reads it stands in a name, searched from the end: a tile stands last.
@@ -123,16 +137,22 @@ std::vector<std::pair<int, fs::path>> find_tiles(const fs::path& pattern) {
                     {"no tile file found", pattern.string(),
                      "<UDIM> stands for the four digits 1001, 1002, ... in a file name, <UVTILE> for u1_v1, "
                      "u2_v1, ..., <uvtile> for u0_v0, u1_v0, ..."});
-    if (tiles.size() > size_t(kMaxMapTiles))
-        throw Error(ErrorKind::bad_input,
-                    {fmt::format("{} tiles: at most {} are supported", tiles.size(), kMaxMapTiles),
-                     pattern.string(), "split the mesh"});
-    for (size_t k = 1; k < tiles.size(); ++k)
-        if (tiles[k].first == tiles[k - 1].first)
-            throw Error(ErrorKind::bad_input, {fmt::format("two files are tile {}: {} and {}", tiles[k].first,
-                                                           tiles[k - 1].second.filename().string(),
-                                                           tiles[k].second.filename().string()),
-                                               pattern.string(), "keep one of them"});
+    std::vector<std::pair<int, std::string>> names;
+    for (const auto& [udim, path] : tiles) names.emplace_back(udim, path.filename().string());
+    check_tiles(names, pattern.string());
+    return tiles;
+}
+
+std::vector<std::pair<int, std::string>> choose_tiles(const std::string& pattern,
+                                                      const std::vector<std::string>& names) {
+    std::vector<std::pair<int, std::string>> tiles;
+    const TileToken* token = find_token(pattern);
+    if (!token) return tiles;
+    const size_t at = pattern.find(token->text);
+    for (const std::string& name : names)
+        if (const auto tile = match_tile(name, pattern, at, *token)) tiles.emplace_back(*tile, name);
+    std::sort(tiles.begin(), tiles.end());
+    check_tiles(tiles, pattern);
     return tiles;
 }
 

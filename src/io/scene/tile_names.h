@@ -15,6 +15,11 @@ bool has_tile_token(const std::string& file);
 /// Throws bad_input when there is none, more than a map may have, or two of one number.
 std::vector<std::pair<int, std::filesystem::path>> find_tiles(const std::filesystem::path& pattern);
 
+/// Those of `names` that a pattern stands for, numbered alike, by rising number. None, where there are none;
+/// the rest as find_tiles.
+std::vector<std::pair<int, std::string>> choose_tiles(const std::string& pattern,
+                                                      const std::vector<std::string>& names);
+
 /// The name of tile `udim` for a name with a token.
 std::filesystem::path make_tile_name(const std::filesystem::path& pattern, int udim);
 

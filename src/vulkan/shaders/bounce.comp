@@ -39,8 +39,9 @@ bool continue_path(uint path_index, HitData hit) {
                             find_light_shares(scattering, drawn.direction, drawn.weight * drawn.pdf));
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
     float near_end = find_coarse_distance(push.bounce_lod, origin, ray.lod_bias, drawn.pdf);
-    // A body is left on the surface that it was entered on: between the two there would be no way out.
-    if (is_inside) near_end = make_infinity();
+    // Within a body, between the two surfaces there would be a way in, or none out.
+    float height = dot(point.geometric_normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
+    if (is_inside || height < 0.0) near_end = make_infinity();
     RayData next = {origin, 0.0, direction, near_end, ray.lod_bias};
     rays[path_index] = next;
     return true;

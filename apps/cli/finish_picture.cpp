@@ -1,0 +1,117 @@
+#include "finish_picture.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "common/exit_codes.h"
+#include "common/report.h"
+#include "interrupt.h"
+#include "output.h"
+#include "relief/error.h"
+#include "relief/io.h"
+#include "render_warnings.h"
+#include "statistics_report.h"
+
+namespace relief::cli {
+
+namespace {
+
+void write_statistics(const std::filesystem::path& file, const RenderResult& result,
+                      const RenderSettings& settings) {
+    write_text_file(file, write_json(describe_statistics(result, settings), 2));
+}
+
+void print_summary(const RenderResult& result, const RenderSettings& settings) {
+    const Statistics& s = result.statistics;
+    const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
+    fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
+               s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
+    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
+               settings.image.width, settings.image.height, result.is_complete ? "" : "up to ",
+               settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
+               s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
+}
+
+int get_exit_code(const RenderResult& result, const Saved& saved) {
+    if (saved.is_elsewhere) return int(ErrorKind::failed);
+    if (!result.is_complete && get_interrupt() != 0) return kExitSignalBase + get_interrupt();
+    return kExitDone;
+}
+
+/// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;
+/// returns the exit code.
+int denoise_picture(const RenderOptions& options, RenderResult& result) {
+    const double start = get_seconds();
+    const auto is_interrupted = [] { return get_interrupt() != 0; };
+    int exit_code = kExitDone;
+    try {
+        if (!options.denoiser->denoise(result.image, is_interrupted)) {
+            fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
+            exit_code = kExitSignalBase + get_interrupt();
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "relief: error: the picture is not denoised: {}\n", error.what());
+        exit_code = int(ErrorKind::failed);
+    }
+    result.statistics.denoise_s = get_seconds() - start;
+    return exit_code;
+}
+
+} // namespace
+
+double get_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void print_warnings(std::span<const std::string> warnings, bool is_mesh) {
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
+}
+
+int finish_picture(const RenderOptions& options, const RenderSettings& settings,
+                   const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
+                   size_t printed_warnings) {
+    Statistics& statistics = result.statistics;
+    if (result.whole_samples == 0) {
+        fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
+        if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
+        return get_exit_code(result, {});
+    }
+    const int denoised = options.is_denoised ? denoise_picture(options, result) : kExitDone;
+    const double write_start = get_seconds();
+    add_picture_entries(options.aim, output, result.image);
+    const Saved saved = save_with_fallback(result.image, output, get_fallback_folders(), write_image);
+    statistics.load_s = waiting.load_s;
+    statistics.first_image_s += waiting.load_s; // from the start of the command, as perceived by the user
+    statistics.write_s = get_seconds() - write_start;
+    statistics.total_s = get_seconds() - waiting.start;
+    if (!options.progress.is_quiet)
+        print_warnings(
+            std::span(statistics.warnings).subspan(std::min(printed_warnings, statistics.warnings.size())),
+            true);
+    if (options.is_verbose) print_summary(result, settings);
+    fmt::print("wrote {}\n", saved.file.string());
+    std::fflush(stdout); // the sender of edits waits for it
+    if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
+    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    const int exit_code = get_exit_code(result, saved);
+    return exit_code != kExitDone ? exit_code : denoised;
+}
+
+int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
+              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings) {
+    RenderResult result;
+    {
+        RenderWatcher watcher(options, printed_warnings);
+        result = session.render(&watcher);
+        if (watcher.is_refused()) return kExitWarnings;
+    }
+    return finish_picture(options, settings, output, waiting, result, printed_warnings);
+}
+
+} // namespace relief::cli

@@ -1,0 +1,59 @@
+// Shots: scene files whose values change from frame to frame. In library relief_io.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relief/io.h"
+#include "relief/scene.h"
+
+namespace relief {
+
+inline constexpr int kMaxFrame = 1000000;     ///< of a frame's number
+inline constexpr size_t kMaxFrames = 1000000; ///< of one list
+
+/// Numbers of frames, "1-100x2,150": from 1 to 100 every second one, and 150. In that order, each once.
+/// Throws Error{usage}.
+std::vector<int> parse_frames(std::string_view text);
+
+/// `####` in the name of a file becomes the frame's number, with at least as many digits; where there are no
+/// two `#` in a row, ".0001" comes before the extension.
+std::filesystem::path name_frame(const std::filesystem::path& pattern, int frame);
+
+/// A scene file and its frames. Not thread safe.
+class Shot {
+  public:
+    /// Reads the file, but none that it names. Throws as load_scene.
+    explicit Shot(const std::filesystem::path& file, const MeshReaderSettings& reader = {});
+    ~Shot();
+    Shot(Shot&&) noexcept;
+    Shot& operator=(Shot&&) noexcept;
+
+    /// `render.frames` of the file; may be empty.
+    const std::vector<int>& frames() const;
+    /// Whether any value or file depends on the frame.
+    bool is_animated() const;
+
+    /// The scene at a frame, which may lie between two: files of its whole part, values in between. Textures
+    /// of the last call are not read again. Throws as load_scene.
+    Scene load(double frame);
+
+    /// What a frame has for itself if all else is as load() returned it last.
+    struct View {
+        Camera camera;
+        uint64_t scene_hash = 0; ///< that of load() at that frame
+    };
+    /// nullopt: more than the camera differs from what load() returned last. Throws as load_scene.
+    std::optional<View> find_view(double frame) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace relief

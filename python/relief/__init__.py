@@ -1,0 +1,28 @@
+"""Relief: ray tracing of vector-displaced surfaces. Arrays in, pictures and hits out.
+
+    import numpy as np, relief
+    u, v = np.meshgrid(np.linspace(0, 1, 256), np.linspace(0, 1, 256))
+    plane = relief.Mesh([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]], [[0, 1, 2, 3]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
+    scene = relief.Scene.from_mesh(plane, 0.1 * np.sin(20 * u) * np.sin(20 * v))
+    relief.render(scene, size=(640, 360), spp=16).save("waves.png")
+
+Scene, Mesh, Displacement, Material, Camera, Light, Environment: what is rendered, with the keys of scene files.
+render, Session, Picture: pictures, at once or while maps are painted.
+Intersector, Hits: batches of rays. trees: structures and traversals to compare.
+inspect, convert: what maps and meshes are; maps in other conventions. Error: what all of these raise.
+
+Lengths are scene units, y is up, angles degrees, colours linear Rec.709."""
+from . import trees
+from ._errors import Error
+from ._mesh import Mesh
+from ._parts import Camera, Displacement, Environment, Light, Material
+from ._picture import Picture
+from ._rays import NOTHING, Hits, Intersector
+from ._relief import Progress
+from ._relief import version as __version__
+from ._render import Session, render
+from ._scene import Scene
+from ._tools import convert, devices, inspect, isas
+
+__all__ = ["Camera", "Displacement", "Environment", "Error", "Hits", "Intersector", "Light", "Material", "Mesh", "NOTHING",
+           "Picture", "Progress", "Scene", "Session", "__version__", "convert", "devices", "inspect", "isas", "render", "trees"]

@@ -1,0 +1,149 @@
+"""Polygon meshes from arrays."""
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+
+from . import _relief
+from ._arrays import Array, as_floats, as_indices, check_finite, is_array, to_numpy
+
+
+def split_faces(faces: Any) -> tuple[Array, Array]:
+    """Sizes of faces and their corners, flat."""
+    if isinstance(faces, tuple) and len(faces) == 2 and all(is_array(part) and to_numpy(part, "faces").ndim == 1 for part in faces):
+        sizes, corners = (to_numpy(part, "faces") for part in faces)
+    elif is_array(faces):
+        array = to_numpy(faces, "faces")
+        if array.ndim != 2 or array.shape[1] < 3:
+            raise ValueError(f"faces: the shape is {array.shape}, not (F, 3) or (F, 4)")
+        sizes, corners = np.full(len(array), array.shape[1], np.uint32), array.reshape(-1)
+    else:
+        rows = [list(face) for face in faces]
+        sizes = np.array([len(row) for row in rows], np.uint32)
+        corners = np.array([corner for row in rows for corner in row], dtype=None if rows else np.uint32)
+    for name, part in (("sizes of faces", sizes), ("faces", corners)):
+        if part.size and part.dtype.kind not in "iu":
+            raise TypeError(f"{name}: integers are needed, not {part.dtype} {part.shape}")
+    if sizes.size and int(sizes.min()) < 3:
+        raise ValueError(f"faces: face {int(sizes.argmin())} has {int(sizes.min())} corners, 3 are needed")
+    if int(sizes.sum()) != len(corners):
+        raise ValueError(f"faces: sizes add up to {int(sizes.sum())}, and there are {len(corners)} corners")
+    return np.ascontiguousarray(sizes, dtype=np.uint32), corners
+
+
+class Mesh:
+    """Polygons. Arrays of float32 and uint32 in C order are kept without a copy; others are converted.
+
+    positions: (N, 3), scene units, y up.
+    faces: (F, 3) or (F, 4) integers, counter-clockwise; a list of lists; or a tuple of two flat arrays, the sizes of the
+        faces and the corners of all of them.
+    uvs: (C, 2), one for each of the C corners of all faces; or (M, 2) with uv_indices, (C,) or of the shape of faces.
+    normals: (C, 3), or (M, 3) with normal_indices, likewise; unit length.
+    tangents: (C, 4), unit x, y, z and the sign of the bitangent.
+    creases: (K, 3), rows of two indices of positions and a sharpness, 10 being infinitely sharp; or a tuple of edges (K, 2)
+        and sharpness (K,).
+    subdivision: dict of the scene file's key: scheme, level, uv, boundary, creases.
+
+    The attributes hold the arrays; `sizes` and `corners` are those of the faces. They may be replaced or written to."""
+
+    def __init__(self, positions: Any, faces: Any, uvs: Any = None, uv_indices: Any = None, normals: Any = None,
+                 normal_indices: Any = None, tangents: Any = None, creases: Any = None,
+                 subdivision: Optional[Mapping[str, Any]] = None) -> None:
+        self.positions: Array = as_floats(positions, "positions", 3)
+        self.sizes, corners = split_faces(faces)
+        self.corners: Array = as_indices(corners, "faces", len(self.positions))
+        self.uvs, self.uv_indices = self._read_attribute(uvs, uv_indices, "uvs", 2)
+        self.normals, self.normal_indices = self._read_attribute(normals, normal_indices, "normals", 3)
+        self.tangents: Optional[Array] = None if tangents is None else as_floats(tangents, "tangents", 4)
+        self.creases: Optional[Array] = None
+        self.sharpness: Optional[Array] = None
+        if creases is not None:
+            self._read_creases(creases)
+        self.subdivision: Optional[dict[str, Any]] = None if subdivision is None else dict(subdivision)
+        self._collect()
+
+    def _read_attribute(self, values: Any, indices: Any, name: str, width: int) -> tuple[Optional[Array], Optional[Array]]:
+        if values is None:
+            if indices is not None:
+                raise ValueError(f"{name[:-1]}_indices: there are no {name}")
+            return None, None
+        array = as_floats(values, name, width)
+        if indices is None:
+            return array, None
+        flat = to_numpy(indices, f"{name[:-1]}_indices").reshape(-1)
+        return array, as_indices(flat, f"{name[:-1]}_indices", len(array))
+
+    def _read_creases(self, creases: Any) -> None:
+        if isinstance(creases, tuple) and len(creases) == 2:
+            edges, sharpness = to_numpy(creases[0], "creases"), as_floats(creases[1], "sharpness of creases", None)
+        else:
+            rows = as_floats(np.zeros((0, 3)) if len(creases) == 0 else creases, "creases", 3)
+            edges, sharpness = to_numpy(creases, "creases")[:, :2] if len(rows) else np.zeros((0, 2)), np.ascontiguousarray(rows[:, 2])
+            edges = np.asarray(edges).astype(np.int64)
+        if edges.ndim != 2 or edges.shape[1] != 2:
+            raise ValueError(f"creases: the shape of edges is {edges.shape}, not (K, 2)")
+        self.creases = as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
+        self.sharpness = sharpness
+
+    def _check_count(self, array: Optional[Array], indices: Optional[Array], name: str) -> None:
+        if array is None:
+            return
+        counted, label = (array, name) if indices is None else (indices, f"{name[:-1]}_indices")
+        if len(counted) != len(self.corners):
+            raise ValueError(f"{label}: {len(counted)}, and there are {len(self.corners)} corners of faces")
+
+    def _collect(self) -> dict[str, Array]:
+        """The arrays that there are, checked: they may have been changed."""
+        arrays: dict[str, Array] = {"positions": as_floats(self.positions, "positions", 3)}
+        check_finite(arrays["positions"], "positions")
+        arrays["sizes"], corners = split_faces((to_numpy(self.sizes, "sizes"), to_numpy(self.corners, "corners")))
+        arrays["corners"] = as_indices(corners, "faces", len(self.positions))
+        for name, width in (("uvs", 2), ("normals", 3), ("tangents", 4)):
+            values = getattr(self, name)
+            if values is None:
+                continue
+            arrays[name] = as_floats(values, name, width)
+            check_finite(arrays[name], name)
+            indices = getattr(self, f"{name[:-1]}_indices", None)
+            if indices is not None:
+                arrays[f"{name[:-1]}_indices"] = as_indices(indices, f"{name[:-1]}_indices", len(values))
+            self._check_count(arrays[name], indices, name)
+        if self.creases is not None and self.sharpness is not None:
+            arrays["creases"] = np.ascontiguousarray(self.creases, dtype=np.uint32)
+            arrays["sharpness"] = as_floats(self.sharpness, "sharpness of creases", None)
+            if len(arrays["creases"]) != len(arrays["sharpness"]):
+                raise ValueError(f"creases: {len(arrays['creases'])} edges and {len(arrays['sharpness'])} sharpnesses")
+        return arrays
+
+    @classmethod
+    def _from_arrays(cls, arrays: Mapping[str, Array]) -> Mesh:
+        """Of arrays that the library made."""
+        mesh = cls.__new__(cls)
+        mesh.positions = arrays.get("positions", np.zeros((0, 3), np.float32))
+        mesh.sizes = arrays.get("sizes", np.zeros(0, np.uint32))
+        mesh.corners = arrays.get("corners", np.zeros(0, np.uint32))
+        for name in ("uvs", "uv_indices", "normals", "normal_indices", "tangents", "creases", "sharpness"):
+            setattr(mesh, name, arrays.get(name))
+        mesh.subdivision = None
+        return mesh
+
+    @classmethod
+    def load(cls, file: Union[str, os.PathLike[str]], uv_set: int = 0) -> Mesh:
+        """Reads .obj, .ply, .gltf, .glb or .fbx. uv_set: of glTF and FBX, from 0."""
+        return cls._from_arrays(_relief.load_mesh(os.fspath(file), uv_set))
+
+    def save(self, file: Union[str, os.PathLike[str]]) -> None:
+        """Writes .obj or binary .ply: faces, and uvs; the file is replaced atomically."""
+        _relief.write_mesh(self._collect(), os.fspath(file))
+
+    @property
+    def faces(self) -> Union[Array, list[Array]]:
+        """(F, k) where all faces have k corners, else a list of arrays."""
+        if len(self.sizes) and int(self.sizes.min()) == int(self.sizes.max()):
+            return self.corners.reshape(len(self.sizes), -1)
+        return np.split(self.corners, np.cumsum(self.sizes)[:-1]) if len(self.sizes) else []
+
+    def __repr__(self) -> str:
+        return f"Mesh({len(self.positions)} positions, {len(self.sizes)} faces)"

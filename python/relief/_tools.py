@@ -1,0 +1,96 @@
+"""What scenes, meshes and maps are, and maps in other conventions."""
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping, Union, cast
+
+from . import _relief
+from ._arrays import is_array
+from ._mesh import Mesh
+from ._parts import Displacement
+from ._scene import Scene
+
+CONVENTION = ("type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v")
+
+
+def as_displacement(source: Any) -> Displacement:
+    if isinstance(source, Displacement):
+        return source
+    if isinstance(source, Mapping) and "file" in source:
+        made = Displacement()
+        made.update(source)
+        return made
+    return Displacement(os.path.abspath(os.fspath(source)) if isinstance(source, (str, os.PathLike)) else source)
+
+
+def parse_map(displacement: Mapping[str, Any]) -> _relief.Scene:
+    scene = Scene()
+    scene.displacements["map"] = displacement
+    return scene._parse()
+
+
+def is_map(source: Any) -> bool:
+    if isinstance(source, (Mapping,)) or is_array(source):
+        return True
+    return isinstance(source, (str, os.PathLike)) and not _relief.is_mesh_file(os.fspath(source)) \
+        and not os.fspath(source).lower().endswith(".json")
+
+
+def inspect(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, **settings: Any) -> dict[str, Any]:
+    """What a scene, mesh or map is, and what is wrong with it: the keys of `relief inspect --json`, facts, values and findings.
+
+    source: a Scene, a Mesh, a Displacement or an array of texels, or the file of one. mesh: what a map is for.
+    settings: of a scene, those of render(), which its cost is estimated for."""
+    if isinstance(source, Mesh):
+        return _relief.inspect_mesh(source._collect())
+    if isinstance(source, Scene):
+        return _relief.inspect_scene(source._parse(), settings)
+    if is_map(source):
+        displacement = as_displacement(source)
+        polygons = Mesh.load(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
+        is_declared = any(key in displacement for key in CONVENTION)
+        return _relief.inspect_map(parse_map(displacement), is_declared, polygons._collect() if polygons else None)
+    path = os.fspath(source)
+    if _relief.is_mesh_file(path):
+        return inspect(Mesh.load(path))
+    return _relief.inspect_scene(_relief.load_scene(path), settings)
+
+
+def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, level: int = 5,
+            **to: Any) -> Union[Displacement, Mesh]:
+    """A map in another convention, or the surface of a scene as a mesh.
+
+    source: a Displacement (its keys say what it means now), with `to` the keys of the new one: space, axes, type, frame,
+    lengths, midlevel, scale, flip_v, preset. mesh: needed between tangent and object space, or between tangent frames. The
+    result is a Displacement with an array (H, W, 3) of float32, or one for each tile.
+    Or a Scene, or the file of a scene or mesh: a Mesh of its displaced surfaces, 2^level x 2^level quads a patch."""
+    if not isinstance(source, (Scene, Mesh)) and is_map(source):
+        polygons = Mesh.load(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
+        return _convert_map(as_displacement(source), polygons, to)
+    if isinstance(source, Mesh):
+        source = Scene.from_mesh(source)
+    from ._scene import parse_any
+    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(level))
+
+
+def _convert_map(source: Displacement, mesh: Union[Mesh, None], to: dict[str, Any]) -> Displacement:
+    keys = {"space": source.get("space", "tangent"), **to}
+    unknown = [key for key in to if key not in CONVENTION]
+    if unknown:
+        raise TypeError(f"convert() has no keyword '{unknown[0]}': {', '.join(CONVENTION)}")
+    tiles, is_udim, axes, _ = _relief.convert_map(parse_map(source), keys, mesh._collect() if mesh else None)
+    made = Displacement(tiles if is_udim else tiles[1001])
+    made.update({key: value for key, value in keys.items() if key not in ("preset", "encoding")})
+    made["axes"] = axes
+    made.setdefault("type", source.get("type", "vector"))
+    return made
+
+
+def devices() -> list[dict[str, Any]]:
+    """Devices of the Vulkan engine, in the order of their indices; empty without a driver."""
+    return _relief.devices()
+
+
+def isas() -> list[str]:
+    """Instruction sets that this machine and this build have, the best first."""
+    return _relief.isas()

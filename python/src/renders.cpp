@@ -1,0 +1,169 @@
+// Pictures of scenes, at once or one after the other while maps are painted.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "cli/statistics_report.h"
+#include "common/report.h"
+#include "exit_gate.h"
+#include "parts.h"
+#include "pictures.h"
+#include "relief/denoise.h"
+#include "relief/error.h"
+#include "relief/session.h"
+#include "render_job.h"
+#include "scenes.h"
+#include "settings.h"
+#include "textures.h"
+
+namespace nb = nanobind;
+
+namespace relief::python {
+
+namespace {
+
+/// Image or None, statistics as JSON text, warnings, whether it is complete, samples of every pixel,
+/// exception or None.
+nb::object make_answer(JobReport&& report, const RenderSettings& settings) {
+    RenderResult& result = report.result;
+    const std::string statistics = write_json(cli::describe_statistics(result, settings), 0);
+    nb::list warnings;
+    for (const std::string& warning : result.statistics.warnings) warnings.append(name_keywords(warning));
+    const bool has_picture = result.whole_samples > 0;
+    return nb::make_tuple(has_picture ? make_picture(std::move(result.image)) : nb::none(), statistics,
+                          warnings, result.is_complete, result.whole_samples, report.failure);
+}
+
+/// Loaded before the render, which would be in vain without it; null where nothing is to be denoised.
+std::shared_ptr<const Denoiser> load_denoiser(const std::vector<std::string>& libraries, bool is_wanted,
+                                              RenderSettings& settings) {
+    if (!is_wanted) return nullptr;
+    DenoiserSettings denoiser;
+    denoiser.libraries.assign(libraries.begin(), libraries.end());
+    denoiser.threads = settings.device.threads;
+    for (const char* name : kDenoiserLayers)
+        if (std::find(settings.image.layers.begin(), settings.image.layers.end(), name) ==
+            settings.image.layers.end())
+            settings.image.layers.emplace_back(name);
+    return std::make_shared<const Denoiser>(denoiser);
+}
+
+/// The scene is used up.
+nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const RenderCallbacks& callbacks,
+                        bool is_denoised, const std::vector<std::string>& denoisers) {
+    RenderSettings settings = read_settings(keywords, parsed.scene.picture);
+    const GateVisit visit;
+    const auto denoiser = load_denoiser(denoisers, is_denoised, settings);
+    const auto work = [&parsed, &settings, denoiser](RenderObserver& observer) {
+        RenderResult result = render(std::move(parsed.scene), settings, &observer);
+        if (denoiser && result.whole_samples > 0)
+            denoiser->denoise(result.image, [&] { return observer.is_cancelled(); });
+        return result;
+    };
+    return make_answer(run_job(work, callbacks), settings);
+}
+
+/// Calls at the same time are refused: a callback that edits would wait for itself.
+class PaintSession {
+  public:
+    /// The scene is used up.
+    PaintSession(ParsedScene& parsed, const nb::dict& keywords)
+        : camera_(parsed.scene.camera),
+          picture_(parsed.scene.picture),
+          settings_(read_settings(keywords, picture_)) {
+        const GateVisit visit;
+        const nb::gil_scoped_release release;
+        session_ = std::make_unique<Session>(std::move(parsed.scene), settings_);
+    }
+
+    nb::object render(const RenderCallbacks& callbacks) {
+        const auto lock = enter();
+        const GateVisit visit;
+        return make_answer(
+            run_job([&](RenderObserver& observer) { return session_->render(&observer); }, callbacks),
+            settings_);
+    }
+
+    nb::object edit(const std::string& displacement, nb::handle texels, uint32_t x, uint32_t y, int udim) {
+        const auto lock = enter();
+        const MapEdit edit{displacement, udim, x, y, make_texture(texels, "texels")};
+        EditReport report;
+        {
+            const GateVisit visit;
+            const nb::gil_scoped_release release;
+            report = session_->edit(edit);
+        }
+        return nb::make_tuple(report.patches, report.seconds);
+    }
+
+    /// `parsed`: a scene with the camera, or null for the one that there is.
+    void change_view(const ParsedScene* parsed, const nb::dict& keywords) {
+        const auto lock = enter();
+        const RenderSettings settings = read_settings(keywords, picture_);
+        const Camera camera = parsed ? parsed->scene.camera : camera_;
+        {
+            const GateVisit visit;
+            const nb::gil_scoped_release release;
+            session_->change_view(camera, settings.image);
+        }
+        camera_ = camera, settings_.image = settings.image;
+    }
+
+  private:
+    std::unique_lock<std::mutex> enter() {
+        std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock)
+            throw Error(ErrorKind::usage, {"the session is at work in another call", "Session",
+                                           "edit between pictures, not from a callback or another thread"});
+        return lock;
+    }
+
+    Camera camera_;
+    PictureDefaults picture_;
+    RenderSettings settings_;
+    std::unique_ptr<Session> session_;
+    std::mutex mutex_;
+};
+
+} // namespace
+
+void add_renders(nb::module_& module) {
+    nb::class_<Progress>(module, "Progress", "How far a render is.")
+        .def_ro("fraction", &Progress::fraction, "in [0, 1], of all samples")
+        .def_ro("samples_done", &Progress::samples_done, "of every pixel")
+        .def_ro("samples_total", &Progress::samples_total, "of every pixel")
+        .def_ro("rays", &Progress::rays, "traced so far")
+        .def_ro("elapsed_s", &Progress::elapsed_s, "seconds since the first ray");
+    module.def(
+        "render",
+        [](ParsedScene& scene, const nb::dict& keywords, nb::object on_progress, nb::object on_picture,
+           double picture_interval, bool is_denoised, const std::vector<std::string>& denoisers) {
+            return render_scene(scene, keywords,
+                                {std::move(on_progress), std::move(on_picture), picture_interval},
+                                is_denoised, denoisers);
+        },
+        nb::arg("scene"), nb::arg("keywords"), nb::arg("on_progress").none(), nb::arg("on_picture").none(),
+        nb::arg("picture_interval"), nb::arg("is_denoised"), nb::arg("denoisers"));
+    nb::class_<PaintSession>(module, "Session", "A scene that stays prepared while its maps are edited.")
+        .def(nb::init<ParsedScene&, const nb::dict&>(), nb::arg("scene"), nb::arg("keywords"))
+        .def(
+            "render",
+            [](PaintSession& session, nb::object on_progress, nb::object on_picture,
+               double picture_interval) {
+                return session.render({std::move(on_progress), std::move(on_picture), picture_interval});
+            },
+            nb::arg("on_progress").none(), nb::arg("on_picture").none(), nb::arg("picture_interval"))
+        .def("change_view", &PaintSession::change_view, nb::arg("scene").none(), nb::arg("keywords"))
+        .def("edit", &PaintSession::edit, nb::arg("displacement"), nb::arg("texels"), nb::arg("x"),
+             nb::arg("y"), nb::arg("udim"));
+}
+
+} // namespace relief::python

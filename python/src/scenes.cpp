@@ -1,0 +1,147 @@
+#include "scenes.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include "exit_gate.h"
+#include "meshes.h"
+#include "parts.h"
+#include "relief/convert.h"
+#include "relief/io.h"
+#include "scene_values.h"
+#include "textures.h"
+
+namespace nb = nanobind;
+
+namespace relief::python {
+
+namespace {
+
+using ScenePointer = std::unique_ptr<ParsedScene>;
+
+ScenePointer parse(const std::string& text, const std::string& folder, const nb::dict& meshes,
+                   const nb::dict& textures) {
+    SceneAssets assets;
+    for (const auto& [name, arrays] : meshes)
+        assets.meshes[nb::cast<std::string>(name)] = make_mesh(nb::cast<nb::dict>(arrays));
+    for (const auto& [name, array] : textures) {
+        const std::string text_name = nb::cast<std::string>(name);
+        assets.textures[text_name] = std::make_shared<const Texture>(make_texture(array, text_name));
+    }
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    return std::make_unique<ParsedScene>(ParsedScene{parse_scene_text(text, folder, std::move(assets))});
+}
+
+ScenePointer load(const std::string& file) {
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    return std::make_unique<ParsedScene>(ParsedScene{load_scene(file)});
+}
+
+nb::dict describe_picture(const ParsedScene& parsed) {
+    const PictureDefaults& picture = parsed.scene.picture;
+    nb::dict node;
+    const auto add = [&](const char* key, const auto& value) {
+        if (value) node[key] = *value;
+    };
+    add("width", picture.width), add("height", picture.height), add("spp", picture.spp);
+    add("bounces", picture.bounces), add("seed", picture.seed);
+    return node;
+}
+
+/// Camera, environment, suns, and what the last object is made of: all that aiming and completing may change.
+nb::dict describe(const ParsedScene& parsed) {
+    const Scene& scene = parsed.scene;
+    nb::dict node;
+    node["camera"] = describe_camera(scene.camera);
+    if (scene.environment) node["environment"] = describe_environment(*scene.environment);
+    node["suns"] = describe_suns(scene.lights);
+    node["object_count"] = scene.objects.size();
+    if (scene.objects.empty()) return node;
+    const Object& last = scene.objects.back();
+    nb::dict object;
+    object["name"] = last.name;
+    object["mesh"] = make_mesh_arrays(Mesh(scene.meshes[last.mesh]));
+    if (last.material != kNoIndex) object["material"] = describe_material(scene.materials[last.material]);
+    object["shadow_catcher"] = last.is_shadow_catcher;
+    node["last_object"] = object;
+    return node;
+}
+
+void aim(ParsedScene& parsed, const nb::dict& keywords, float aspect) {
+    const AimOptions options = read_aim(keywords);
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    aim_scene(parsed.scene, options, aspect);
+}
+
+void complete(ParsedScene& parsed) {
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    complete_mesh_scene(parsed.scene);
+}
+
+void save(const ParsedScene& parsed, const std::string& folder) {
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    save_scene(parsed.scene, folder);
+}
+
+nb::dict displace(const ParsedScene& parsed, int level) {
+    Mesh mesh;
+    {
+        const GateVisit visit;
+        const nb::gil_scoped_release release;
+        mesh = make_displaced_mesh(parsed.scene, level);
+    }
+    return make_mesh_arrays(std::move(mesh));
+}
+
+nb::dict load_mesh_arrays(const std::string& file, int uv_set) {
+    Mesh mesh;
+    {
+        const GateVisit visit;
+        const nb::gil_scoped_release release;
+        mesh = load_mesh(file, {.uv_set = uv_set, .reader = {}});
+    }
+    return make_mesh_arrays(std::move(mesh));
+}
+
+void write_mesh_arrays(const nb::dict& arrays, const std::string& file) {
+    const Mesh mesh = make_mesh(arrays);
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
+    write_mesh(mesh, file);
+}
+
+} // namespace
+
+void add_scenes(nb::module_& module) {
+    nb::class_<ParsedScene>(module, "Scene",
+                            "A scene that was read whole: from a file, or from text and arrays.")
+        .def("aim", &aim, nb::arg("keywords"), nb::arg("aspect"))
+        .def("complete", &complete)
+        .def("describe", &describe)
+        .def("displace", &displace, nb::arg("level"))
+        .def("save", &save, nb::arg("folder"))
+        .def_prop_ro("picture", &describe_picture)
+        .def_prop_ro("hash", [](const ParsedScene& p) { return p.scene.hash; })
+        .def_prop_ro("warnings", [](const ParsedScene& p) { return p.scene.warnings; });
+    module.def("parse_scene", &parse, nb::arg("text"), nb::arg("folder"), nb::arg("meshes"),
+               nb::arg("textures"));
+    module.def("load_scene", &load, nb::arg("file"));
+    module.def("load_mesh", &load_mesh_arrays, nb::arg("file"), nb::arg("uv_set") = 0);
+    module.def("write_mesh", &write_mesh_arrays, nb::arg("arrays"), nb::arg("file"));
+    module.def(
+        "is_mesh_file", [](const std::string& file) { return is_mesh_file(file); }, nb::arg("file"));
+}
+
+} // namespace relief::python

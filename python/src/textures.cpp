@@ -1,0 +1,80 @@
+#include "textures.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include "arrays.h"
+#include "base/parallel.h"
+#include "math/half.h"
+#include "relief/error.h"
+
+namespace nb = nanobind;
+
+namespace relief::python {
+
+namespace {
+
+constexpr size_t kGrain = 1 << 16; ///< texels
+
+/// Four channels a texel; missing ones are 0, a missing fourth is `one`.
+template <class From, class To, class Convert>
+void spread(const From* from, size_t channels, To one, std::vector<To>& to, const Convert& convert) {
+    parallel_for("spread_texels", to.size() / 4, kGrain, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            for (size_t c = 0; c < 4; ++c)
+                to[4 * k + c] = c < channels ? convert(from[channels * k + c]) : (c == 3 ? one : To(0));
+        }
+    });
+}
+
+} // namespace
+
+Texture make_texture(nb::handle array, const std::string& name) {
+    const auto given = nb::cast<nb::ndarray<nb::ro, nb::ndim<3>, nb::c_contig, nb::device::cpu>>(array);
+    Texture texture;
+    texture.height = uint32_t(given.shape(0)), texture.width = uint32_t(given.shape(1));
+    texture.channel_count = uint32_t(given.shape(2));
+    texture.file = name;
+    const size_t count = 4 * given.shape(0) * given.shape(1), channels = given.shape(2);
+    constexpr uint16_t kHalfOne = 0x3c00;
+    const nb::dlpack::dtype type = given.dtype();
+    const void* const data = given.data();
+    if (type == nb::dtype<float>()) {
+        texture.floats.resize(count);
+        spread(static_cast<const float*>(data), channels, 1.0f, texture.floats, [](float x) { return x; });
+    } else if (type == nb::dtype<uint8_t>()) {
+        texture.source_type = SampleType::uint8;
+        texture.floats.resize(count);
+        spread(static_cast<const uint8_t*>(data), channels, 1.0f, texture.floats,
+               [](uint8_t x) { return float(x) / 255.0f; });
+    } else if (type == nb::dtype<uint16_t>()) {
+        texture.source_type = SampleType::uint16;
+        texture.floats.resize(count);
+        spread(static_cast<const uint16_t*>(data), channels, 1.0f, texture.floats,
+               [](uint16_t x) { return float(x) / 65535.0f; });
+    } else {
+        texture.source_type = SampleType::float16;
+        texture.halves.resize(count);
+        spread(static_cast<const uint16_t*>(data), channels, kHalfOne, texture.halves,
+               [](uint16_t x) { return x; });
+    }
+    return texture;
+}
+
+nb::object make_texel_array(const Texture& texture) {
+    const size_t channels = std::clamp<size_t>(texture.channel_count, 1, 4),
+                 texels = size_t(texture.width) * texture.height;
+    std::vector<float> values(texels * channels);
+    for (size_t k = 0; k < texels; ++k)
+        for (size_t c = 0; c < channels; ++c)
+            values[channels * k + c] =
+                texture.floats.empty() ? half_to_float(texture.halves[4 * k + c]) : texture.floats[4 * k + c];
+    return make_array<float>(std::move(values), {texture.height, texture.width, channels});
+}
+
+} // namespace relief::python

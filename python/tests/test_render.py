@@ -1,0 +1,233 @@
+"""Renders: settings, pictures, callbacks, interrupts, threads and the end of Python."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import relief
+import scenes
+
+SLOW = dict(size=(320, 240), spp=100000, bounces=4)
+
+
+class RenderTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.scene = scenes.make_scene()
+
+    def test_a_picture_has_layers_without_copies(self):
+        picture = relief.render(self.scene, layers=("depth", "N", "id", "samples"), seed=3)
+        self.assertEqual(picture.array.shape, (48, 64, len(picture.channels)))
+        self.assertEqual(picture["depth"].shape, (48, 64))
+        self.assertEqual(picture["N"].shape, (48, 64, 3))
+        for view in (picture["depth"], picture["N"], picture["R"], picture.color):
+            self.assertTrue(np.shares_memory(view, picture.array))
+        self.assertTrue((picture["samples"] == 2).all())
+        self.assertTrue(picture.complete)
+        self.assertEqual((picture.samples, picture.statistics["image"]["spp"], picture.size), (2, 2, (64, 48)))
+        with self.assertRaisesRegex(KeyError, "depth"):
+            picture["deep"]
+
+    def test_pixels_outlive_their_picture(self):
+        depth = relief.render(self.scene, layers="depth")["depth"]
+        self.assertTrue(np.isfinite(depth).any())
+
+    def test_a_crop_is_a_part_of_the_whole(self):
+        whole = relief.render(self.scene).array
+        part = relief.render(self.scene, crop=(10, 20, 40, 44))
+        np.testing.assert_array_equal(part.array, whole[20:44, 10:40])
+        self.assertEqual((part.window, part.full_size), ((10, 20, 40, 44), (64, 48)))
+
+    def test_threads_do_not_change_a_picture(self):
+        np.testing.assert_array_equal(relief.render(self.scene, threads=1).array, relief.render(self.scene, threads=3).array)
+
+    def test_settings_that_are_wrong_are_named(self):
+        for words, keys in (("'speed'.*'spp'|there is no keyword 'sppp'.*spp", dict(sppp=3)), ("spp.*whole number from 1", dict(spp=0)),
+                            ("spp: 1.5 is not", dict(spp=1.5)), ("size: 5 is not two", dict(size=5)), ("spp: True is not", dict(spp=True)),
+                            ("engine: 'gpu' is not one of cpu, vulkan", dict(engine="gpu")), ("noise", dict(noise=2)),
+                            ("layer", dict(layers=["dept"])), ("crop", dict(crop=(5, 5, 4, 9))), ("crop", dict(crop=(0, 0, 900, 9))),
+                            ("level: 99 is not", dict(level=99)), ("background", dict(background="red"))):
+            with self.assertRaisesRegex(relief.Error, words) as caught:
+                relief.render(self.scene, **keys)
+            self.assertEqual(caught.exception.kind, "usage")
+        with self.assertRaises(TypeError):
+            relief.render(self.scene, progress=3)
+
+    def test_files_of_a_picture(self):
+        picture = relief.render(self.scene, background="transparent", layers="depth")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.exr"
+            picture.save(file)
+            read = relief.Picture.load(file)
+            np.testing.assert_array_equal(read["depth"], picture["depth"])
+            self.assertEqual(read.metadata["relief:seed"], "0")
+            png = picture.to_png(pathlib.Path(folder) / "a.png", exposure=1)
+            self.assertEqual(png, (pathlib.Path(folder) / "a.png").read_bytes())
+            with self.assertRaises(relief.Error):
+                picture.save(pathlib.Path(folder) / "a.jpeg")
+        self.assertEqual(picture._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(png[25], 6)  # with alpha, as the film is transparent
+        self.assertNotEqual(png, picture.to_png())
+        self.assertNotIn("relief:exposure", picture.metadata)
+
+    def test_progress_and_pictures_so_far_come_to_this_thread(self):
+        fractions, pictures, threads = [], [], set()
+
+        def on_progress(progress):
+            fractions.append(progress.fraction), threads.add(threading.get_ident())
+
+        def on_picture(picture):
+            pictures.append(picture.array.copy()), threads.add(threading.get_ident())
+
+        picture = relief.render(self.scene, spp=64, progress=on_progress, on_picture=on_picture, picture_interval=0.0)
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual(threads, {threading.get_ident()})
+        self.assertTrue(pictures)
+        self.assertEqual(pictures[0].shape, picture.array.shape)
+        np.testing.assert_array_equal(picture.array, relief.render(self.scene, spp=64).array)
+
+    def test_a_callback_stops_a_render_by_false(self):
+        picture = relief.render(self.scene, **SLOW, on_picture=lambda picture: False)
+        self.assertFalse(picture.complete)
+        self.assertGreater(picture.samples, 0)
+        with self.assertRaisesRegex(relief.Error, "stopped before"):
+            relief.render(self.scene, size=(8000, 8000), spp=1, progress=lambda progress: False)
+
+    def test_exceptions_of_callbacks_come_out_with_the_picture(self):
+        def fail(picture):
+            raise ZeroDivisionError("mine")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "mine") as caught:
+            relief.render(self.scene, **SLOW, on_picture=fail)
+        self.assertGreater(caught.exception.picture.samples, 0)
+
+    def test_ctrl_c_keeps_the_picture(self):
+        def interrupt(picture):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        picture = relief.render(self.scene, **SLOW, on_picture=interrupt)
+        self.assertFalse(picture.complete)
+        self.assertTrue((picture["R"] > 0).any())
+
+    def test_python_goes_on_during_a_render_in_a_thread(self):
+        done, steps = [], 0
+        thread = threading.Thread(target=lambda: done.append(relief.render(self.scene, size=(320, 240), spp=16)))
+        thread.start()
+        while thread.is_alive():
+            steps += 1
+            time.sleep(0.001)
+        self.assertTrue(done[0].complete)
+        self.assertGreater(steps, 5)
+
+    def test_renders_at_once_do_not_disturb_each_other(self):
+        expected, found = relief.render(self.scene).array, []
+        threads = [threading.Thread(target=lambda: found.append(relief.render(self.scene).array)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for array in found:
+            np.testing.assert_array_equal(array, expected)
+
+
+class SessionTest(unittest.TestCase):
+    def test_an_edit_makes_the_picture_of_the_edited_map(self):
+        scene, waves = scenes.make_scene(), scenes.make_waves()
+        session = relief.Session(scene, spp=1)
+        before = session.render().array
+        patch = np.full((8, 12, 3), (0, 0, 0.3), np.float32)
+        self.assertGreater(session.edit("displacement", patch, x=20, y=10), 0)
+        painted = waves.copy()
+        painted[10:18, 20:32] = patch
+        scene.displacements["displacement"]["file"] = painted
+        after = session.render().array
+        np.testing.assert_array_equal(after, relief.render(scene, spp=1).array)
+        self.assertFalse((before == after).all())
+
+    def test_a_view_makes_the_picture_of_its_camera_and_size(self):
+        scene = scenes.make_scene()
+        session = relief.Session(scene, spp=1)
+        session.render()
+        scene.camera = relief.Camera(from_=(0.5, 1, 2.5), to=(0, 0, 0), fov_degrees=40)
+        session.change_view(scene.camera)
+        np.testing.assert_array_equal(session.render().array, relief.render(scene, spp=1).array)
+        session.change_view(size=(32, 40), spp=2)
+        picture = session.render()
+        self.assertEqual(picture.array.shape[:2], (40, 32))
+        np.testing.assert_array_equal(picture.array, relief.render(scene, size=(32, 40), spp=2).array)
+        for bad in (dict(camera=relief.Camera(from_=(0, 0, 0), to=(0, 0, 0))), dict(size=(0, 5)), dict(layers=("depth",))):
+            with self.assertRaises(relief.Error):
+                session.change_view(**bad)
+
+    def test_bad_edits_are_refused(self):
+        session = relief.Session(scenes.make_scene(), spp=1)
+        for error, keys in ((relief.Error, dict(displacement="no", texels=np.zeros((2, 2, 3), np.float32))),
+                            (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2, 3), np.float32), x=63)),
+                            (relief.Error, dict(displacement="displacement", texels=np.full((2, 2, 3), np.nan, np.float32))),
+                            (ValueError, dict(displacement="displacement", texels=np.zeros((2, 2, 7), np.float32))),
+                            (TypeError, dict(displacement="displacement", texels=np.zeros((2, 2), bool)))):
+            with self.assertRaises(error):
+                session.edit(**keys)
+        with self.assertRaisesRegex(relief.Error, "at work"):
+            session.render(on_picture=lambda picture: session.edit("displacement", np.zeros((2, 2, 3), np.float32)),
+                           picture_interval=0.0)
+
+
+class EndTest(unittest.TestCase):
+    """Python ends while threads render or trace: no crash, no deadlock."""
+
+    def run_script(self, body: str, signals: bool = False) -> subprocess.CompletedProcess:
+        script = "import threading, time, sys\nimport numpy as np\nimport relief, scenes\n" + textwrap.dedent(body)
+        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+        return subprocess.run([sys.executable, "-X", "faulthandler", "-c", script], capture_output=True, text=True,
+                              timeout=240, cwd=os.path.dirname(os.path.abspath(__file__)), env=environment)
+
+    def test_during_a_render_in_a_daemon_thread(self):
+        for wait in (0.0, 0.5):
+            done = self.run_script(f"""
+                scene, started = scenes.make_scene(), threading.Event()
+                def work():
+                    started.set()
+                    relief.render(scene, size=(320, 240), spp=100000, progress=lambda progress: None,
+                                  on_picture=lambda picture: picture.array.sum(), picture_interval=0.0)
+                threading.Thread(target=work, daemon=True).start()
+                started.wait()
+                time.sleep({wait})
+                """)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_during_rays_in_daemon_threads(self):
+        done = self.run_script("""
+            intersector, rays, started = relief.Intersector(scenes.make_scene()), scenes.make_rays(20000), threading.Event()
+            def work():
+                while True:
+                    intersector.closest_hits(rays)
+                    started.set()
+            for _ in range(3):
+                threading.Thread(target=work, daemon=True).start()
+            started.wait()
+            """)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_by_an_interrupt_without_a_picture(self):
+        done = self.run_script("""
+            import os, signal
+            threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+            try:
+                relief.render(scenes.make_scene(), size=(16000, 16000), spp=4, bounces=8)
+            except KeyboardInterrupt as interrupt:
+                print("interrupted", interrupt.picture)
+            """)
+        self.assertEqual((done.returncode, done.stdout.strip(), done.stderr), (0, "interrupted None", ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,225 @@
+"""Scenes from objects and arrays are what their files say."""
+import json
+import os
+import pathlib
+import pickle
+import tempfile
+import unittest
+
+import numpy as np
+
+import relief
+import scenes
+
+
+class SceneTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def render(self, scene, **keys):
+        return relief.render(scene, size=(48, 32), spp=1, bounces=1, **keys).array
+
+    def test_arrays_and_saved_files_make_one_picture(self):
+        scene = scenes.make_scene()
+        scene.materials["clay"]["base_color"] = np.random.default_rng(1).random((8, 8, 3), np.float32)
+        scene.save(self.folder)
+        saved = relief.Scene.load(self.folder / "scene.json")
+        np.testing.assert_array_equal(self.render(scene), self.render(saved))
+        np.testing.assert_array_equal(self.render(scene), self.render(self.folder / "scene.json"))
+
+    def test_comments_and_files_of_the_scene_are_read(self):
+        scenes.make_scene().save(self.folder)
+        file = self.folder / "scene.json"
+        file.write_text("// a comment\n" + file.read_text().replace('"version": 1', '/* "x" */ "version": 1'))
+        self.assertEqual(relief.Scene.load(file).meshes["mesh"]["file"], "meshes/mesh.obj")
+
+    def test_faults_of_a_file_have_their_line(self):
+        file = self.folder / "scene.json"
+        file.write_text('{"version": 1,\n "camera": {"from": [0, 0, 1],}}')
+        with self.assertRaises(relief.Error) as caught:
+            relief.Scene.load(file)
+        self.assertEqual(caught.exception.kind, "bad_input")
+        self.assertIn("2", caught.exception.where)
+
+    def test_unknown_keys_are_refused_with_a_suggestion(self):
+        scene = scenes.make_scene()
+        scene.materials["clay"]["specular_roughnes"] = 0.1
+        with self.assertRaises(relief.Error) as caught:
+            scene.validate()
+        self.assertIn("specular_roughness", caught.exception.hint)
+        self.assertIn("materials.clay", caught.exception.message)
+        self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), str(caught.exception))
+
+    def test_tiles_are_arrays_by_udim_numbers(self):
+        plane = relief.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], [[0, 1, 4, 3], [1, 2, 5, 4]],
+                            uvs=[[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]], uv_indices=[[0, 1, 4, 3], [1, 2, 5, 4]])
+        flat, raised = np.zeros((8, 8), np.float32), np.full((8, 8), 0.5, np.float32)
+        scene = relief.Scene.from_mesh(plane, relief.Displacement({1001: flat, 1002: raised}, type="height", midlevel=0))
+        rays = np.array([[0.5, 0.5, 3, 0, 0, 0, -1, 9], [1.5, 0.5, 3, 0, 0, 0, -1, 9]], np.float32)
+        np.testing.assert_allclose(relief.Intersector(scene).closest_hits(rays).t, [3, 2.5], atol=1e-5)
+
+    def test_a_matrix_moves_an_object(self):
+        scene = relief.Scene.from_mesh(scenes.make_plane())
+        matrix = np.array([[2, 0.5, 0, 0], [0, 1, 0, 0], [0, 0, 1, -3], [0, 0, 0, 1]])
+        scene.add("mesh", transform=matrix, name="moved")
+        hits = relief.Intersector(scene).closest_hits([[2.2, 0.5, 5]], [[0, 0, -1]])
+        self.assertEqual((float(hits.t[0]), int(hits.object[0])), (8.0, 1))
+        with self.assertRaisesRegex(ValueError, r"\(3, 3\)"):
+            scene.objects[1]["transform"] = np.eye(3)
+            scene.validate()
+
+    def test_parts_of_a_scene_are_shared(self):
+        scene, plane, gold = relief.Scene(), scenes.make_plane(), relief.Material(base_color=(1, 0.8, 0.3), base_metalness=1)
+        names = [scene.add(plane, material=gold, transform={"translate": [2 * k, 0, 0]}) for k in range(3)]
+        self.assertEqual((len(scene.meshes), len(scene.materials), names), (1, 1, ["object", "object_2", "object_3"]))
+        scene.validate()
+
+    def test_lights_environment_and_camera_have_the_keys_of_the_file(self):
+        scene = scenes.make_scene()
+        scene.camera = relief.Camera(from_=(0, 0, 4), to=(0, 0, 0), fov_degrees=np.float32(40))
+        scene.environment = relief.Environment(np.ones((4, 8, 3), np.float32), strength=0.5)
+        scene.lights = [relief.Light(type="point", position=np.array([0, 0, 2.0]), strength=3)]
+        self.assertGreater(self.render(scene)[:, :, :3].mean(), 0.1)
+        scene.lights[0]["kind"] = "x"
+        with self.assertRaises(relief.Error):
+            scene.validate()
+
+    def test_numbers_that_are_none_are_named(self):
+        for camera in ({"from": (0, np.nan, 1)}, {"from": np.array([0, np.inf, 1])}, {"from": (0, 0, {1})}):
+            scene = scenes.make_scene()
+            scene.camera = camera
+            with self.assertRaisesRegex((ValueError, TypeError), r"camera.from\[[12]\]: "):
+                scene.validate()
+
+    def test_aim_does_what_the_options_do(self):
+        scene = scenes.make_scene()
+        scene.aim(view="front", light=[(30, 40), (100, 20)], ground="shadow", env_strength=0.5)
+        self.assertEqual([light["type"] for light in scene.lights], ["sun", "sun"])
+        self.assertEqual(scene.environment["strength"], 0.5)
+        self.assertTrue(scene.objects[-1]["shadow_catcher"])
+        self.render(scene, background="transparent")
+        scene.aim(from_=(1, 2, 3), fov=50)
+        self.assertEqual((scene.camera["from"], scene.camera["fov_degrees"]), ([1, 2, 3], 50))
+
+    def test_a_mesh_file_renders_as_it_is(self):
+        scenes.make_plane().save(self.folder / "plane.obj")
+        loaded = relief.Mesh.load(self.folder / "plane.obj")
+        np.testing.assert_array_equal(loaded.positions, scenes.make_plane().positions)
+        self.assertEqual(self.render(self.folder / "plane.obj").shape, (32, 48, 4))
+        np.testing.assert_array_equal(self.render(self.folder / "plane.obj"), self.render(relief.Scene.from_mesh(loaded)))
+
+
+class MeshTest(unittest.TestCase):
+    def test_faces_come_in_three_forms(self):
+        points = np.random.default_rng(1).random((5, 3))
+        faces = [[0, 1, 2, 3], [0, 1, 4]]
+        a = relief.Mesh(points, faces)
+        b = relief.Mesh(points, (np.array([4, 3]), np.array([0, 1, 2, 3, 0, 1, 4])))
+        np.testing.assert_array_equal(a.corners, b.corners)
+        np.testing.assert_array_equal(a.sizes, b.sizes)
+        self.assertEqual([list(face) for face in a.faces], faces)
+        self.assertEqual(relief.Mesh(points, np.array([[0, 1, 2]])).faces.shape, (1, 3))
+
+    def test_arrays_of_the_right_type_are_kept(self):
+        points, faces = np.zeros((4, 3), np.float32), np.array([[0, 1, 2, 3]], np.uint32)
+        mesh = relief.Mesh(points, faces)
+        self.assertIs(mesh.positions, points)
+        self.assertTrue(np.shares_memory(mesh.corners, faces))
+
+    def test_uvs_of_corners_join_at_their_positions(self):
+        quads = [[0, 1, 4, 3], [1, 2, 5, 4]]
+        points = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]]
+        corner_uvs = np.array(points, np.float32)[np.array(quads).reshape(-1), :2] / 2
+        keys = dict(scheme="catmark", level=2)
+        wave = np.random.default_rng(2).random((16, 16), np.float32)
+        by_corner = relief.Mesh(points, quads, corner_uvs, subdivision=keys)
+        by_index = relief.Mesh(points, quads, np.array(points)[:, :2] / 2, quads, subdivision=keys)
+        rays = scenes.make_rays(500)
+        t = [relief.Intersector(relief.Scene.from_mesh(mesh, relief.Displacement(wave, midlevel=0))).closest_hits(rays).t
+             for mesh in (by_corner, by_index)]
+        np.testing.assert_array_equal(*t)
+
+    def test_creases_sharpen_a_subdivided_cube(self):
+        corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+        edges = sorted({tuple(sorted((quad[k], quad[k - 1]))) for quad in quads for k in range(4)})
+        ray = [[0.9, 0.9, 5]], [[0, 0, -1]]
+
+        def find(creases):
+            mesh = relief.Mesh(corners, quads, creases=creases, subdivision={"scheme": "catmark", "level": 3})
+            return float(relief.Intersector(relief.Scene.from_mesh(mesh)).closest_hits(*ray).t[0])
+
+        self.assertEqual(find(None), np.inf)
+        self.assertAlmostEqual(find([[a, b, 10] for a, b in edges]), 4, places=4)
+        self.assertAlmostEqual(find((np.array(edges), np.full(len(edges), 10.0))), 4, places=4)
+
+    def test_bad_arrays_are_named(self):
+        quad = [[0, 1, 2, 3]]
+        points = np.zeros((4, 3))
+        for error, words, make in (
+                (ValueError, r"positions: the shape is \(4, 2\)", lambda: relief.Mesh(np.zeros((4, 2)), quad)),
+                (TypeError, "positions: numbers", lambda: relief.Mesh(np.array([["a", "b", "c"]]), quad)),
+                (ValueError, "positions: NaN or infinity in row 1", lambda: relief.Mesh([[0, 0, 0], [0, np.nan, 0], [1, 1, 1]], [[0, 1, 2]])),
+                (ValueError, "index 4 is out of range", lambda: relief.Mesh(points, [[0, 1, 2, 4]])),
+                (ValueError, "index -1 is out of range", lambda: relief.Mesh(points, [[0, 1, 2, -1]])),
+                (TypeError, "faces: integers", lambda: relief.Mesh(points, np.array([[0.0, 1, 2]]))),
+                (ValueError, "2 corners, 3 are needed", lambda: relief.Mesh(points, [[0, 1]])),
+                (ValueError, "sizes add up to 7", lambda: relief.Mesh(points, (np.array([4, 3]), np.arange(4)))),
+                (ValueError, r"faces: the shape is \(2, 2, 2\)", lambda: relief.Mesh(points, np.zeros((2, 2, 2), int))),
+                (ValueError, "uvs: 3, and there are 4 corners", lambda: relief.Mesh(points, quad, np.zeros((3, 2)))),
+                (ValueError, "uv_indices: index 9", lambda: relief.Mesh(points, quad, np.zeros((4, 2)), [[0, 1, 2, 9]])),
+                (ValueError, "uv_indices: there are no uvs", lambda: relief.Mesh(points, quad, None, [[0, 1, 2, 3]])),
+                (ValueError, r"normals: the shape is \(4, 2\)", lambda: relief.Mesh(points, quad, normals=np.zeros((4, 2)))),
+                (ValueError, r"tangents: the shape is \(4, 3\)", lambda: relief.Mesh(points, quad, tangents=np.zeros((4, 3)))),
+                (ValueError, "creases: index 7", lambda: relief.Mesh(points, quad, creases=[[0, 7, 1]]))):
+            with self.assertRaisesRegex(error, words):
+                make()
+
+    def test_what_was_changed_is_checked_again(self):
+        mesh = scenes.make_plane()
+        scene = relief.Scene.from_mesh(mesh)
+        mesh.corners = np.array([0, 1, 2, 9], np.uint32)
+        with self.assertRaisesRegex(ValueError, "index 9"):
+            relief.render(scene)
+
+    def test_other_orders_and_read_only_memory_are_taken(self):
+        points = np.asfortranarray(np.array(scenes.make_plane().positions))
+        points.flags.writeable = False
+        mesh = relief.Mesh(points[:, ::1], np.array([[0, 1, 2, 3]])[::-1])
+        np.testing.assert_array_equal(mesh.positions, points)
+        self.assertEqual(relief.render(relief.Scene.from_mesh(mesh), size=(8, 8), spp=1).size, (8, 8))
+
+
+class TextureTest(unittest.TestCase):
+    def test_bad_maps_are_named(self):
+        for error, words, array in ((TypeError, "displacements.m.file: texels are .* not int64", np.zeros((4, 4), np.int64)),
+                                    (ValueError, r"the shape is \(4, 4, 5\)", np.zeros((4, 4, 5), np.float32)),
+                                    (relief.Error, r"NaN in channel G", np.full((4, 4, 3), (0, np.nan, 0), np.float32)),
+                                    (ValueError, r"the shape is \(0, 4, 1\)", np.zeros((0, 4), np.float32))):
+            scene = relief.Scene.from_mesh(scenes.make_plane())
+            scene.displacements["m"] = relief.Displacement(array)
+            with self.assertRaisesRegex(error, words):
+                scene.validate()
+
+    def test_kinds_of_texels_mean_the_same(self):
+        scene = scenes.make_scene()
+        steps = np.random.default_rng(3).integers(0, 255, (16, 16, 3), np.uint8)
+        rays = scenes.make_rays(300)
+
+        def trace(array):
+            scene.displacements["displacement"]["file"] = array
+            return relief.Intersector(scene, level=3).closest_hits(rays).t
+
+        scene.displacements["displacement"]["scale"] = 0.1
+        expected = trace(steps.astype(np.float32) / np.float32(255))
+        np.testing.assert_array_equal(trace(steps), expected)
+        np.testing.assert_array_equal(trace((steps.astype(np.float32) / np.float32(255)).astype(np.float64)), expected)
+        np.testing.assert_allclose(trace((steps / 255).astype(np.float16)), expected, atol=1e-3)
+        transposed = np.ascontiguousarray((steps / np.float32(255)).astype(np.float32).transpose(1, 0, 2))
+        np.testing.assert_array_equal(trace(transposed.transpose(1, 0, 2)), expected)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,24 @@
+// Values of a scene file that change from frame to frame: {"keys": [[frame, value], ...]} in place of a
+// value, and numbers of frames in names of files.
+#pragma once
+
+#include <string>
+
+#include "io/scene/json_node.h"
+
+namespace relief {
+
+/// Whether anything in the document depends on the frame.
+bool is_animated(const Json& document);
+
+/// The document as it is at a frame, which may lie between two. Numbers and arrays of them are interpolated
+/// linearly, "smooth" or not at all, "step"; all else has steps. Outside its keys a value stays that of the
+/// nearest. `rotate_degrees` of transforms turns about one axis where only one angle changes, full turns
+/// included, and else the shortest way (Shoemake 1985). Throws Error{bad_input} with `file` and place.
+Json evaluate_frame(const Json& document, double frame, const std::string& file);
+
+/// `####` in a name becomes the whole part of `frame` with at least as many digits; a name without two `#` in
+/// a row stays as it is.
+std::string fill_frame_number(const std::string& name, double frame);
+
+} // namespace relief

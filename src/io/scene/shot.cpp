@@ -1,0 +1,68 @@
+#include "relief/shot.h"
+
+#include <utility>
+
+#include "io/file_system.h"
+#include "io/scene/asset_cache.h"
+#include "io/scene/keyed_values.h"
+#include "io/scene/scene_reader.h"
+#include "io/scene/scene_sections.h"
+#include "relief/error.h"
+
+namespace relief {
+
+struct Shot::Implementation {
+    std::filesystem::path file;
+    std::string name;
+    MeshReaderSettings reader;
+    Json document;
+    std::vector<int> frames;
+    std::optional<AssetCache> assets; ///< of the scene loaded last
+    Json loaded;                      ///< its document, at its frame
+    uint64_t content_hash = 0;        ///< of its files
+};
+
+Shot::Shot(const std::filesystem::path& file, const MeshReaderSettings& reader)
+    : implementation_(std::make_unique<Implementation>()) {
+    refuse_foreign_file(file);
+    Implementation& self = *implementation_;
+    self.file = file, self.name = file.string(), self.reader = reader;
+    self.document = parse_json(read_file_bytes(file), self.name);
+    self.frames = read_frames(self.document, self.name);
+}
+
+Shot::~Shot() = default;
+Shot::Shot(Shot&&) noexcept = default;
+Shot& Shot::operator=(Shot&&) noexcept = default;
+
+const std::vector<int>& Shot::frames() const { return implementation_->frames; }
+
+bool Shot::is_animated() const { return relief::is_animated(implementation_->document); }
+
+Scene Shot::load(double frame) {
+    Implementation& self = *implementation_;
+    Json document = evaluate_frame(self.document, frame, self.name);
+    AssetCache assets(self.file.parent_path());
+    if (self.assets) assets.reuse(*self.assets);
+    ReadScene read = read_scene(document, assets, self.name, self.reader);
+    self.assets.emplace(std::move(assets));
+    self.loaded = std::move(document), self.content_hash = read.content_hash;
+    return std::move(read.scene);
+}
+
+std::optional<Shot::View> Shot::find_view(double frame) const {
+    const Implementation& self = *implementation_;
+    if (!self.assets) return std::nullopt; // nothing is loaded
+    Json document = evaluate_frame(self.document, frame, self.name);
+    View view;
+    if (const auto camera = document.find("camera"); camera != document.end()) {
+        view.camera = read_camera(JsonNode(*camera, "camera", self.name));
+        validate_camera(view.camera);
+    }
+    view.scene_hash = hash_scene(document, self.content_hash);
+    Json loaded = self.loaded;
+    document.erase("camera"), loaded.erase("camera");
+    return document == loaded ? std::optional(view) : std::nullopt;
+}
+
+} // namespace relief

@@ -1,0 +1,155 @@
+// Pictures of a session after its view changed: those of a fresh scene with that camera, bit for bit.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "relief/error.h"
+#include "relief/session.h"
+#include "support/bodies.h"
+
+namespace relief {
+namespace {
+
+Scene make_rough_torus() {
+    Scene scene = test::make_body_scene(
+        test::make_torus(8, 16),
+        test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), DisplacementSpace::tangent));
+    scene.displacements[0].wrap = WrapMode::repeat, scene.displacements[0].name = "bumps";
+    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
+    scene.environment = Environment{};
+    return scene;
+}
+
+RenderSettings make_view_settings() {
+    RenderSettings settings;
+    settings.image.width = 96, settings.image.height = 72, settings.image.spp = 2, settings.image.bounces = 2;
+    settings.image.layers = {"depth", "N", "id"};
+    return settings;
+}
+
+/// From afar, near enough for finer levels, and from within the body.
+std::vector<Camera> list_cameras(const Scene& scene) {
+    std::vector<Camera> cameras;
+    for (const Vec3f& from : {Vec3f{4, 3, -2}, Vec3f{0.9f, 1.2f, 0.9f}, Vec3f{1, 0, 0}, Vec3f{2, 2, 1}}) {
+        Camera camera = scene.camera;
+        camera.from = camera.to + from;
+        camera.to = camera.from + (from.y == 0 ? Vec3f{0.1f, 0.1f, 1} : camera.to - camera.from);
+        cameras.push_back(camera);
+    }
+    return cameras;
+}
+
+void expect_follows_views(Scene scene, RenderSettings settings) {
+    Session session(scene, settings);
+    session.render();
+    for (const Camera& camera : list_cameras(scene)) {
+        session.change_view(camera, settings.image);
+        scene.camera = camera;
+        ASSERT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels)
+            << camera.from.x << ", " << camera.from.y << ", " << camera.from.z;
+    }
+}
+
+TEST(SessionView, gives_the_pictures_of_a_fresh_scene) {
+    expect_follows_views(make_rough_torus(), make_view_settings());
+    RenderSettings settings = make_view_settings();
+    settings.surface.level = 3;
+    expect_follows_views(make_rough_torus(), settings);
+    settings.surface.level = kAutoLevel, settings.surface.lod = LodRule::ray;
+    expect_follows_views(make_rough_torus(), settings);
+}
+
+TEST(SessionView, chooses_other_copies_of_filtered_maps) {
+    Scene scene = make_rough_torus();
+    scene.displacements[0].filter = MapFilter::mip;
+    RenderSettings settings = make_view_settings();
+    settings.surface.pixel_error = 4;
+    expect_follows_views(scene, settings);
+}
+
+TEST(SessionView, needs_no_engine_that_keeps_its_trees) {
+    RenderSettings settings = make_view_settings();
+    settings.experiment.structure = StructureKind::kdtree;
+    expect_follows_views(make_rough_torus(), settings);
+}
+
+TEST(SessionView, follows_far_from_the_origin) {
+    const Vec3f place{3e5f, -2e5f, 1e5f};
+    Scene scene = make_rough_torus();
+    scene.objects[0].world_from_object.translation = place;
+    scene.camera.from = scene.camera.from + place, scene.camera.to = scene.camera.to + place;
+    Session session(scene, make_view_settings());
+    session.render();
+    Camera camera = scene.camera;
+    camera.from = camera.from + Vec3f{1, 0, 0};
+    session.change_view(camera, make_view_settings().image);
+    const Image image = session.render().image;
+    const size_t alpha = *image.find_channel("A");
+    float covered = 0;
+    for (size_t k = alpha; k < image.pixels.size(); k += image.channels.size()) covered += image.pixels[k];
+    EXPECT_GT(covered, 0.1f * 96 * 72);
+    EXPECT_LT(covered, 0.9f * 96 * 72);
+}
+
+/// Boxes of vertices, which many rays bring, hold the levels of their view alone.
+TEST(SessionView, forgets_boxes_of_coarser_levels) {
+    Scene scene = make_rough_torus();
+    RenderSettings settings = make_view_settings();
+    scene.camera.from = {9, 8, 7};
+    settings.image.spp = 64, settings.image.bounces = 0;
+    Session session(scene, settings);
+    session.render();
+    scene.camera.from = {0.9f, 1.2f, 0.9f};
+    settings.image.spp = 1;
+    session.change_view(scene.camera, settings.image);
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
+}
+
+TEST(SessionView, takes_another_size_and_edits_after_it) {
+    Scene scene = make_rough_torus();
+    RenderSettings settings = make_view_settings();
+    Session session(scene, settings);
+    settings.image.width = 40, settings.image.height = 56, settings.image.bounces = 1;
+    session.change_view(scene.camera, settings.image);
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
+    MapEdit edit;
+    edit.displacement = "bumps", edit.x = 30, edit.y = 20;
+    edit.texels.width = 20, edit.texels.height = 12, edit.texels.channel_count = 3;
+    edit.texels.floats.assign(size_t(4) * 20 * 12, 0.1f);
+    session.edit(edit);
+    auto map = std::make_shared<Texture>(*scene.displacements[0].tiles[0].texture);
+    for (size_t y = 20; y < 32; ++y)
+        std::fill_n(map->floats.begin() + std::ptrdiff_t(4 * (y * 96 + 30)), 4 * 20, 0.1f);
+    scene.displacements[0].tiles[0].texture = map;
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
+}
+
+TEST(SessionView, refuses_what_a_render_refuses_and_stays_as_it_was) {
+    const Scene scene = make_rough_torus();
+    RenderSettings settings = make_view_settings();
+    Session session(scene, settings);
+    const Image before = session.render().image;
+    Camera camera = scene.camera;
+    camera.to = camera.from;
+    EXPECT_THROW(session.change_view(camera, settings.image), Error);
+    ImageSettings image = settings.image;
+    image.width = 0;
+    EXPECT_THROW(session.change_view(scene.camera, image), Error);
+    image = settings.image, image.layers = {"depth"};
+    EXPECT_THROW(session.change_view(scene.camera, image), Error);
+    EXPECT_TRUE(session.render().image.pixels == before.pixels);
+}
+
+TEST(SessionView, names_the_picture_by_its_camera) {
+    Scene scene = make_rough_torus();
+    scene.hash = 5;
+    RenderSettings settings = make_view_settings();
+    Session session(scene, settings);
+    const std::string before = session.render().image.metadata.at("relief:scene_hash");
+    scene.camera.from.x += 1;
+    session.change_view(scene.camera, settings.image);
+    EXPECT_NE(session.render().image.metadata.at("relief:scene_hash"), before);
+}
+
+} // namespace
+} // namespace relief

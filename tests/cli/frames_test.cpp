@@ -1,0 +1,99 @@
+// Frames of a shot by one command.
+#include <filesystem>
+
+#include "command.h"
+#include "relief/io.h"
+
+namespace relief::cli {
+namespace {
+
+class FramesTest : public CommandTest {
+  protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        write("shot.json", R"({"render": {"width": 24, "height": 16, "spp": 2, "bounces": 1, "frames": "1-3"},
+          "camera": {"from": {"keys": [[1, [0, 0, 5]], [3, [2, 1, 4]]]}, "to": [0, 0, 0]},
+          "environment": {"color": [1, 1, 1]},
+          "materials": {"clay": {"base_color": {"keys": [[3, [0.8, 0.8, 0.8]], [4, [0.1, 0.8, 0.1]]]}}},
+          "displacements": {"bump": {"file": "bump.exr", "type": "vector"}},
+          "meshes": {"plane": {"file": "plane.obj"}},
+          "objects": [{"mesh": "plane", "displacement": "bump", "material": "clay"}]})");
+    }
+    /// Of pixels and of the scene that they name.
+    void expect_same(const std::string& a, const std::string& b) {
+        const Image first = read_image(folder_ / a), second = read_image(folder_ / b);
+        EXPECT_TRUE(first.pixels == second.pixels) << a << " and " << b;
+        EXPECT_EQ(first.metadata.at("relief:scene_hash"), second.metadata.at("relief:scene_hash")) << a;
+    }
+};
+
+TEST_F(FramesTest, are_those_of_the_file_or_the_command_and_the_same_alone) {
+    const CommandResult all = run({"render", "shot.json", "-o", "all.####.exr", "--frames", "1-4"});
+    ASSERT_EQ(all.exit_code, 0) << all.errors;
+    for (const char* frame : {"1", "2", "3", "4"}) {
+        const std::string name = std::string("alone.000") + frame + ".exr";
+        ASSERT_EQ(run({"render", "shot.json", "-o", "alone.exr", "--frames", frame}).exit_code, 0);
+        expect_same(std::string("all.000") + frame + ".exr", name);
+    }
+    EXPECT_EQ(run({"compare", "all.0001.exr", "all.0002.exr"}).exit_code, 7);
+    EXPECT_EQ(run({"compare", "all.0003.exr", "all.0004.exr"}).exit_code, 7);
+    ASSERT_EQ(run({"render", "shot.json", "-o", "file.exr"}).exit_code, 0);
+    EXPECT_TRUE(exists("file.0001.exr") && exists("file.0003.exr") && !exists("file.0004.exr"));
+    expect_same("file.0002.exr", "all.0002.exr");
+}
+
+TEST_F(FramesTest, of_tessellated_surfaces_too) {
+    const std::vector<std::string> command = {"render", "shot.json", "--surface", "tessellated"};
+    const auto with = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all = command;
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all).exit_code;
+    };
+    ASSERT_EQ(with({"--frames", "1,2", "-o", "t.exr"}), 0);
+    ASSERT_EQ(with({"--frames", "2", "-o", "u.exr"}), 0);
+    expect_same("t.0002.exr", "u.0002.exr");
+}
+
+TEST_F(FramesTest, that_are_there_whole_are_kept) {
+    ASSERT_EQ(run({"render", "shot.json", "-o", "s.exr"}).exit_code, 0);
+    const auto stamp = [&](const char* name) { return std::filesystem::last_write_time(folder_ / name); };
+    const auto first = stamp("s.0001.exr");
+    std::filesystem::remove(folder_ / "s.0002.exr");
+    write("s.0003.exr", read("s.0003.exr").substr(0, 200));
+    const auto torn = stamp("s.0003.exr");
+    const CommandResult again = run({"render", "shot.json", "-o", "s.exr", "--skip-existing"});
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_NE(again.output.find("kept s.0001.exr"), std::string::npos) << again.output;
+    EXPECT_EQ(stamp("s.0001.exr"), first);
+    EXPECT_TRUE(exists("s.0002.exr"));
+    EXPECT_NE(stamp("s.0003.exr"), torn);
+    EXPECT_EQ(read_image(folder_ / "s.0003.exr").width, 24);
+    // Of other samples, another size or scene it is another picture.
+    for (const std::vector<std::string>& other :
+         {std::vector<std::string>{"--spp", "3"}, {"--size", "12x8"}, {"--bounces", "0"}, {"--seed", "4"}}) {
+        std::vector<std::string> command = {"render", "shot.json", "-o", "s.exr", "--skip-existing"};
+        command.insert(command.end(), other.begin(), other.end());
+        const auto before = stamp("s.0001.exr");
+        ASSERT_EQ(run(command).exit_code, 0);
+        EXPECT_NE(stamp("s.0001.exr"), before) << other[0];
+    }
+}
+
+TEST_F(FramesTest, go_with_no_options_of_one_picture) {
+    const auto expect_refused = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"render", "shot.json", "-o", "no.exr"};
+        command.insert(command.end(), more.begin(), more.end());
+        const CommandResult result = run(command);
+        EXPECT_EQ(result.exit_code, 2) << more[0] << result.errors;
+        EXPECT_FALSE(exists("no.0001.exr"));
+    };
+    expect_refused({"--stats", "s.json"});
+    expect_refused({"--turntable", "3"});
+    expect_refused({"--checkpoint", "1"});
+    expect_refused({"--frames", "3-1"});
+    expect_refused({"--skip-existing", "-o", "no.png"});
+    EXPECT_EQ(run({"render", "plane.obj", "--frames", "1-2", "-o", "m.exr"}).exit_code, 2);
+}
+
+} // namespace
+} // namespace relief::cli
