@@ -9,7 +9,7 @@ import numpy as np
 
 from .context import Context
 
-OWN = (".exr", ".png", ".hdr", ".tif", ".tiff", ".tx")
+OWN = (".exr", ".png")
 
 
 def read_picture(file: str):
@@ -51,7 +51,7 @@ def read_other_pictures(context: Context) -> None:
         if file not in read:
             read[file] = read_tiles(file) if "<UDIM>" in file else read_picture(file)
         if read[file] is None:
-            context.report.add(place, f"{os.path.basename(file)} needs a Relief with OpenImageIO, or Pillow (pip install pillow)")
+            context.report.add(place, f"{os.path.basename(file)} needs a Relief with OpenImageIO; Pillow helps with 8 bits, EXR with more")
         else:
             holder[key] = read[file]
 
