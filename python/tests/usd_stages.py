@@ -79,10 +79,11 @@ def set_input(shader, name, value):
         source = value[0].CreateOutput(value[1], kind)
         shader.CreateInput(name, kind).ConnectToSource(source)
         return
-    kinds = {bool: Sdf.ValueTypeNames.Bool, int: Sdf.ValueTypeNames.Int, float: Sdf.ValueTypeNames.Float, str: Sdf.ValueTypeNames.Token}
+    names = Sdf.ValueTypeNames
+    kinds = {bool: names.Bool, int: names.Int, float: names.Float, str: names.Token}
     if isinstance(value, tuple):
-        shader.CreateInput(name, {2: Sdf.ValueTypeNames.Float2, 3: Sdf.ValueTypeNames.Color3f, 4: Sdf.ValueTypeNames.Float4}[len(value)]).Set(
-            {2: Gf.Vec2f, 3: Gf.Vec3f, 4: Gf.Vec4f}[len(value)](*value))
+        kind, make = {2: (names.Float2, Gf.Vec2f), 3: (names.Color3f, Gf.Vec3f), 4: (names.Float4, Gf.Vec4f)}[len(value)]
+        shader.CreateInput(name, kind).Set(make(*value))
     elif isinstance(value, Sdf.AssetPath):
         shader.CreateInput(name, Sdf.ValueTypeNames.Asset).Set(value)
     else:
