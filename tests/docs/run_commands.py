@@ -133,7 +133,8 @@ def main() -> int:
     root, relief = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
     every = pages.list_pages(root)
     options, targets = collect_help(relief), (root / "Makefile").read_text()
-    options += "".join(file.read_text() for file in sorted(root.glob("tools/*.sh")) + sorted(root.glob("apps/gpu/*")))
+    options += "".join(file.read_text() for file in sorted(root.glob("tools/*.sh")) + sorted(root.glob("apps/gpu/*"))
+                       + sorted(root.glob("python/relief/*/command.py")))
     faults, left_out, count = [], [], 0
     for page in every:
         if page.name != "CHANGELOG.md":

@@ -1,0 +1,108 @@
+"""What all readers of a stage share: options, the time, the report, and errors."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import shutil
+import tempfile
+import weakref
+
+import numpy as np
+from pxr import Gf, Usd, UsdGeom
+
+import relief
+
+
+@dataclasses.dataclass
+class Options:
+    """As the keywords of relief.usd.load."""
+    time: float | None = None
+    camera: str | None = None
+    purposes: tuple = ("default", "render")
+    meters: bool = False
+    subdivision_level: int | None = None
+    vector_space: str = "tangent"
+    folder: str | os.PathLike | None = None
+
+
+class Report:
+    """What is not taken over: each thing once, all of a prim in one line."""
+
+    def __init__(self) -> None:
+        self.texts: dict = {}
+
+    def add(self, prim, text: str) -> None:
+        path = prim if isinstance(prim, str) else str(prim.GetPath())
+        self.texts.setdefault(path, {})[text] = None
+
+    def lines(self) -> list:
+        return [f"{path}: {'; '.join(texts)}" for path, texts in self.texts.items()]
+
+
+class Context:
+    """A stage at one time, on the way to a relief.Scene."""
+
+    def __init__(self, stage: Usd.Stage, path: str, options: Options) -> None:
+        self.stage, self.path, self.options = stage, path, options
+        self.report = Report()
+        self.scene = relief.Scene()
+        self.time = find_time(stage, options.time)
+        self.unit = UsdGeom.GetStageMetersPerUnit(stage) if options.meters else 1.0
+        self.is_z_up = UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
+        self.upright = np.eye(4)
+        if self.is_z_up:
+            self.upright[1:3, 1:3] = [[0, 1], [-1, 0]]
+        self.root = np.diag([self.unit, self.unit, self.unit, 1]) @ self.upright
+        self.temporary: str | None = None  # a folder that lasts as long as the scene
+        self.documents: list = []  # layers of MaterialX files
+        self.baked: set = set()  # paths of the roots of skinned meshes that are posed
+
+    def get_folder(self) -> str:
+        """Where files are written that Relief has to read."""
+        if self.options.folder is not None:
+            os.makedirs(self.options.folder, exist_ok=True)
+            return os.fspath(self.options.folder)
+        if self.temporary is None:
+            self.temporary = tempfile.mkdtemp(prefix="relief-usd-")
+            weakref.finalize(self.scene, shutil.rmtree, self.temporary, ignore_errors=True)
+        return self.temporary
+
+    def fail(self, prim, message: str, hint: str = ""):
+        raise make_error(message, f"{self.path}: {prim.GetPath()}", hint)
+
+    def get(self, attribute, fallback=None):
+        """The value of an attribute at the time; `fallback` where there is none."""
+        value = attribute.Get(self.time) if attribute else None
+        return fallback if value is None else value
+
+
+def make_error(message: str, where: str, hint: str = "") -> relief.Error:
+    return relief.Error(message, kind="bad_input", where=where, hint=hint)
+
+
+def find_time(stage: Usd.Stage, time: float | None) -> Usd.TimeCode:
+    if time is not None:
+        return Usd.TimeCode(time)
+    if stage.HasAuthoredTimeCodeRange():
+        return Usd.TimeCode(stage.GetStartTimeCode())
+    return Usd.TimeCode.EarliestTime()
+
+
+def to_matrix(matrix: Gf.Matrix4d) -> np.ndarray:
+    """For points as columns; those of USD are rows."""
+    return np.array(matrix, np.float64).T
+
+
+def to_array(values, width: int = 0, dtype=np.float64) -> np.ndarray:
+    """A VtArray as an array of rows of `width`; 0: of numbers."""
+    array = np.array(values if values is not None else [], dtype)
+    return array.reshape(-1, width) if width else array.reshape(-1)
+
+
+def read_hint(prim, name: str, derived: float, tolerance: float = 1e-5) -> float:
+    """The number that save() has noted down exactly, as long as it still agrees with what the prim says."""
+    attribute = prim.GetAttribute(name)
+    noted = attribute.Get() if attribute else None
+    if noted is None or abs(noted - derived) > tolerance * max(abs(derived), 1e-30):
+        return derived
+    return float(noted)
