@@ -97,6 +97,8 @@ class ReliefEngine(bpy.types.RenderEngine):
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
     def _fail(self, fault):
+        # Blender 4.5 ends with a segmentation fault where a render that failed has no result to write.
+        self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
         hint = getattr(fault, "hint", None)
         self.error_set(f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else ""))
         self._report.tell(lambda line: self.report({"WARNING"}, line))
