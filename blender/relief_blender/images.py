@@ -4,11 +4,11 @@ import os
 import bpy
 import numpy as np
 
+from .exr_header import is_plain_exr
 from .node_tree import NotExpressible
 
 DATA_SPACES = {"Non-Color", "Raw", "Generic Data"}
 LINEAR_SPACES = DATA_SPACES | {"Linear Rec.709", "Linear", "scene_linear"}
-READ_BY_RELIEF = {".exr", ".hdr"}
 
 
 def decode_srgb(values):
@@ -29,8 +29,7 @@ def find_file(image):
         return None
     path = bpy.path.abspath(image.filepath, library=image.library)
     first = path.replace("<UDIM>", str(image.tiles[0].number)) if image.source == "TILED" else path
-    is_read = os.path.splitext(path)[1].lower() in READ_BY_RELIEF and os.path.isfile(first)
-    return os.path.abspath(path) if is_read else None
+    return os.path.abspath(path) if is_plain_exr(first) else None
 
 
 def _read_pixels(image, report):

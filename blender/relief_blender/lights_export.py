@@ -92,7 +92,7 @@ def make_light(light, matrix_world, report):
     else:
         radius = light.shadow_soft_size
         if not getattr(light, "normalize", True):
-            strength *= math.pi * radius * radius
+            strength *= 4 * math.pi * radius * radius
         result = make_spot(light, matrix, strength) if light.type == "SPOT" else relief.Light(
             type="point", radius=radius, strength=strength / (4 * math.pi))
     if light.type != "SUN":

@@ -84,7 +84,8 @@ class MeshExport:
         if modifier.subdivision_type != "CATMULL_CLARK":
             return [self._add(evaluated, arrays, material)]
         if not topology.can_be_subdivided(arrays):
-            report("its cage has edges of three faces, or faces turned against each other: it is subdivided by its Levels")
+            report("its cage has points at one place, edges of three faces or faces turned against each other: "
+                   "it is subdivided by its Levels")
             return None
         subdivision.report_differences(modifier, report)
         keys = subdivision.make_keys(modifier, adaptive, self._is_render, len(arrays.sizes), material.displacement is not None)

@@ -48,3 +48,25 @@ VECTOR_MATH = {
     "MULTIPLY_ADD": (lambda a, b, c: a * b + c, 3), "SCALE": (np.multiply, 2), "ABSOLUTE": (np.abs, 1),
     "MINIMUM": (np.minimum, 2), "MAXIMUM": (np.maximum, 2),
 }
+
+
+def _rgb_to_hsv(rgb):
+    most, least = rgb.max(-1), rgb.min(-1)
+    span = most - least
+    safe = np.where(span == 0, 1, span)
+    r, g, b = np.moveaxis(rgb, -1, 0)
+    sector = np.where(most == r, np.mod((g - b) / safe, 6), np.where(most == g, (b - r) / safe + 2, (r - g) / safe + 4))
+    return np.where(span == 0, 0, sector / 6), np.where(most == 0, 0, span / np.where(most == 0, 1, most)), most
+
+
+def _hsv_to_rgb(hue, saturation, value):
+    ways = [np.clip(np.abs(np.mod(hue * 6 + shift, 6) - 3) - 1, 0, 1) for shift in (0, 4, 2)]
+    return np.stack([value * (1 - saturation * (1 - way)) for way in ways], -1)
+
+
+def shift_hue(hue, saturation, value, factor, color):
+    """The node Hue/Saturation/Value."""
+    h, s, v = _rgb_to_hsv(color)
+    h = np.mod(h + hue[..., 0] + 0.5, 1)
+    shifted = _hsv_to_rgb(h, np.clip(s * saturation[..., 0], 0, 1), v * value[..., 0])
+    return np.maximum(color + factor * (shifted - color), 0)

@@ -27,7 +27,7 @@ class NodeValues:
             "ShaderNodeCombineXYZ": self._join, "ShaderNodeInvert": self._invert, "ShaderNodeGamma": self._gamma,
             "ShaderNodeRGBToBW": self._luminance, "ShaderNodeClamp": self._clamp,
             "ShaderNodeMapRange": self._map_range, "ShaderNodeValToRGB": self._ramp,
-            "ShaderNodeBrightContrast": self._contrast, "ShaderNodeBlackbody": self._no,
+            "ShaderNodeBrightContrast": self._contrast, "ShaderNodeHueSaturation": self._hue,
         }
 
     def color(self, wire):
@@ -60,9 +60,6 @@ class NodeValues:
 
     def _inputs(self, source, *names):
         return [self._evaluate(source.input(name)) for name in names]
-
-    def _no(self, source):
-        raise NotExpressible(f'node "{source.node.bl_label}"')
 
     def _own(self, source):
         value = source.output.default_value
@@ -237,3 +234,7 @@ class NodeValues:
     def _contrast(self, source):
         return values.combine(lambda c, b, k: np.maximum((1 + k) * c + b - k / 2, 0),
                               self._inputs(source, "Color", "Bright", "Contrast"), self.texels)
+
+    def _hue(self, source):
+        return values.combine(node_math.shift_hue, self._inputs(source, "Hue", "Saturation", "Value", "Fac", "Color"),
+                              self.texels)

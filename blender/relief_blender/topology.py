@@ -3,9 +3,13 @@ import numpy as np
 
 
 def can_be_subdivided(arrays):
-    """Each edge has one or two faces, which go along it in opposite ways, and the faces of a point are one fan."""
-    _, welded = np.unique(arrays.positions, axis=0, return_inverse=True)
-    first = welded.reshape(-1)[arrays.corners].astype(np.int64)
+    """Each edge has one or two faces, which go along it in opposite ways, and the faces of a point are one fan.
+
+    No two points are at one place: Relief takes them for one, Blender does not."""
+    used = np.unique(arrays.corners)
+    if len(np.unique(arrays.positions[used], axis=0)) < len(used):
+        return False
+    first = arrays.corners.astype(np.int64)
     starts = np.cumsum(arrays.sizes) - arrays.sizes
     following = np.arange(len(first)) + 1
     following[starts + arrays.sizes - 1] = starts

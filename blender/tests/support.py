@@ -115,7 +115,7 @@ class BlenderTest(unittest.TestCase):
         self.assertLess(np.median(nearest), 0.03)
         return ours, theirs
 
-    def compare_brightness(self, name="picture", samples=64, tolerance=0.02):
+    def compare_brightness(self, name="picture", samples=32, tolerance=0.02):
         ours, theirs = self.render("RELIEF", name, samples), self.render("CYCLES", name, samples)
         ratio = ours.brightness / theirs.brightness
         print(f"{self.id().split('.')[-1]} {name}: brightness {ratio:.4f} of Cycles' {theirs.brightness:.4f}", flush=True)

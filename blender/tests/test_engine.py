@@ -1,4 +1,5 @@
 """The life of the add-on: registering, cancelling, faults, the viewport's renders."""
+from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
 import time
 import types
 
@@ -9,7 +10,6 @@ from mathutils import Matrix
 from relief_blender import statistics
 from relief_blender.engine import ReliefEngine
 from relief_blender.viewport import Viewport
-from support import BlenderTest, main, make_grid, make_material
 
 import relief
 

@@ -1,4 +1,5 @@
 """What becomes of nodes, meshes and settings, without a render."""
+from support import BlenderTest, displace, main, make_grid, make_hook, make_image, make_material, make_object, subdivide  # first: it makes the add-on known
 import bpy
 import numpy as np
 from relief_blender import images, topology, world_export
@@ -7,7 +8,6 @@ from relief_blender.material_export import MaterialExport
 from relief_blender.mesh_arrays import MeshArrays, index_equal
 from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
-from support import BlenderTest, displace, main, make_grid, make_hook, make_image, make_material, make_object, subdivide
 
 import relief
 
@@ -42,10 +42,10 @@ class Materials(BlenderTest):
 
     def test_a_texture_stays_one_and_takes_a_constant_factor(self):
         texture, mix = self.texture(), self.node("ShaderNodeMix", data_type="RGBA", blend_type="MULTIPLY")
-        mix.inputs["Factor_Float"].default_value = 1.0
-        mix.inputs["B_Color"].default_value = (0.5, 1, 1, 1)
-        self.tree.links.new(texture.outputs[0], next(s for s in mix.inputs if s.identifier == "A_Color"))
-        self.feed(next(s for s in mix.outputs if s.identifier == "Result_Color"))
+        sockets = {socket.identifier: socket for socket in [*mix.inputs, *mix.outputs]}
+        sockets["Factor_Float"].default_value, sockets["B_Color"].default_value = 1.0, (0.5, 1, 1, 1)
+        self.tree.links.new(texture.outputs[0], sockets["A_Color"])
+        self.feed(sockets["Result_Color"])
         keys = self.export()
         np.testing.assert_allclose(keys["base_color"]["file"][0, 0], [0.125, 0.5, 0.75])
         self.assertEqual(self.report_lines.lines, [])
@@ -62,6 +62,14 @@ class Materials(BlenderTest):
         keys = self.export()
         np.testing.assert_allclose(keys["roughness"]["file"][..., 0], 0.35, atol=1e-6)
         np.testing.assert_allclose(keys["base_color"]["file"], 0.75, atol=1e-3)
+
+    def test_hue_and_saturation(self):
+        hue = self.node("ShaderNodeHueSaturation")
+        for socket, value in zip(hue.inputs, (0.5 + 1 / 3, 0.5, 2.0, 1.0)):
+            socket.default_value = value
+        hue.inputs["Color"].default_value = (0.4, 0.2, 0.2, 1)
+        self.feed(hue.outputs[0])
+        np.testing.assert_allclose(self.export()["base_color"], [0.6, 0.8, 0.6], atol=1e-6)
 
     def test_mapping_becomes_scale_and_offset(self):
         texture, mapping, uv = self.texture(), self.node("ShaderNodeMapping"), self.node("ShaderNodeUVMap", uv_map="second")
@@ -153,11 +161,10 @@ class Materials(BlenderTest):
         self.validate()
 
     def test_byte_images_are_decoded_from_srgb_and_data_is_not(self):
-        image = bpy.data.images.new("bytes", 2, 2)
-        image.pixels.foreach_set([0.5, 0.5, 0.5, 1.0] * 4)
-        self.assertAlmostEqual(float(images.read_tiles(image, print)[1001][0, 0, 0]), 0.2140, delta=0.003)
-        image.colorspace_settings.name = "Non-Color"
-        self.assertAlmostEqual(float(images.read_tiles(image, print)[1001][0, 0, 0]), 0.5, delta=0.003)
+        for is_data, wanted in ((False, 0.2140), (True, 0.5)):
+            image = bpy.data.images.new("bytes", 2, 2, is_data=is_data)
+            image.pixels.foreach_set([0.5, 0.5, 0.5, 1.0] * 4)
+            self.assertAlmostEqual(float(images.read_tiles(image, print)[1001][0, 0, 0]), wanted, delta=0.003)
 
     def test_images_have_row_0_at_the_top(self):
         texels = np.zeros((2, 2, 3), np.float32)
@@ -200,7 +207,7 @@ class Meshes(BlenderTest):
         subdivide(bpy.context.scene.objects["thing"], "CATMULL_CLARK", 2)
         scene = self.export()
         self.assertEqual(sum(len(mesh.sizes) for mesh in scene.meshes.values()), 48)
-        self.assertTrue(any("edges of three faces" in line for line in self.report_lines.lines))
+        self.assertTrue(any("it is subdivided by its Levels" in line for line in self.report_lines.lines))
 
     def test_objects_that_share_a_mesh_share_it_here(self):
         ob = make_grid(2)

@@ -45,7 +45,7 @@ class Lights(BlenderTest):
     def test_a_point(self):
         for name, radius in (("small", 0.0), ("large", 0.5)):
             light = add_light("POINT", (0.8, 0.5, 2), energy=150.0)
-            light.data.shadow_soft_size = radius
+            light.data.shadow_soft_size, light.data.use_soft_falloff = radius, False
             self.compare_brightness(name)
             bpy.data.objects.remove(light)
 
@@ -53,6 +53,7 @@ class Lights(BlenderTest):
         for name, size, blend, radius in (("hard", 0.7, 0.0, 0.0), ("soft", 1.0, 0.7, 0.0), ("large", 1.2, 0.4, 0.3)):
             light = add_light("SPOT", (1, 1, 3), energy=300.0)
             light.data.spot_size, light.data.spot_blend, light.data.shadow_soft_size = size, blend, radius
+            light.data.use_soft_falloff = False
             self.compare_brightness(name)
             bpy.data.objects.remove(light)
 
@@ -79,7 +80,7 @@ class Lights(BlenderTest):
             if kind == "SUN":
                 light.data.angle, light.data.energy = 0.5, 4.0
             elif kind != "AREA":
-                light.data.shadow_soft_size = 0.4
+                light.data.shadow_soft_size, light.data.use_soft_falloff = 0.4, False
             self.compare_brightness(kind.lower())
             bpy.data.objects.remove(light)
 
