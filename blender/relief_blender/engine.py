@@ -46,7 +46,7 @@ class ReliefEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         if self._fault is not None:
-            self._fail(self._fault)
+            self._fail(self._fault, depsgraph.scene)
             return
         scene = depsgraph.scene
         layers = passes.find_layers(depsgraph.view_layer)
@@ -62,7 +62,7 @@ class ReliefEngine(bpy.types.RenderEngine):
     def _follow(self, job, depsgraph):
         while True:
             kind, thing = job.poll(0.1)
-            if self.test_break():
+            if self._is_stopped():
                 job.cancel()
             if kind == "progress":
                 self.update_progress(thing.fraction)
@@ -73,8 +73,11 @@ class ReliefEngine(bpy.types.RenderEngine):
                 self._finish(thing, depsgraph)
                 return
             elif kind == "fault":
-                self._fail(thing)
+                self._fail(thing, depsgraph.scene)
                 return
+
+    def _is_stopped(self):
+        return self.test_break()
 
     def _show(self, picture, depsgraph, is_last):
         """Writes a picture into the result."""
@@ -96,11 +99,14 @@ class ReliefEngine(bpy.types.RenderEngine):
         statistics.keep(depsgraph.scene.name, picture.statistics, self._report.lines)
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
-    def _fail(self, fault):
+    def _fail(self, fault, scene):
+        """Shows an error; the statistics keep it, as the panel is what one looks at next."""
         # Blender 4.5 ends with a segmentation fault where a render that failed has no result to write.
         self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
         hint = getattr(fault, "hint", None)
-        self.error_set(f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else ""))
+        text = f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else "")
+        statistics.keep(scene.name, {}, [text, *self._report.lines])
+        self.error_set(text)
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
     # Viewport

@@ -84,7 +84,7 @@ def make_light(light, matrix_world, report):
         strength = 0.0
     if light.type == "SUN":
         if not getattr(light, "normalize", True):
-            strength *= math.pi * math.tan(light.angle / 2) ** 2
+            strength *= math.pi * math.sin(light.angle / 2) ** 2
         result = relief.Light(type="sun", direction=(-matrix[:3, 2]).tolist(), strength=strength,
                               angle_degrees=min(math.degrees(light.angle), 90.0))
     elif light.type == "AREA":

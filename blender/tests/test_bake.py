@@ -89,6 +89,7 @@ class Bake(BlenderTest):
             bpy.ops.relief.bake_map()
         other = make_grid(2)
         ob.data.uv_layers.remove(ob.data.uv_layers[0])
+        ob.data.update_tag()
         self.select(ob, other)
         with self.assertRaisesRegex(RuntimeError, "no uv map"):
             bpy.ops.relief.bake_map()
