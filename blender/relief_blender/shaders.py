@@ -7,12 +7,24 @@ from .values import Constant, make_constant
 
 BLACK = make_constant(0)
 ONE = make_constant(1)
+# Light that the sheen of Cycles reflects under a uniform sky, relative to the fuzz of Relief, by roughness: measured.
+SHEEN_FACTORS = ([0.0, 0.1, 0.3, 0.5, 0.75, 1.0], [0.0, 0.0255, 0.215, 0.59, 1.208, 1.841])
 # What a material is where its shader cannot be taken over: grey, never black.
 FALLBACK = {"base_color": make_constant([0.8, 0.8, 0.8])}
 
 
 def is_zero(value):
     return isinstance(value, Constant) and bool(np.all(value.rgb == 0))
+
+
+def match_mean_reflection(ior):
+    """The ior whose Fresnel term by Schlick, which Relief has, reflects as much of a uniform sky as the exact one of `ior`."""
+    cosine = np.sqrt((np.arange(256) + 0.5) / 256)  # as often as surfaces under such a sky see it
+    below = np.sqrt(1 - (1 - cosine ** 2) / ior ** 2)
+    mean = np.mean((((cosine - ior * below) / (cosine + ior * below)) ** 2
+                    + ((ior * cosine - below) / (ior * cosine + below)) ** 2) / 2)
+    straight = np.sqrt(np.clip((21 * mean - 1) / 20, 0, 0.99))
+    return float((1 + straight) / (1 - straight))
 
 
 class Shaders:
@@ -94,11 +106,11 @@ class Shaders:
                 self._report(f"{label} is not taken over")
         if (wire := source.input("Coat Normal")) and wire.socket.is_linked:
             self._report("Coat Normal is not taken over")
-        base = self._color(source, "Base Color")
-        keys = {"base_color": base, "metallic": self._read(source, "Metallic"),
+        base, metallic, ior = self._color(source, "Base Color"), self._read(source, "Metallic"), self._ior(source)
+        keys = {"base_color": base, "metallic": metallic,
                 "roughness": self._read(source, "Roughness"), "opacity": self._read(source, "Alpha", 1),
                 "base_diffuse_roughness": self._read(source, "Diffuse Roughness"),
-                "specular_color": self._color(source, "Specular Tint"), "ior": make_constant(self._ior(source)),
+                "specular_color": self._tint(source, ior, metallic), "ior": make_constant(ior),
                 **self._normal(source)}
         self._add_emission(source, keys)
         self._add_layers(source, keys)
@@ -118,6 +130,17 @@ class Shaders:
             self._report(f"IOR {ior:g} below 1 is its inverse")
         return float(result)
 
+    def _tint(self, source, ior, metallic):
+        """Specular Tint: of metals Relief's too. Of a dielectric Blender tints the reflection straight on alone, Relief all
+        of it, so that it gets what tints their mean alike."""
+        tint = self._color(source, "Specular Tint")
+        if not isinstance(metallic, Constant) or metallic.number == 1:
+            return tint
+        straight = ((ior - 1) / (ior + 1)) ** 2
+        rest = (1 - straight) / 21  # the mean of Schlick's term
+        part = (1 - metallic.number) * rest / (straight + rest)
+        return values.combine(lambda t: t + part * (1 - t), [tint], self._values.texels)
+
     def _add_emission(self, source, keys):
         strength = self._read(source, "Emission Strength")
         if is_zero(strength):
@@ -129,12 +152,22 @@ class Shaders:
     def _add_layers(self, source, keys):
         coat = self._read(source, "Coat Weight")
         if not is_zero(coat):
+            # Relief's base lies in the coat, Cycles' in air: an ior as much larger reflects the same.
+            part = coat.number if isinstance(coat, Constant) else 1.0
+            coat_ior = match_mean_reflection(max(self._number(source, "Coat IOR", 1.5), 1.0))
+            keys["ior"] = make_constant(keys["ior"].number * (1 + part * (coat_ior - 1)))
             keys.update(coat_weight=coat, coat_roughness=self._read(source, "Coat Roughness"),
                         coat_color=self._color(source, "Coat Tint"), coat_darkening=BLACK,
-                        coat_ior=make_constant(self._number(source, "Coat IOR", 1.5)))
+                        coat_ior=make_constant(coat_ior))
         sheen = self._read(source, "Sheen Weight")
         if not is_zero(sheen):
-            keys.update(fuzz_weight=sheen, fuzz_roughness=self._read(source, "Sheen Roughness", 0.5),
+            roughness = self._read(source, "Sheen Roughness", 0.5)
+            at = roughness.number if isinstance(roughness, Constant) else 0.5
+            factor = make_constant(np.interp(at, *SHEEN_FACTORS))
+            weight = values.multiply(sheen, factor, self._values.texels)
+            if isinstance(weight, Constant):
+                weight = make_constant(min(weight.number, 1.0))
+            keys.update(fuzz_weight=weight, fuzz_roughness=roughness,
                         fuzz_color=self._color(source, "Sheen Tint"))
 
     def _diffuse(self, source):

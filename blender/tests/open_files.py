@@ -35,7 +35,7 @@ def render(engine, name):
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):
         settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
     scene.render.filepath = str((support.KEEP or pathlib.Path(tempfile.mkdtemp())) / f"{name}_{engine.lower()}.exr")
     bpy.ops.render.render(write_still=True)
     return support.Layers(scene.render.filepath)["Combined"]

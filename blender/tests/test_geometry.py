@@ -128,7 +128,8 @@ class Geometry(BlenderTest):
         ob.keyframe_insert("location", frame=2)
         scene = bpy.context.scene
         scene.frame_start, scene.frame_end, scene.render.engine = 1, 2, "RELIEF"
-        scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+        settings = scene.render.image_settings
+        settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
         scene.render.filepath = str(self.folder / "frame_####.exr")
         scene.relief.samples = 2
         bpy.ops.render.render(animation=True)

