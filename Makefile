@@ -99,7 +99,7 @@ gpu-bundle: packages
 	tools/make_gpu_bundle.sh build/release out/relief-gpu-bundle
 
 blender-addon: wheel
-	python3 blender/make_addon.py $(wildcard dist/relief-*.whl) -o out
+	python3 blender/make_addon.py out/wheels/relief-*.whl -o out
 
 format: packages
 	clang-format -i $(SOURCES)

@@ -1,6 +1,6 @@
-"""Runs the tests of the Blender add-on, each file in a process of its own: run_all.py FOLDER_OF_MODULE [FILE...].
+"""Runs the tests of the Blender add-on, each file in a process of its own: run_all.py FOLDER [test_NAME.py...].
 
-FOLDER_OF_MODULE holds the Python package `relief`, or its wheel. Exit 77, skipped, where there is none for this Python."""
+FOLDER holds wheels of the Python module, as `make wheel` writes them. Exit 77, skipped, where none is for this Python."""
 import os
 import pathlib
 import subprocess
@@ -12,24 +12,27 @@ SKIPPED = 77
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def unpack(module, folder):
-    """The folder to import from."""
-    if module.suffix != ".whl":
-        return module
-    with zipfile.ZipFile(module) as archive:
-        archive.extractall(folder)
-    return pathlib.Path(folder)
+def find_module(folder, unpacked):
+    """A folder from which `relief` can be imported, or None."""
+    for wheel in sorted(folder.glob("relief-*.whl"), key=os.path.getmtime, reverse=True):
+        target = pathlib.Path(unpacked) / wheel.stem
+        with zipfile.ZipFile(wheel) as archive:
+            archive.extractall(target)
+        command = [sys.executable, "-c", "import relief"]
+        if subprocess.run(command, env=dict(os.environ, PYTHONPATH=str(target)), capture_output=True).returncode == 0:
+            return target
+    return None
 
 
 def main():
+    folder = pathlib.Path(sys.argv[1])
     names = sys.argv[2:] or sorted(file.name for file in HERE.glob("test_*.py"))
-    with tempfile.TemporaryDirectory() as folder:
-        path = unpack(pathlib.Path(sys.argv[1]), folder)
-        environment = dict(os.environ, PYTHONPATH=str(path))
-        imported = subprocess.run([sys.executable, "-c", "import relief"], env=environment, capture_output=True, text=True)
-        if imported.returncode != 0:
-            print(f"skipped: the Python module relief is not in {path}: {imported.stderr.strip().splitlines()[-1]}")
+    with tempfile.TemporaryDirectory() as unpacked:
+        module = find_module(folder, unpacked)
+        if module is None:
+            print(f"skipped: no wheel in {folder} is for Python {sys.version_info[0]}.{sys.version_info[1]}: make wheel")
             return SKIPPED
+        environment = dict(os.environ, PYTHONPATH=str(module))
         failed = [name for name in names
                   if subprocess.run([sys.executable, str(HERE / name)], env=environment).returncode != 0]
     print("failed: " + " ".join(failed) if failed else f"{len(names)} files of tests passed")

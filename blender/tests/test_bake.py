@@ -1,5 +1,5 @@
 """Maps baked from detailed meshes: the base with the map looks like the mesh that it was baked from."""
-from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
+from support import BlenderTest, main, make_grid  # first: it makes the add-on known
 import bpy
 import numpy as np
 from relief_blender.bake_texels import Raster, add_margin

@@ -1,5 +1,6 @@
 """What becomes of nodes, meshes and settings, without a render."""
-from support import BlenderTest, displace, main, make_grid, make_hook, make_image, make_material, make_object, subdivide  # first: it makes the add-on known
+from support import (BlenderTest, displace, main, make_grid, make_hook, make_image, make_material,  # first: finds the add-on
+                     make_object, subdivide)
 import bpy
 import numpy as np
 from relief_blender import images, topology, world_export
