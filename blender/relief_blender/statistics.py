@@ -12,18 +12,21 @@ def find(scene_name):
 
 
 def describe(statistics):
-    """Pairs of a label and a text."""
+    """Pairs of a label and a text, of the keys of `relief render --stats`."""
+    def find(section, key):
+        return statistics.get(section, {}).get(key, 0)
+
+    def seconds(key):
+        return f"{find('time_s', key):.2f} s"
+
     def mebibytes(key):
-        return f"{statistics.get(key, 0) / 2 ** 20:.0f} MiB"
-    rays = sum(statistics.get(key, 0) for key in ("camera_rays", "shadow_rays", "bounce_rays"))
-    return [("Device", str(statistics.get("device") or statistics.get("engine", ""))),
-            ("Prepared in", f"{statistics.get('prepare_s', 0):.2f} s"),
-            ("First picture", f"{statistics.get('first_image_s', 0):.2f} s"),
-            ("Rendered in", f"{statistics.get('render_s', 0):.2f} s"),
-            ("Rays", f"{rays / 1e6:.1f} million"), ("Patches", f"{statistics.get('patches', 0):,}"),
-            ("Instances", f"{statistics.get('instances', 0):,}"), ("Maps", mebibytes("displacement_bytes")),
-            ("Trees", mebibytes("structures_bytes")), ("Cache", mebibytes("bottom_cache_bytes")),
-            ("Peak of the process", mebibytes("peak_resident_bytes"))]
+        return f"{find('memory_bytes', key) / 2 ** 20:.1f} MiB"
+    return [("Device", str(find("device", "name") or "")), ("Prepared in", seconds("prepare")),
+            ("First picture", seconds("first_image")), ("Rendered in", seconds("render")),
+            ("Rays", f"{find('rays', 'total') / 1e6:.1f} million"), ("Patches", f"{find('scene', 'patches'):,}"),
+            ("Triangles", f"{find('scene', 'triangles'):,}"), ("Instances", f"{find('scene', 'instances'):,}"),
+            ("Maps", mebibytes("displacement")), ("Structures", mebibytes("structures")),
+            ("Cache", mebibytes("bottom_cache")), ("Peak of the process", mebibytes("peak_resident"))]
 
 
 def clear():

@@ -26,12 +26,14 @@ class Engine(BlenderTest):
         self.assertGreater(bpy.context.scene.relief.samples, 0)
 
     def test_statistics_and_report_are_kept_for_the_panel(self):
-        make_material(make_grid(2), Subsurface_Weight=0.5)
+        make_material(make_grid(3), Subsurface_Weight=0.5)
         self.render("RELIEF")
         found, lines = statistics.find(bpy.context.scene.name)
         self.assertEqual(len(lines), 1)
         labels = dict(statistics.describe(found))
-        self.assertTrue(all(text for text in labels.values()), labels)
+        self.assertEqual((labels["Instances"], labels["Triangles"]), ("1", "18"), labels)
+        self.assertNotIn("0.0 MiB", labels["Peak of the process"])
+        self.assertTrue(labels["Device"])
 
     def test_a_scene_without_a_camera_is_a_fault_and_no_crash(self):
         scene = bpy.context.scene
