@@ -81,7 +81,11 @@ def run(arguments, engine, samples):
 def compare(arguments):
     subprocess.run([sys.executable, __file__, "--folder", arguments.folder, "--size", arguments.size, "--threads",
                     str(arguments.threads), "--engine", "SCENE"], check=True, stdout=subprocess.DEVNULL)
-    found = {engine: [run(arguments, engine, samples) for samples in (1, arguments.samples)] for engine in ("RELIEF", "CYCLES")}
+    found = {engine: [] for engine in ("RELIEF", "CYCLES")}
+    for samples in (1, arguments.samples):
+        for engine, results in found.items():
+            results.append(run(arguments, engine, samples))
+            print(engine, samples, results[-1], file=sys.stderr, flush=True)
     rows = [("first picture, s", [found[e][0]["seconds"] for e in found]),
             (f"{arguments.samples} samples, s", [found[e][1]["seconds"] for e in found]),
             ("peak of the process, MiB", [found[e][1]["peak"] / 2 ** 20 for e in found]),
