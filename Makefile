@@ -1,7 +1,7 @@
 # The short commands. Each does all of its own set-up on a fresh Debian 12; `make help` lists them.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help render test quick dev asan tsan fuzz docs coverage format clean packages peers release python wheel asan-slice fuzz-slice gpu-bundle
+.PHONY: help render test quick dev asan tsan fuzz docs coverage format clean packages peers release python wheel asan-slice fuzz-slice gpu-bundle blender-addon
 
 JOBS ?= $(shell tools/count_jobs.sh)
 FUZZ_SECONDS ?= 60
@@ -22,6 +22,7 @@ help:
 	@echo 'make fuzz      every fuzzer for FUZZ_SECONDS (60) seconds, with sanitizers; then FUZZ_FILES (2000) mutated files'
 	@echo 'make coverage  line coverage of the tests: build/coverage/report.txt'
 	@echo 'make gpu-bundle  tests and measurements for a bare GPU machine: out/relief-gpu-bundle'
+	@echo 'make blender-addon  the extension for Blender with its wheel: out/relief_blender-VERSION.zip'
 	@echo 'make docs        the documentation as a site: build/docs'
 	@echo 'make format    clang-format over all sources'
 	@echo 'make clean     remove build/ (pictures in out/ stay)'
@@ -104,6 +105,9 @@ coverage: packages
 gpu-bundle: packages
 	$(call configure_and_build,release,relief-gpu vulkan_tests)
 	tools/make_gpu_bundle.sh build/release out/relief-gpu-bundle
+
+blender-addon: wheel
+	python3 blender/make_addon.py out/wheels/relief-*.whl -o out
 
 format: packages
 	clang-format -i $(SOURCES)

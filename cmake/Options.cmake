@@ -21,6 +21,10 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 if(BUILD_SHARED_LIBS OR RELIEF_PYTHON)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 endif()
+if(CMAKE_POSITION_INDEPENDENT_CODE)
+  # Programs as libraries: they share precompiled headers.
+  set(CMAKE_CXX_COMPILE_OPTIONS_PIE ${CMAKE_CXX_COMPILE_OPTIONS_PIC})
+endif()
 
 # What follows is the business of whoever builds the whole: not of a project that Relief is a part of.
 if(PROJECT_IS_TOP_LEVEL)

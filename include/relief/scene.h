@@ -177,7 +177,7 @@ struct InputTexture {
     Vec2f uv_scale{1, 1}, uv_offset{0, 0};
 };
 
-/// OpenPBR 1.1 without subsurface and anisotropy: fuzz over a coat over a base, which is metal, a diffuse
+/// OpenPBR 1.1 without subsurface: fuzz over a coat over a base, which is metal, a diffuse
 /// body under a clear dielectric surface, glass, or a mix of them. With what comes after the filters as it
 /// is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a texture
 /// is v = 1, wrap mode of those that are members is repeat.
@@ -197,14 +197,18 @@ struct Material {
     float base_diffuse_roughness = 0;            ///< [0, 1]; 0 is Lambert's law
     float specular_weight = 1;     ///< [0, 1], times the reflection of the base at normal incidence
     Vec3f specular_color{1, 1, 1}; ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
-    float coat_weight = 0;         ///< [0, 1]; 0 removes the coat
-    Vec3f coat_color{1, 1, 1};     ///< each in [0, 1]: what is left of light straight down and up again
-    float coat_roughness = 0;      ///< [0, 1]
-    float coat_ior = 1.6f;         ///< >= 1
-    float coat_darkening = 1;      ///< [0, 1]: of the base, by what the coat reflects back onto it
-    float fuzz_weight = 0;         ///< [0, 1]; 0 removes the fuzz
-    Vec3f fuzz_color{1, 1, 1};     ///< each in [0, 1]
-    float fuzz_roughness = 0.5f;   ///< [0, 1]; below 0.07 as 0.07
+    /// [0, 1]: facets are rougher along the tangent, by uv, than along the bitangent; 0: alike. Objects with
+    /// an anisotropic material need uvs.
+    float specular_roughness_anisotropy = 0;
+    float coat_weight = 0;               ///< [0, 1]; 0 removes the coat
+    Vec3f coat_color{1, 1, 1};           ///< each in [0, 1]: what is left of light straight down and up again
+    float coat_roughness = 0;            ///< [0, 1]
+    float coat_roughness_anisotropy = 0; ///< [0, 1]
+    float coat_ior = 1.6f;               ///< >= 1
+    float coat_darkening = 1;            ///< [0, 1]: of the base, by what the coat reflects back onto it
+    float fuzz_weight = 0;               ///< [0, 1]; 0 removes the fuzz
+    Vec3f fuzz_color{1, 1, 1};           ///< each in [0, 1]
+    float fuzz_roughness = 0.5f;         ///< [0, 1]; below 0.07 as 0.07
     /// [0, 1]: part of the dielectric that is glass, of the ior and roughness above; not under a coat or
     /// fuzz. A body of it is closed, with its faces outwards; bodies of glass do not lie inside one another.
     float transmission_weight = 0;
@@ -259,6 +263,12 @@ inline bool is_cut_out(const Material& material) {
 
 inline bool has_normal_map(const Material& material) {
     return material.normal_texture || find_input_texture(material, MaterialInput::normal);
+}
+
+/// Whether the roughness of a surface of the material has a direction.
+inline bool is_anisotropic(const Material& material) {
+    return material.specular_roughness_anisotropy > 0 ||
+           (material.coat_weight > 0 && material.coat_roughness_anisotropy > 0);
 }
 
 /// Roughness up to which thin walls are clear.

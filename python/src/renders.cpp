@@ -1,5 +1,6 @@
 // Pictures of scenes, at once or one after the other while maps are painted.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -64,8 +65,12 @@ nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const Ren
     const auto denoiser = load_denoiser(denoisers, is_denoised, settings);
     const auto work = [&parsed, &settings, denoiser](RenderObserver& observer) {
         RenderResult result = render(std::move(parsed.scene), settings, &observer);
-        if (denoiser && result.whole_samples > 0)
-            denoiser->denoise(result.image, [&] { return observer.is_cancelled(); });
+        if (!denoiser || result.whole_samples == 0) return result;
+        const auto start = std::chrono::steady_clock::now();
+        denoiser->denoise(result.image, [&] { return observer.is_cancelled(); });
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+        result.statistics.denoise_s = time.count();
+        result.statistics.total_s += time.count();
         return result;
     };
     return make_answer(run_job(work, callbacks), settings);

@@ -51,12 +51,12 @@ Texture make_texture(nb::handle array, const std::string& name) {
         texture.source_type = SampleType::uint8;
         texture.floats.resize(count);
         spread(static_cast<const uint8_t*>(data), channels, 1.0f, texture.floats,
-               [](uint8_t x) { return float(x) / 255.0f; });
+               [](uint8_t x) { return float(x) * (1.0f / 255); });
     } else if (type == nb::dtype<uint16_t>()) {
         texture.source_type = SampleType::uint16;
         texture.floats.resize(count);
         spread(static_cast<const uint16_t*>(data), channels, 1.0f, texture.floats,
-               [](uint16_t x) { return float(x) / 65535.0f; });
+               [](uint16_t x) { return float(x) * (1.0f / 65535); });
     } else {
         texture.source_type = SampleType::float16;
         texture.halves.resize(count);

@@ -49,6 +49,10 @@ void TileTracer::shade_paths() {
 void TileTracer::shade_vertices() {
     points_.resize(hits_.size()), coarse_from_.resize(hits_.size());
     tracer_.make_surface_points(hits_, points_, scratch_);
+    if (tracer_.scene().has_anisotropy) {
+        tangents_.resize(hits_.size());
+        find_tangents(tracer_.scene(), hits_, points_, tangents_);
+    }
     if (tracer_.scene().has_normal_maps) map_shading_normals(tracer_.scene(), hits_, points_);
     draw_random();
     size_t next = 0;
@@ -248,6 +252,7 @@ void TileTracer::reflect(size_t first, size_t count) {
         emissions_[n] = m.emission;
         set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
+        if (tracer_.scene().has_anisotropy) set_lane(tangents_[k], lane, lanes.tangent);
         lanes.light_lift[lane] = m.glass == kNoIndex ? find_lift(k, n) : 0.0f;
     }
     for (size_t n = count; n % 16 != 0; ++n) set_plain(n % 16, lanes_[n / 16]);

@@ -111,6 +111,7 @@ class TileTracer {
     std::vector<Vec3f> directions_; ///< of rays that missed
     std::vector<EnvironmentLookup> backgrounds_;
     std::vector<SurfacePoint> points_;
+    std::vector<Vec3f> tangents_; ///< of points on anisotropic materials
     std::vector<uint32_t> wave_seeds_;
     std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
 

@@ -21,6 +21,16 @@ FN Basis make_basis(Vec3 n) {
     return result;
 }
 
+/// Frame about a unit vector `n` whose t goes along `tangent`, of any length, as far as it can.
+FN Basis make_basis_along(Vec3 n, Vec3 tangent) {
+    Basis result = make_basis(n);
+    Vec3 level = tangent - n * dot(n, tangent);
+    Bool is_level = dot(level, level) > Float(1e-8f) * dot(tangent, tangent);
+    result.t = select(is_level, make_unit(level), result.t);
+    result.b = cross(n, result.t);
+    return result;
+}
+
 FN Vec3 to_local(Basis basis, Vec3 v) {
     Vec3 result = {dot(v, basis.t), dot(v, basis.b), dot(v, basis.n)};
     return result;

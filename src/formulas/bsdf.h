@@ -1,13 +1,13 @@
 // Metallic-roughness surface in the local frame (shading normal = z): a GGX lobe over a diffuse base, both
-// energy conserving. Microfacets: Walter et al. 2007 with height-correlated Smith shadowing (Heitz 2014).
+// energy conserving.
 // Multiple-scattering compensation and coupling of coat and base: Kulla and Conty 2017, Revisiting Physically
 // Based Shading; both are reciprocal, and a white surface reflects all light.
 #if !defined(RELIEF_BSDF_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_BSDF_H
 #include "formulas/constants.h"
+#include "formulas/facets.h"
 #include "formulas/ggx_albedo.h"
-#include "formulas/trig.h"
 #include "formulas/warp.h"
 #endif
 #include "formulas/begin.h"
@@ -44,8 +44,6 @@ struct BsdfSample {
     Float pdf;
 };
 
-const float kMinAlpha = 1e-3f;
-
 FN Vec3 make_grey(Float value) {
     Vec3 grey = {value, value, value};
     return grey;
@@ -73,7 +71,7 @@ FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
     b.f0 = make_grey(zero);
     b.f90 = zero;
     b.roughness = p.roughness;
-    b.alpha = max(p.roughness * p.roughness, Float(kMinAlpha));
+    b.alpha = find_alpha(p.roughness);
     b.multiple = make_grey(zero);
     b.diffuse = p.base_color * Float(1.0f / kPi);
     b.coat_f0 = zero;
@@ -103,7 +101,7 @@ FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
     b.f0 = p.base_color * p.metallic + make_grey(dielectric * coat_f0);
     b.f90 = p.metallic + dielectric * coat_f90;
     b.roughness = p.roughness;
-    b.alpha = max(p.roughness * p.roughness, Float(kMinAlpha));
+    b.alpha = find_alpha(p.roughness);
     b.coat_f0 = coat_f0;
     b.coat_f90 = coat_f90;
     b.coat_multiple = multiple_scattering(average_fresnel(coat_f0, coat_f90), e_average);
@@ -150,21 +148,6 @@ FN Bsdf make_bsdf(BsdfParameters p, Float cos_o) {
     return b;
 }
 
-/// Smith's lambda of GGX; cos_theta > 0.
-FN Float ggx_lambda(Float alpha, Float cos_theta) {
-    Float cos2 = cos_theta * cos_theta;
-    Float tan2 = max(Float(0.0f), Float(1.0f) - cos2) / cos2;
-    return Float(0.5f) * (sqrt(Float(1.0f) + alpha * alpha * tan2) - Float(1.0f));
-}
-
-/// Normal distribution; h a unit vector. Avoids 1 - h.z^2, which suffers cancellation for smooth surfaces.
-FN Float ggx_distribution(Float alpha, Vec3 h) {
-    Float x = h.x / alpha;
-    Float y = h.y / alpha;
-    Float k = x * x + y * y + h.z * h.z;
-    return Float(1.0f) / (Float(kPi) * alpha * alpha * k * k);
-}
-
 FN Vec3 schlick_fresnel(Vec3 f0, Float f90, Float cos_h) {
     Float m = clamp(Float(1.0f) - cos_h, Float(0.0f), Float(1.0f));
     Float m5 = m * m * m * m * m;
@@ -178,7 +161,8 @@ FN BsdfValue evaluate_general_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     Vec3 h = normalize(wo + wi);
     Float lambda_o = ggx_lambda(b.alpha, wo.z);
     Float lambda_i = ggx_lambda(b.alpha, wi.z);
-    Float lobe = ggx_distribution(b.alpha, h) / (Float(4.0f) * wo.z);
+    Vec2 alpha = {b.alpha, b.alpha};
+    Float lobe = ggx_distribution(alpha, h) / (Float(4.0f) * wo.z);
     Vec3 specular = schlick_fresnel(b.f0, b.f90, dot(wo, h)) * (lobe / (one + lambda_o + lambda_i));
     GgxAlbedo at_i = lookup_ggx_albedo(b.roughness, wi.z);
     Float multiple = b.escape_multiple * max(Float(0.0f), one - at_i.scale - at_i.bias) * wi.z;
@@ -207,29 +191,12 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
     return result;
 }
 
-/// A visible microfacet normal (Dupuy and Benyoub 2023, spherical caps).
-FN Vec3 sample_ggx_normal(Float alpha, Vec3 wo, Vec2 u) {
-    Vec3 stretched = {alpha * wo.x, alpha * wo.y, wo.z};
-    Vec3 o = normalize(stretched);
-    SinCos phi = find_sin_cos(Float(2.0f * kPi) * u.x);
-    Float z = (Float(1.0f) - u.y) * (Float(1.0f) + o.z) - o.z;
-    Float sin_theta = sqrt(max(Float(0.0f), Float(1.0f) - z * z));
-    Vec3 unstretched = {alpha * (sin_theta * phi.cosine + o.x), alpha * (sin_theta * phi.sine + o.y),
-                        z + o.z};
-    return normalize(unstretched);
-}
-
-/// Reflection of `wo` at such a normal.
-FN Vec3 sample_ggx_reflection(Float alpha, Vec3 wo, Vec2 u) {
-    Vec3 h = sample_ggx_normal(alpha, wo, u);
-    return h * (Float(2.0f) * dot(wo, h)) - wo;
-}
-
 /// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects the lobe, `u` the direction within it.
 FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
     Vec3 wi = square_to_cosine_hemisphere(u);
     Bool is_specular = u_lobe < b.specular_probability;
-    if (is_any(is_specular)) wi = select(is_specular, sample_ggx_reflection(b.alpha, wo, u), wi);
+    Vec2 alpha = {b.alpha, b.alpha};
+    if (is_any(is_specular)) wi = select(is_specular, sample_ggx_reflection(alpha, wo, u), wi);
     wi = normalize(wi);
     BsdfValue v = evaluate_bsdf(b, wo, wi);
     Bool is_possible = v.pdf > Float(0.0f);

@@ -12,7 +12,7 @@
 #include "formulas/begin.h"
 
 struct GlassBsdf {
-    Float alpha;
+    Facets facets;
     Float ior;       ///< of the far side over the viewer's
     Vec3 reflection; ///< factor of what is reflected
     GlassParameters glass;
@@ -28,7 +28,7 @@ struct FacetLight {
 FN GlassBsdf make_glass_bsdf(GlassParameters g, Float roughness, Bool is_inside) {
     Bool is_leaving = is_inside && g.kind < Float(kRoughWall);
     GlassBsdf b;
-    b.alpha = max(roughness * roughness, Float(kMinAlpha));
+    b.facets = make_facets(roughness, g.anisotropy);
     b.ior = select(is_leaving, Float(1.0f) / g.ior, g.ior);
     b.reflection = select(is_leaving, make_grey(Float(1.0f)), g.specular_color);
     b.glass = g;
@@ -75,9 +75,10 @@ FN BsdfValue evaluate_glass_bsdf(GlassBsdf b, Vec3 wo, Vec3 wi) {
     // The solid angle of directions over that of half vectors.
     Float turn = cos_o + ior * cos_i;
     Float spread = select(is_refracted, cos_o * abs(cos_i) / max(turn * turn, Float(1e-12f)), Float(0.25f));
-    Float lobe = ggx_distribution(b.alpha, h) * spread / wo.z;
-    Float lambda_o = ggx_lambda(b.alpha, wo.z);
-    Float lambda_i = ggx_lambda(b.alpha, abs(wi.z));
+    Float lobe = ggx_distribution(b.facets.alpha, h) * spread / wo.z;
+    Vec3 unsigned_wi = {wi.x, wi.y, abs(wi.z)};
+    Float lambda_o = facets_lambda(b.facets, wo);
+    Float lambda_i = facets_lambda(b.facets, unsigned_wi);
     Vec3 reflected = {light.reflected.x * b.reflection.x, light.reflected.y * b.reflection.y,
                       light.reflected.z * b.reflection.z};
     Vec3 value = select(is_reflected, reflected, light.passed) * (lobe / (one + lambda_o + lambda_i));
@@ -92,7 +93,7 @@ FN BsdfValue evaluate_glass_bsdf(GlassBsdf b, Vec3 wo, Vec3 wi) {
 /// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects reflection or not, `u` the facet.
 FN BsdfSample sample_glass_bsdf(GlassBsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
     Float zero = Float(0.0f);
-    Vec3 h = sample_ggx_normal(b.alpha, wo, u);
+    Vec3 h = sample_ggx_normal(b.facets.alpha, wo, u);
     Float cos_o = max(dot(wo, h), zero);
     FacetLight light = meet_facet(b, cos_o);
     Bool is_reflected = u_lobe < light.share;

@@ -17,6 +17,7 @@ struct GlassParameters {
     Vec3 specular_color; ///< factor of what is reflected outside
     Vec3 tint;           ///< factor of what is refracted, at each crossing
     Vec3 depth;          ///< -log2 of what is left after a scene unit; of a wall straight through it
+    Float anisotropy;    ///< [0, 1], of the roughness
     Float kind;          ///< kSolidGlass, kRoughWall or kClearWall
 };
 

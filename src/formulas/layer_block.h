@@ -1,4 +1,4 @@
-// The block with one row that a point has in the grid of layer_grid.h.
+// The block with one row an azimuth that a point has in the grid of layer_grid.h.
 #ifndef RELIEF_LAYER_BLOCK_H
 #define RELIEF_LAYER_BLOCK_H
 #include "formulas/layer_grid.h"
@@ -22,13 +22,20 @@ FN Vec2 blend_layer_rows(GridTable table, LayerPlace place, uint first, uint str
     return sum;
 }
 
-/// Entry `i` of the block with one row that a point has.
+/// Place of the average in the block that a point has; the fuzz follows.
+FN uint find_block_average(uint azimuth_count) { return azimuth_count * kLayerColumnCount; }
+
+/// Entry `i` of the block that a point has.
 FN Vec2 blend_layer_block(GridTable table, LayerPlace place, uint i) {
-    uint averages = place.first_entry + place.row_count * kLayerColumnCount;
-    if (i < kLayerColumnCount)
-        return blend_layer_rows(table, place, place.first_entry + i, kLayerColumnCount);
-    if (i == kLayerColumnCount) return blend_layer_rows(table, place, averages, 1u);
-    uint fuzz = averages + place.row_count + place.fuzz_row * kLayerColumnCount + i - kLayerColumnCount - 1u;
+    uint average = find_block_average(place.azimuth_count);
+    uint averages = place.first_entry + place.row_count * average;
+    if (i < average) {
+        uint azimuth = i / kLayerColumnCount;
+        uint first = place.first_entry + azimuth * place.row_count * kLayerColumnCount;
+        return blend_layer_rows(table, place, first + i - azimuth * kLayerColumnCount, kLayerColumnCount);
+    }
+    if (i == average) return blend_layer_rows(table, place, averages, 1u);
+    uint fuzz = averages + place.row_count + place.fuzz_row * kLayerColumnCount + i - average - 1u;
     Vec2 lower = read_grid_entry(table, fuzz);
     if (!(place.fuzz_fraction > 0.0f)) return lower;
     return lower * (1.0f - place.fuzz_fraction) +

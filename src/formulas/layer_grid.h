@@ -1,7 +1,7 @@
-// The block of the albedo table of a material whose layers have textures (prepare/material_layers.h): a row
-// for each node of a grid over the numbers with textures, their averages, and rows of the fuzz over its
-// roughness. At a point it is a block with one row, as layer_table.h has it, between the rows around:
-// layer_block.h.
+// The block of the albedo table of a material whose layers have textures (prepare/material_layers.h): for
+// each azimuth a row for each node of a grid over the numbers with textures, their averages, and rows of the
+// fuzz over its roughness. At a point it is a block with one row an azimuth, as layer_table.h has it, between
+// the rows around: layer_block.h.
 #ifndef RELIEF_LAYER_GRID_H
 #define RELIEF_LAYER_GRID_H
 #include "formulas/material_inputs.h"
@@ -18,14 +18,15 @@ struct LayerGrid {
     float lower[kMaxLayerAxes]; ///< of the first node
     float scale[kMaxLayerAxes]; ///< nodes a unit
     float last[kMaxLayerAxes];  ///< node
-    uint row_count;
+    uint row_count;             ///< of each azimuth
+    uint azimuth_count;         ///< the rows of one after those of another
     float fuzz_lower, fuzz_scale, fuzz_last;
 };
 
 /// Between which rows a point is.
 struct LayerPlace {
     uint first_entry; ///< of the block
-    uint row_count;
+    uint row_count, azimuth_count;
     uint row; ///< with the least nodes
     uint axis_count;
     uint stride[kMaxLayerAxes];
@@ -38,6 +39,7 @@ FN LayerPlace place_layers(LayerGrid grid, uint first_entry, InputNumbers number
     LayerPlace place;
     place.first_entry = first_entry;
     place.row_count = grid.row_count;
+    place.azimuth_count = grid.azimuth_count;
     place.row = 0u;
     place.axis_count = grid.axis_count;
     for (uint k = 0u; k < kMaxLayerAxes; ++k) {

@@ -21,10 +21,12 @@ struct LayerParameters {
     Float coat_darkening;    ///< [0, 1]
     Float coat_inside;       ///< what the coat reflects of diffuse light from below
     Vec3 fuzz_color;
-    Float fuzz_weight;   ///< [0, 1]; 0: no fuzz
-    Float fuzz_exponent; ///< of the sine of the half vector
-    Float fuzz_scale;    ///< of the lobe, so that it reflects all light at most
-    Float row_scale;     ///< roughness to rows of the albedo table; 0: it has one row
+    Float fuzz_weight;                          ///< [0, 1]; 0: no fuzz
+    Float fuzz_exponent;                        ///< of the sine of the half vector
+    Float fuzz_scale;                           ///< of the lobe, so that it reflects all light at most
+    Float specular_anisotropy, coat_anisotropy; ///< [0, 1]; 0: alike in all directions
+    Float azimuth_scale; ///< of find_azimuth_row(); 0: the albedo table has one azimuth
+    Float row_scale;     ///< roughness to rows of each azimuth; 0: it has one row
     Uint first_entry;    ///< of the material's block of the table
 };
 

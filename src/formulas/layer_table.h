@@ -1,5 +1,6 @@
-// The albedo table of layered materials: a block for each, filled by prepare/material_layers.h. Rows of
-// kLayerColumns entries, one a roughness; their averages; a row of the fuzz.
+// The albedo table of layered materials: a block for each, filled by prepare/material_layers.h. For each
+// azimuth, of which most materials have one, rows of kLayerColumns entries, one a roughness; averages of each
+// roughness over all azimuths; a row of the fuzz.
 #ifndef RELIEF_LAYER_TABLE_H
 #define RELIEF_LAYER_TABLE_H
 #include "formulas/begin.h"

@@ -42,8 +42,8 @@ struct RestColors {
 /// Evaluated for one outgoing direction.
 struct LayeredBsdf {
     LayeredSurface surface;
-    Float alpha, roughness; ///< of the base under the coat
-    Float coat_alpha;
+    Float roughness; ///< of the base under the coat
+    Facets facets, coat_facets;
     Vec3 metal_f0, metal_edge; ///< Fresnel of the metal times its share
     Float metal_f90;
     Vec3 dielectric_color; ///< times its share
@@ -64,8 +64,6 @@ FN Vec3 blend_from_one(Vec3 color, Float weight) {
     return result;
 }
 
-FN Float find_alpha(Float roughness) { return max(roughness * roughness, Float(kMinAlpha)); }
-
 /// A rough coat blurs what lies below (OpenPBR 1.1, "Coat": roughening).
 FN Float roughen_base(Float roughness, LayerParameters l) {
     Float base2 = roughness * roughness;
@@ -75,10 +73,11 @@ FN Float roughen_base(Float roughness, LayerParameters l) {
 }
 
 /// `roughness`: of the base under the coat.
-FN LayerTerms make_layer_terms(LayeredSurface s, LayerTable table, Float roughness, Float cos_theta) {
+FN LayerTerms make_layer_terms(LayeredSurface s, LayerTable table, Float roughness, Vec3 w) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     LayerParameters l = s.layers;
+    Float cos_theta = w.z;
     LayerTerms t;
     t.fuzz = one;
     if (is_any(l.fuzz_weight > zero))
@@ -86,15 +85,16 @@ FN LayerTerms make_layer_terms(LayeredSurface s, LayerTable table, Float roughne
     t.coat = one;
     t.path = one;
     if (is_any(l.coat_weight > zero)) {
-        GgxAlbedo coat = lookup_ggx_albedo(l.coat_roughness, cos_theta);
+        Float seen = find_seen_roughness(l.coat_roughness, l.coat_anisotropy, w);
+        GgxAlbedo coat = lookup_ggx_albedo(seen, cos_theta);
         t.coat = max(zero, one - l.coat_f0 * coat.scale - l.coat_f90 * coat.bias);
         Float sine2 = max(zero, one - cos_theta * cos_theta);
         t.path = one / sqrt(max(Float(1e-4f), one - sine2 * l.coat_inverse_ior2));
     }
-    GgxAlbedo base = lookup_ggx_albedo(roughness, cos_theta);
+    GgxAlbedo base = lookup_ggx_albedo(find_seen_roughness(roughness, l.specular_anisotropy, w), cos_theta);
     t.specular = l.dielectric_f0 * base.scale + l.dielectric_f90 * base.bias;
     t.base = max(zero, one - t.specular);
-    Vec2 rest = lookup_layer_rest(table, l, s.roughness, cos_theta);
+    Vec2 rest = lookup_layer_rest(table, l, s.roughness, w);
     t.rest_dielectric = rest.x;
     t.rest_metal = rest.y;
     return t;
@@ -166,16 +166,16 @@ FN RestColors color_rests(LayeredSurface s, Vec3 metal, Vec2 average) {
     return result;
 }
 
-/// `cos_o`: cosine of the outgoing direction, > 0.
-FN LayeredBsdf make_layered_bsdf(LayeredSurface s, LayerTable table, Float cos_o) {
+/// `wo`: the outgoing direction, above the surface.
+FN LayeredBsdf make_layered_bsdf(LayeredSurface s, LayerTable table, Vec3 wo) {
     Float one = Float(1.0f);
     LayerParameters l = s.layers;
     Vec3 c = s.base_color;
     LayeredBsdf b;
     b.surface = s;
     b.roughness = roughen_base(s.roughness, l);
-    b.alpha = find_alpha(b.roughness);
-    b.coat_alpha = find_alpha(l.coat_roughness);
+    b.facets = make_facets(b.roughness, l.specular_anisotropy);
+    b.coat_facets = make_facets(l.coat_roughness, l.coat_anisotropy);
     Vec3 edge = {find_edge(c.x, l.specular_color.x), find_edge(c.y, l.specular_color.y),
                  find_edge(c.z, l.specular_color.z)};
     Float weight = l.specular_weight * l.metallic;
@@ -194,9 +194,9 @@ FN LayeredBsdf make_layered_bsdf(LayeredSurface s, LayerTable table, Float cos_o
         darken_base(average_base(c.y, metal.y, l.specular_color.y, l), inside, l.coat_darkening),
         darken_base(average_base(c.z, metal.z, l.specular_color.z, l), inside, l.coat_darkening)};
     b.darkening = darkening;
-    b.at_o = make_layer_terms(s, table, b.roughness, cos_o);
+    b.at_o = make_layer_terms(s, table, b.roughness, wo);
     b.rests = color_rests(s, metal, lookup_layer_average(table, l, s.roughness));
-    GgxAlbedo facets = lookup_ggx_albedo(b.roughness, cos_o);
+    GgxAlbedo facets = lookup_ggx_albedo(b.roughness, wo.z);
     b.shares = share_lobes(s, b.at_o, luminance(b.metal_f0) * facets.scale + b.metal_f90 * facets.bias);
     return b;
 }
@@ -217,11 +217,10 @@ FN Vec3 layered_fresnel(LayeredBsdf b, Float cos_h) {
 }
 
 /// A microfacet lobe without its Fresnel: x times the cosine of the incoming direction, y its density.
-FN Vec2 evaluate_facets(Float alpha, Vec3 h, Float cos_o, Float cos_i) {
-    Float lambda_o = ggx_lambda(alpha, cos_o);
-    Float lobe = ggx_distribution(alpha, h) / (Float(4.0f) * cos_o);
-    Vec2 result = {lobe / (Float(1.0f) + lambda_o + ggx_lambda(alpha, cos_i)),
-                   lobe / (Float(1.0f) + lambda_o)};
+FN Vec2 evaluate_facets(Facets f, Vec3 h, Vec3 wo, Vec3 wi) {
+    Float lambda_o = facets_lambda(f, wo);
+    Float lobe = ggx_distribution(f.alpha, h) / (Float(4.0f) * wo.z);
+    Vec2 result = {lobe / (Float(1.0f) + lambda_o + facets_lambda(f, wi)), lobe / (Float(1.0f) + lambda_o)};
     return result;
 }
 
@@ -242,8 +241,8 @@ FN BsdfValue evaluate_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, Vec
     Vec3 h = normalize(wo + wi);
     Float cos_h = dot(wo, h);
     LayerTerms o = b.at_o;
-    LayerTerms i = make_layer_terms(b.surface, table, b.roughness, wi.z);
-    Vec2 facets = evaluate_facets(b.alpha, h, wo.z, wi.z);
+    LayerTerms i = make_layer_terms(b.surface, table, b.roughness, wi);
+    Vec2 facets = evaluate_facets(b.facets, h, wo, wi);
     Vec3 diffuse = evaluate_eon(b.surface.base_color, l.diffuse_roughness, wo, wi);
     Vec3 base =
         layered_fresnel(b, cos_h) * facets.x + diffuse * ((one - l.metallic) * o.base * i.base * wi.z);
@@ -257,7 +256,7 @@ FN BsdfValue evaluate_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, Vec
                  (one - shares.base - shares.coat - shares.fuzz) * cosine_hemisphere_pdf(wi.z);
     if (is_any(l.coat_weight > zero)) {
         Vec3 color = multiply_colors(pass_coat_color(l, o.path, i.path), b.darkening);
-        Vec2 coat = evaluate_facets(b.coat_alpha, h, wo.z, wi.z);
+        Vec2 coat = evaluate_facets(b.coat_facets, h, wo, wi);
         Float fresnel = schlick_fresnel(make_grey(l.coat_f0), l.coat_f90, cos_h).x;
         result.value = multiply_colors(base, blend_from_one(color * (o.coat * i.coat), l.coat_weight)) +
                        make_grey(l.coat_weight * fresnel * coat.x);
@@ -296,7 +295,7 @@ FN BsdfSample sample_layered_bsdf(LayeredBsdf b, LayerTable table, Vec3 wo, Floa
     Bool is_facet = u_lobe < coat_end;
     Bool is_fuzz = u_lobe >= coat_end && u_lobe < fuzz_end;
     if (is_any(is_facet)) {
-        Float alpha = select(u_lobe < b.shares.base, b.alpha, b.coat_alpha);
+        Vec2 alpha = select(u_lobe < b.shares.base, b.facets.alpha, b.coat_facets.alpha);
         wi = select(is_facet, sample_ggx_reflection(alpha, wo, u), wi);
     }
     if (is_any(is_fuzz)) wi = select(is_fuzz, square_to_cone(u, Float(1.0f)), wi);

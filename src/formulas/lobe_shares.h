@@ -25,7 +25,7 @@ FN Vec3 evaluate_diffuse_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, 
     Float zero = Float(0.0f);
     LayerParameters l = b.surface.layers;
     LayerTerms o = b.at_o;
-    LayerTerms i = make_layer_terms(b.surface, table, b.roughness, wi.z);
+    LayerTerms i = make_layer_terms(b.surface, table, b.roughness, wi);
     Vec3 value = evaluate_eon(b.surface.base_color, l.diffuse_roughness, wo, wi) *
                  ((one - l.metallic) * o.base * i.base * wi.z);
     Vec3 rest = b.rests.dielectric * (o.rest_dielectric * i.rest_dielectric) * wi.z;

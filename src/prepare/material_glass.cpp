@@ -28,6 +28,7 @@ scalar::GlassParameters make_glass_record(const Material& material) {
     g.ior = std::max(weaken_ior(material.ior, material.specular_weight), scalar::kLeastGlassIor);
     g.specular_color = material.specular_color;
     g.tint = {1, 1, 1};
+    g.anisotropy = material.specular_roughness_anisotropy;
     g.kind = scalar::kSolidGlass;
     if (material.is_thin_walled) {
         g.kind = is_clear_wall(material) ? scalar::kClearWall : scalar::kRoughWall;

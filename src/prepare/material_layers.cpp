@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "formulas/layer_block.h"
@@ -19,10 +20,14 @@ constexpr uint32_t kRows = 16;         ///< where a texture changes the roughnes
 constexpr uint32_t kSamples = 512;     ///< of each lobe
 constexpr uint32_t kGridSamples = 128; ///< the same where there are hundreds of rows
 constexpr uint32_t kFuzzRows = 33;     ///< where a texture changes the roughness of the fuzz; else one
+constexpr uint32_t kAzimuths = 9;      ///< of materials that are not alike in all directions
 /// Nodes of a grid of so many axes, in each of them.
 constexpr std::array<uint32_t, scalar::kMaxLayerAxes + 1> kNodes{1, 17, 9, 7, 5};
 constexpr float kLeastCosine = 1e-4f;
 constexpr Vec3f kWhite{1, 1, 1};
+
+/// Of a block with one row an azimuth.
+constexpr uint32_t count_entries(uint32_t azimuths) { return (azimuths + 1) * kColumns + 1; }
 
 uint32_t count_rows(const Material& material) { return material.roughness_texture ? kRows : 1; }
 
@@ -54,6 +59,9 @@ scalar::LayerParameters make_record(const Material& material) {
     l.fuzz_color = material.fuzz_color, l.fuzz_weight = material.fuzz_weight;
     l.fuzz_exponent = 1 / std::max(material.fuzz_roughness, 0.07f);
     l.fuzz_scale = 1;
+    l.specular_anisotropy = material.specular_roughness_anisotropy;
+    if (material.coat_weight > 0) l.coat_anisotropy = material.coat_roughness_anisotropy;
+    l.azimuth_scale = is_anisotropic(material) ? float(kAzimuths - 1) : 0.0f;
     l.row_scale = float(count_rows(material) - 1);
     return l;
 }
@@ -63,7 +71,30 @@ float column_cosine(uint32_t column) {
     return std::max(x * x, kLeastCosine);
 }
 
+/// In the plane of the normal and the tangent.
 Vec3f make_direction(float cosine) { return {std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine}; }
+
+/// The direction of column 'cosine' in row 'azimuth' of those of a material (find_azimuth_row).
+Vec3f turn_direction(float cosine, uint32_t azimuth, uint32_t count) {
+    const Vec3f level = make_direction(cosine);
+    if (count == 1) return level;
+    const float row = float(azimuth) / float(count - 1), along = row * row;
+    return {level.x * along, level.x * std::sqrt(std::max(0.0f, 1 - along * along)), cosine};
+}
+
+/// Parts of all azimuths for which the rows count that are interpolated between.
+std::vector<double> weigh_azimuths(uint32_t count) {
+    std::vector<double> weights(count);
+    if (count == 1) return {1};
+    constexpr int kAngles = 4096;
+    for (int k = 0; k < kAngles; ++k) {
+        const double angle = (k + 0.5) / kAngles * 0.5 * std::numbers::pi;
+        const double y = std::sqrt(std::cos(angle)) * (count - 1);
+        const uint32_t row = std::min(uint32_t(y), count - 2);
+        weights[row] += (1 - (y - row)) / kAngles, weights[row + 1] += (y - row) / kAngles;
+    }
+    return weights;
+}
 
 /// Directional albedo of the fuzz, midpoint rule over cosine and angle.
 float integrate_fuzz(const scalar::LayerParameters& l, float cosine) {
@@ -103,10 +134,9 @@ double average_lobe(const scalar::LayeredBsdf& bsdf, scalar::LayerTable table, c
 
 /// What all lobes of a white stack scatter once. The table holds no rests yet. Each lobe is drawn from by
 /// itself, and counts by its share: which of them is drawn next adds no noise.
-float measure_albedo(const scalar::LayeredSurface& white, scalar::LayerTable table, float cosine,
+float measure_albedo(const scalar::LayeredSurface& white, scalar::LayerTable table, const Vec3f& wo,
                      uint32_t samples) {
-    const scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(white, table, cosine);
-    const Vec3f wo = make_direction(cosine);
+    const scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(white, table, wo);
     const scalar::LobeShares& shares = bsdf.shares;
     double sum = 0;
     float first = 0;
@@ -143,16 +173,22 @@ Vec2f average_row(const Vec2f* row) {
     return {float(sum.x), float(sum.y)};
 }
 
+/// How a row is measured.
+struct RowSource {
+    float roughness;
+    uint32_t azimuth, azimuths, samples;
+};
+
 /// A row of rests; `block` has those of the fuzz.
-void fill_row(const scalar::LayerParameters& layers, float roughness, uint32_t samples, const Vec2f* block,
+void fill_row(const scalar::LayerParameters& layers, const RowSource& source, const Vec2f* block,
               Vec2f* row) {
     scalar::LayerParameters alone = layers;
     alone.first_entry = 0;
     for (uint32_t k = 0; k < kColumns; ++k) {
-        const float cosine = column_cosine(k);
+        const Vec3f wo = turn_direction(column_cosine(k), source.azimuth, source.azimuths);
         const auto rest = [&](float metallic) {
-            const scalar::LayeredSurface white = whiten(alone, roughness, metallic);
-            return std::max(0.0f, 1 - measure_albedo(white, {block}, cosine, samples));
+            const scalar::LayeredSurface white = whiten(alone, source.roughness, metallic);
+            return std::max(0.0f, 1 - measure_albedo(white, {block}, wo, source.samples));
         };
         row[k] = {rest(0), rest(1)};
     }
@@ -169,7 +205,7 @@ struct Block {
 
 /// A row of a block.
 struct Row {
-    uint32_t block, row;
+    uint32_t block, row, azimuth;
 };
 
 /// The range of a number with textures; of one point: without.
@@ -220,17 +256,28 @@ scalar::InputNumbers find_node(const Block& block, const scalar::LayerGrid& grid
     return scalar::limit_inputs(numbers);
 }
 
-void fill_grid_row(const Block& block, const MaterialLayers& result, uint32_t row, const Vec2f* fuzz,
+/// Less of them where there are many rows.
+uint32_t count_samples(const Block& block, const scalar::LayerGrid& grid) {
+    if (grid.azimuth_count > 1) return grid.row_count > 1 ? kGridSamples : kSamples;
+    return block.textured && grid.axis_count > 1 ? kGridSamples : kSamples;
+}
+
+void fill_grid_row(const Block& block, const MaterialLayers& result, const Row& row, const Vec2f* fuzz,
                    Vec2f* target) {
     const scalar::LayerGrid& grid = result.grids[block.record];
     const scalar::LayerParameters& record = result.records[block.record];
-    const scalar::InputNumbers numbers = find_node(block, grid, row);
+    const scalar::InputNumbers numbers = find_node(block, grid, row.row);
     scalar::LayerParameters l = scalar::set_layer_inputs(record, numbers, block.textured->constants);
-    std::array<Vec2f, kVertexEntries> alone;
+    std::array<Vec2f, count_entries(kAzimuths)> alone;
     fill_vertex_block({fuzz}, grid, numbers, l, alone.data());
-    fill_row(l, numbers.word[scalar::kInputRoughness], grid.axis_count > 1 ? kGridSamples : kSamples,
-             alone.data(), target);
+    fill_row(
+        l,
+        {numbers.word[scalar::kInputRoughness], row.azimuth, grid.azimuth_count, count_samples(block, grid)},
+        alone.data(), target);
 }
+
+/// Entries of a block before its averages.
+uint32_t count_rests(const scalar::LayerGrid& grid) { return grid.azimuth_count * grid.row_count * kColumns; }
 
 /// With its record and grid, and its place in the table.
 void add_block(Block block, std::vector<Block>& blocks, MaterialLayers& result) {
@@ -242,8 +289,11 @@ void add_block(Block block, std::vector<Block>& blocks, MaterialLayers& result) 
         grid = make_grid(block);
         l.row_scale = 0;
     }
+    grid.azimuth_count = uint32_t(l.azimuth_scale) + 1;
+    if (block.textured)
+        result.vertex_entries = std::max(result.vertex_entries, count_entries(grid.azimuth_count));
     l.first_entry = uint32_t(result.entries.size());
-    result.entries.resize(result.entries.size() + grid.row_count * (kColumns + 1) +
+    result.entries.resize(result.entries.size() + count_rests(grid) + grid.row_count +
                           block.fuzz_rows * kColumns);
     result.records.push_back(l), result.grids.push_back(grid), blocks.push_back(block);
 }
@@ -253,7 +303,7 @@ void fill_fuzz_row(const Block& block, uint32_t row, MaterialLayers& result, std
     scalar::LayerParameters& l = result.records[block.record];
     if (!(l.fuzz_weight > 0)) return;
     const scalar::LayerGrid& grid = result.grids[block.record];
-    const uint32_t first = l.first_entry + grid.row_count * (kColumns + 1) + row * kColumns;
+    const uint32_t first = l.first_entry + count_rests(grid) + grid.row_count + row * kColumns;
     if (block.textured) {
         scalar::LayerParameters of_row = l;
         const float roughness = grid.fuzz_lower + (row > 0 ? float(row) / grid.fuzz_scale : 0.0f);
@@ -265,18 +315,34 @@ void fill_fuzz_row(const Block& block, uint32_t row, MaterialLayers& result, std
     std::copy_n(&fuzz[first], kColumns, &result.entries[first]);
 }
 
-/// A row and its average.
-void fill_rests(const Block& block, uint32_t row, const std::vector<Vec2f>& fuzz, MaterialLayers& result) {
+void fill_rests(const Block& block, const Row& row, const std::vector<Vec2f>& fuzz, MaterialLayers& result) {
     const scalar::LayerParameters& l = result.records[block.record];
-    const uint32_t count = result.grids[block.record].row_count;
-    Vec2f* const first = &result.entries[l.first_entry];
-    Vec2f* const target = first + row * kColumns;
-    if (block.textured)
-        fill_grid_row(block, result, row, fuzz.data(), target);
-    else
-        fill_row(l, count == 1 ? block.material->roughness : float(row) / float(count - 1), kSamples,
-                 &fuzz[l.first_entry], target);
-    first[count * kColumns + row] = average_row(target);
+    const scalar::LayerGrid& grid = result.grids[block.record];
+    const uint32_t count = grid.row_count;
+    Vec2f* const target = &result.entries[l.first_entry + (row.azimuth * count + row.row) * kColumns];
+    if (block.textured) return fill_grid_row(block, result, row, fuzz.data(), target);
+    const float roughness = count == 1 ? block.material->roughness : float(row.row) / float(count - 1);
+    fill_row(l, {roughness, row.azimuth, grid.azimuth_count, count_samples(block, grid)},
+             &fuzz[l.first_entry], target);
+}
+
+/// Of the rests of all azimuths.
+void fill_averages(const scalar::LayerGrid& grid, Vec2f* block) {
+    const std::vector<double> weights = weigh_azimuths(grid.azimuth_count);
+    for (uint32_t row = 0; row < grid.row_count; ++row) {
+        Vec2<double> sum{};
+        for (uint32_t azimuth = 0; azimuth < grid.azimuth_count; ++azimuth) {
+            const Vec2f mean = average_row(block + (azimuth * grid.row_count + row) * kColumns);
+            sum.x += weights[azimuth] * double(mean.x), sum.y += weights[azimuth] * double(mean.y);
+        }
+        block[count_rests(grid) + row] = {float(sum.x), float(sum.y)};
+    }
+}
+
+/// Whether nothing of a material is ever opaque.
+bool is_all_glass(const Material& material) {
+    return material.transmission_weight == 1 && material.metallic == 0 &&
+           !find_input_texture(material, MaterialInput::transmission_weight);
 }
 
 } // namespace
@@ -285,14 +351,16 @@ bool is_layered(const Material& material) {
     return material.base_diffuse_roughness > 0 || material.specular_weight != 1 ||
            !(material.specular_color == kWhite) || material.coat_weight > 0 || material.fuzz_weight > 0 ||
            find_input_texture(material, MaterialInput::specular_weight) ||
-           find_input_texture(material, MaterialInput::specular_color);
+           find_input_texture(material, MaterialInput::specular_color) ||
+           (is_anisotropic(material) && !is_all_glass(material));
 }
 
 void fill_vertex_block(scalar::GridTable table, const scalar::LayerGrid& grid,
                        const scalar::InputNumbers& numbers, scalar::LayerParameters& layers, Vec2f* block) {
     const scalar::LayerPlace place = scalar::place_layers(grid, layers.first_entry, numbers);
-    for (uint32_t i = 0; i < kVertexEntries; ++i) block[i] = scalar::blend_layer_block(table, place, i);
-    layers.fuzz_scale = block[kColumns + 1].y;
+    for (uint32_t i = 0; i < count_entries(grid.azimuth_count); ++i)
+        block[i] = scalar::blend_layer_block(table, place, i);
+    layers.fuzz_scale = block[scalar::find_block_average(grid.azimuth_count) + 1].y;
     layers.row_scale = 0;
 }
 
@@ -308,8 +376,10 @@ MaterialLayers make_material_layers(const std::vector<Material>& materials,
         if (has_layers) add_block({.material = &material, .textured = textured.find(k)}, blocks, result);
     }
     for (const Block& block : blocks) {
-        for (uint32_t k = 0; k < result.grids[block.record].row_count; ++k) rows.push_back({block.record, k});
-        for (uint32_t k = 0; k < block.fuzz_rows; ++k) fuzz_rows.push_back({block.record, k});
+        const scalar::LayerGrid& grid = result.grids[block.record];
+        for (uint32_t azimuth = 0; azimuth < grid.azimuth_count; ++azimuth)
+            for (uint32_t k = 0; k < grid.row_count; ++k) rows.push_back({block.record, k, azimuth});
+        for (uint32_t k = 0; k < block.fuzz_rows; ++k) fuzz_rows.push_back({block.record, k, 0});
     }
     std::vector<Vec2f> fuzz = result.entries; // without rests, which are measured beside them
     parallel_for("fuzz", fuzz_rows.size(), 1, [&](size_t begin, size_t end) {
@@ -317,8 +387,10 @@ MaterialLayers make_material_layers(const std::vector<Material>& materials,
             fill_fuzz_row(blocks[fuzz_rows[k].block], fuzz_rows[k].row, result, fuzz);
     });
     parallel_for("layers", rows.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) fill_rests(blocks[rows[k].block], rows[k].row, fuzz, result);
+        for (size_t k = begin; k < end; ++k) fill_rests(blocks[rows[k].block], rows[k], fuzz, result);
     });
+    for (uint32_t k = 0; k < result.records.size(); ++k)
+        fill_averages(result.grids[k], &result.entries[result.records[k].first_entry]);
     return result;
 }
 

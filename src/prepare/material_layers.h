@@ -19,6 +19,7 @@ struct MaterialLayers {
     /// Of the blocks of records whose inputs have textures; one a record.
     std::vector<scalar::LayerGrid> grids;
     std::vector<uint32_t> record_of_material; ///< kNoIndex: without layers
+    uint32_t vertex_entries = 0;              ///< of fill_vertex_block(), at most
 
     bool empty() const { return records.empty(); }
 };
@@ -31,11 +32,8 @@ bool is_layered(const Material& material);
 MaterialLayers make_material_layers(const std::vector<Material>& materials,
                                     const TexturedMaterials& textured = {});
 
-/// Of a block with one row.
-inline constexpr uint32_t kVertexEntries = 2 * scalar::kLayerColumnCount + 1;
-
-/// Such a block for one point of a material whose inputs have textures, from the table that the numbers of
-/// `layers` refer to; they then have to refer to the block.
+/// A block with one row an azimuth for one point of a material whose inputs have textures, from the table
+/// that the numbers of `layers` refer to; they then have to refer to the block.
 void fill_vertex_block(scalar::GridTable table, const scalar::LayerGrid& grid,
                        const scalar::InputNumbers& numbers, scalar::LayerParameters& layers, Vec2f* block);
 

@@ -188,11 +188,13 @@ void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_o
     });
 }
 
-/// Of the surfaces that some normal map lies on.
+/// Of the surfaces that some normal map or material with a direction lies on.
 void add_tangents(PreparedScene& prepared) {
     std::set<uint32_t> mapped;
     for (const Instance& instance : prepared.instances)
-        if (has_normal_map(prepared.materials[instance.material])) mapped.insert(instance.surface);
+        if (const Material& material = prepared.materials[instance.material];
+            has_normal_map(material) || is_anisotropic(material))
+            mapped.insert(instance.surface);
     const std::vector<uint32_t> list(mapped.begin(), mapped.end());
     parallel_for("tangents", list.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
@@ -238,6 +240,7 @@ EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings
     prepared->has_cut_outs = std::ranges::any_of(
         prepared->materials, [](const Material& m) { return is_cut_out(m) || is_clear_wall(m); });
     prepared->has_normal_maps = std::ranges::any_of(prepared->materials, has_normal_map);
+    prepared->has_anisotropy = std::ranges::any_of(prepared->materials, is_anisotropic);
     prepared->textured = make_textured_materials(prepared->materials);
     prepared->layers = make_material_layers(prepared->materials, prepared->textured);
     prepared->glass = make_material_glass(prepared->materials);

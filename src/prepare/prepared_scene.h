@@ -71,6 +71,7 @@ struct PreparedScene {
     std::vector<Material> materials;  ///< the last one is the default material; all of base_weight 1
     bool has_cut_outs = false;        ///< some material is a cut-out or a clear wall
     bool has_normal_maps = false;     ///< some material has one
+    bool has_anisotropy = false;      ///< the roughness of some material has a direction
     bool has_shadow_catchers = false; ///< some instance is one
     Terminators terminators = Terminators::none;
     TexturedMaterials textured; ///< of the materials

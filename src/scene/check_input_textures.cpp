@@ -87,12 +87,13 @@ void check_input_textures(const Material& material, const std::string& where) {
         check_input_texture(material, texture, place);
         layered += get_input_kind(texture.input).is_layered ? 1 : 0;
     }
-    if (!material.textures.empty() && layered > kMaxLayerTextures)
+    const size_t most = is_anisotropic(material) ? kMaxStretchedTextures : kMaxLayerTextures;
+    if (!material.textures.empty() && layered > most)
         refuse(where,
                fmt::format(
                    "{} of the numbers that the albedo of its layers depends on have textures, and at most "
-                   "{} may",
-                   layered, kMaxLayerTextures),
+                   "{} may{}",
+                   layered, most, is_anisotropic(material) ? " beside an anisotropy" : ""),
                "make some of base_diffuse_roughness, specular_roughness, specular_weight, coat_weight, "
                "coat_roughness, fuzz_weight and fuzz_roughness constant");
 }

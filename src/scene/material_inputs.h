@@ -29,6 +29,8 @@ inline const MaterialInputKind& get_input_kind(MaterialInput input) {
 
 /// Numbers of a material with layers that may have textures at once: the albedo table has an axis for each.
 inline constexpr size_t kMaxLayerTextures = 4;
+/// The same of a material whose roughness has a direction, which is one more axis.
+inline constexpr size_t kMaxStretchedTextures = 2;
 
 /// Least and greatest values that a texture multiplies a number by.
 struct FactorRange {

@@ -217,14 +217,17 @@ void check_material(const Material& material, size_t index) {
         fail(where,
              "a surface that emits light cannot be a cut-out: opacity and emission exclude each other");
     check_glass(material, where);
-    for (const auto& [what, value] : {std::pair("base_weight", material.base_weight),
-                                      std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
-                                      std::pair("specular_weight", material.specular_weight),
-                                      std::pair("coat_weight", material.coat_weight),
-                                      std::pair("coat_roughness", material.coat_roughness),
-                                      std::pair("coat_darkening", material.coat_darkening),
-                                      std::pair("fuzz_weight", material.fuzz_weight),
-                                      std::pair("fuzz_roughness", material.fuzz_roughness)})
+    for (const auto& [what, value] :
+         {std::pair("base_weight", material.base_weight),
+          std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
+          std::pair("specular_weight", material.specular_weight),
+          std::pair("specular_roughness_anisotropy", material.specular_roughness_anisotropy),
+          std::pair("coat_roughness_anisotropy", material.coat_roughness_anisotropy),
+          std::pair("coat_weight", material.coat_weight),
+          std::pair("coat_roughness", material.coat_roughness),
+          std::pair("coat_darkening", material.coat_darkening),
+          std::pair("fuzz_weight", material.fuzz_weight),
+          std::pair("fuzz_roughness", material.fuzz_roughness)})
         check_range(where, what, value, 0, 1);
     check_range(where, "specular_color", material.specular_color, 0, 1);
     check_range(where, "coat_color", material.coat_color, 0, 1);
@@ -259,6 +262,13 @@ double find_farthest(const Affine& m, const Box& box) {
     return farthest;
 }
 
+/// What makes a material need tangents; null: nothing.
+const char* find_tangent_input(const Material& material) {
+    if (has_normal_map(material)) return "normal_texture";
+    if (material.specular_roughness_anisotropy > 0) return "specular_roughness_anisotropy";
+    return is_anisotropic(material) ? "coat_roughness_anisotropy" : nullptr;
+}
+
 void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const Object& object,
                   size_t index) {
     const std::string where = describe("object", object.name, index);
@@ -278,11 +288,11 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
              fmt::format("{} has no uvs, which its displacement needs",
                          describe("mesh", mesh.name, object.mesh)),
              "export the mesh with texture coordinates");
-    if (object.material != kNoIndex && has_normal_map(scene.materials[object.material]) &&
-        mesh.uv_indices.empty())
+    if (object.material == kNoIndex || !mesh.uv_indices.empty()) return;
+    if (const char* input = find_tangent_input(scene.materials[object.material]))
         fail(where,
-             fmt::format("{} has no uvs, which the normal_texture of its material needs",
-                         describe("mesh", mesh.name, object.mesh)),
+             fmt::format("{} has no uvs, which the {} of its material needs",
+                         describe("mesh", mesh.name, object.mesh), input),
              "export the mesh with texture coordinates");
 }
 

@@ -100,6 +100,7 @@ std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constan
     constants = add_filter(std::move(constants));
     set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);
     set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
 }
 
@@ -109,6 +110,7 @@ std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) c
     set_constant(constants, scalar::kGlassConstant, has_glass_ ? 1 : 0);
     set_constant(constants, scalar::kTerminatorsConstant, uint32_t(terminators_));
     set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
 }
 
@@ -138,6 +140,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     has_catchers_ = scene.has_shadow_catchers;
     has_glass_ = !scene.glass.empty();
     has_input_textures_ = !scene.textured.empty();
+    has_anisotropy_ = scene.has_anisotropy;
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }

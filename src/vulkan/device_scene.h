@@ -38,11 +38,11 @@ class DeviceScene {
     /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant
     /// and kShadowCatchersConstant where the scene needs them.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
-    /// The same, and scalar::kNormalMapsConstant and kInputTexturesConstant, for the kernel that finds
-    /// shading normals.
+    /// The same, and scalar::kNormalMapsConstant, kInputTexturesConstant and kAnisotropyConstant, for the
+    /// kernel that finds shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
-    /// That of add_filter, and scalar::kLayersConstant, kGlassConstant, kTerminatorsConstant and
-    /// kInputTexturesConstant, for a kernel that knows what scatters.
+    /// That of add_filter, and scalar::kLayersConstant, kGlassConstant, kTerminatorsConstant,
+    /// kInputTexturesConstant and kAnisotropyConstant, for a kernel that knows what scatters.
     std::vector<uint32_t> add_layers(std::vector<uint32_t> constants) const;
 
   private:
@@ -70,7 +70,7 @@ class DeviceScene {
     bool has_smooth_ = false, has_layers_ = false, has_normal_maps_ = false, has_glass_ = false;
     bool has_catchers_ = false;
     Terminators terminators_ = Terminators::none;
-    bool has_input_textures_ = false;
+    bool has_input_textures_ = false, has_anisotropy_ = false;
     struct Binding {
         uint32_t number;
         Buffer buffer;

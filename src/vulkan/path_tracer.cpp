@@ -60,10 +60,12 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
                            .purpose = Purpose::ray_buffers});
 }
 
-/// Of points and the numbers of textured materials behind them, as material_inputs.glsl has it.
-uint64_t find_number_bytes(uint64_t capacity) {
+/// Of points, the numbers of textured materials behind them and tangents behind these, as paths.glsl has it.
+uint64_t find_point_bytes(const PreparedScene& scene, uint64_t capacity) {
     constexpr uint64_t point = sizeof(scalar::SurfacePointData), numbers = sizeof(scalar::InputNumbers);
-    return (capacity * point / numbers + 1 + capacity) * numbers;
+    uint64_t bytes = capacity * point;
+    if (!scene.textured.empty()) bytes = (bytes / numbers + 1 + capacity) * numbers;
+    return bytes + (scene.has_anisotropy ? capacity * sizeof(Vec3f) : 0);
 }
 
 /// `hit_ids` outlives the sums.
@@ -138,9 +140,8 @@ void PathTracer::make_buffers() {
     // Rasterised first hits reuse buffers that only shading needs.
     const bool is_lent = settings_.experiment.method == RenderMethod::hybrid;
     paths_ = make_buffer<scalar::PathData>(device, "paths", capacity_);
-    uint64_t least_point_bytes = is_lent ? RasterBuffers::kLeastVertexBytes : 0;
-    if (!tracer_.scene().textured.empty())
-        least_point_bytes = std::max(least_point_bytes, find_number_bytes(capacity_));
+    const uint64_t least_point_bytes = std::max<uint64_t>(is_lent ? RasterBuffers::kLeastVertexBytes : 0,
+                                                          find_point_bytes(tracer_.scene(), capacity_));
     points_ = make_buffer<scalar::SurfacePointData>(device, "surface_points", capacity_, least_point_bytes);
     film_sums_ = make_buffer<std::byte>(
         device, "film_sums", find_first_hits(0) + (notes_first_hits_ ? kFirstHitBytes : 0) * capacity_);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/shading_scenes.h"
+#include "support/textured_materials.h"
 
 namespace relief {
 namespace {
@@ -68,6 +69,22 @@ TEST(Furnace, white_stack_of_layers_is_invisible) {
             stack.fuzz_weight = 0.7f;
             const Mean mean =
                 render_mean(make_furnace(stack, SphereNormals::smooth), make_small_settings(32, 64, 4));
+            EXPECT_NEAR(mean.value, 1, 0.01 + 4 * mean.standard_error) << metallic << ' ' << roughness;
+            EXPECT_LT(mean.standard_error, 0.01);
+        }
+}
+
+TEST(Furnace, white_with_a_direction_is_invisible) {
+    for (const float metallic : {0.0f, 1.0f})
+        for (const float roughness : {0.3f, 0.7f}) {
+            Material brushed;
+            brushed.base_color = {1, 1, 1}, brushed.roughness = roughness, brushed.metallic = metallic;
+            brushed.specular_roughness_anisotropy = 0.8f;
+            brushed.coat_weight = 0.6f, brushed.coat_roughness = 0.5f,
+            brushed.coat_roughness_anisotropy = 0.9f;
+            Scene scene = make_furnace(brushed, SphereNormals::smooth);
+            scene.meshes[0] = make_uv_sphere();
+            const Mean mean = render_mean(std::move(scene), make_small_settings(32, 64, 4));
             EXPECT_NEAR(mean.value, 1, 0.01 + 4 * mean.standard_error) << metallic << ' ' << roughness;
             EXPECT_LT(mean.standard_error, 0.01);
         }

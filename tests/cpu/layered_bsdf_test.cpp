@@ -6,52 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "formulas/hemisphere.h"
-#include "formulas/layered_bsdf.h"
 #include "formulas/sobol.h"
 #include "formulas/statistics.h"
-#include "prepare/material_layers.h"
+#include "support/layered_material.h"
 
 namespace relief {
 namespace {
 
 const float kCosines[] = {0.02f, 0.1f, 0.3f, 0.6f, 0.95f};
-
-/// A material with its tables.
-class Layered {
-  public:
-    explicit Layered(const Material& material)
-        : layers_(make_material_layers({material})),
-          surface_{material.base_color * material.base_weight, material.roughness, layers_.records.at(0)},
-          table_{layers_.entries.data()} {}
-
-    scalar::LayeredBsdf make(float cosine) const {
-        return scalar::make_layered_bsdf(surface_, table_, cosine);
-    }
-    scalar::BsdfValue evaluate(const Vec3f& wo, const Vec3f& wi) const {
-        return scalar::evaluate_layered_bsdf(make(wo.z), table_, wo, wi);
-    }
-    scalar::BsdfSample sample(const scalar::LayeredBsdf& bsdf, const Vec3f& wo, float lobe,
-                              const Vec2f& u) const {
-        return scalar::sample_layered_bsdf(bsdf, table_, wo, lobe, u);
-    }
-    /// Mean of the sample weights: the directional albedo.
-    Vec3f estimate_albedo(float cosine, uint32_t count = 1u << 14) const {
-        const Vec3f wo = direction(cosine, 0.3f);
-        const scalar::LayeredBsdf bsdf = make(cosine);
-        Vec3<double> sum{};
-        for (uint32_t k = 0; k < count; ++k) {
-            const Vec3f w =
-                sample(bsdf, wo, scalar::sobol_pair(99, k, 0).x, scalar::sobol_pair(99, k, 1)).weight;
-            sum.x += double(w.x), sum.y += double(w.y), sum.z += double(w.z);
-        }
-        return {float(sum.x / count), float(sum.y / count), float(sum.z / count)};
-    }
-
-  private:
-    MaterialLayers layers_;
-    scalar::LayeredSurface surface_;
-    scalar::LayerTable table_;
-};
 
 Material make_white() {
     Material material;
@@ -132,7 +94,7 @@ TEST(LayeredBsdf, of_any_numbers_gains_no_energy_is_reciprocal_and_has_a_density
         }
         if (std::min(material.roughness, material.coat_roughness) < 0.35f) continue;
         const Vec3f wo = direction(0.6f, 1);
-        const scalar::LayeredBsdf bsdf = layered.make(wo.z);
+        const scalar::LayeredBsdf bsdf = layered.make(wo);
         const double integral =
             integrate_hemisphere([&](const Vec3f& wi) { return layered.evaluate(wo, wi).pdf; }, 100, 100);
         int above = 0;
@@ -151,7 +113,7 @@ TEST(LayeredBsdf, draws_directions_of_each_lobe_as_its_density_says) {
     const HemisphereCells cells;
     for (size_t k = 0; k < lobes.size(); ++k) {
         const Layered layered(lobes[k]);
-        const scalar::LayeredBsdf bsdf = layered.make(wo.z);
+        const scalar::LayeredBsdf bsdf = layered.make(wo);
         Random random(6);
         const auto draw = [&] {
             const float lobe = random.next();
@@ -179,7 +141,7 @@ TEST(LayeredBsdf, gives_weights_that_are_value_over_density) {
         const Layered layered(make_random(random));
         for (int n = 0; n < 100; ++n) {
             const Vec3f wo = normalize(direction(0.02f + 0.97f * random.next(), 2));
-            const scalar::LayeredBsdf bsdf = layered.make(wo.z);
+            const scalar::LayeredBsdf bsdf = layered.make(wo);
             const float lobe = random.next();
             const auto drawn = layered.sample(bsdf, wo, lobe, random.next_pair());
             const auto value = layered.evaluate(wo, drawn.direction);
@@ -256,6 +218,10 @@ TEST(LayeredBsdf, needs_layers_where_a_number_says_so) {
     EXPECT_TRUE(is_changed([](Material& m) { m.specular_color.y = 0.9f; }));
     EXPECT_TRUE(is_changed([](Material& m) { m.coat_weight = 0.1f; }));
     EXPECT_TRUE(is_changed([](Material& m) { m.fuzz_weight = 0.1f; }));
+    EXPECT_TRUE(is_changed([](Material& m) { m.specular_roughness_anisotropy = 0.1f; }));
+    EXPECT_FALSE(is_changed([](Material& m) { m.coat_roughness_anisotropy = 1; }));
+    EXPECT_FALSE(
+        is_changed([](Material& m) { m.specular_roughness_anisotropy = 1, m.transmission_weight = 1; }));
     EXPECT_TRUE(make_material_layers({Material{}}).empty());
 }
 

@@ -67,7 +67,7 @@ TEST(DiffusePart, of_layers_is_that_of_the_dielectric_base_and_the_fuzz) {
     for (uint32_t k = 0; k < 2000; ++k) {
         const Vec3f wo = direction(0.05f + 0.9f * scalar::sobol_pair(3, k, 0).x, 1),
                     wi = draw_direction(k, 1);
-        scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(layered.surface, layered.table, wo.z);
+        scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(layered.surface, layered.table, wo);
         const Vec3f diffuse = scalar::evaluate_layered_diffuse(bsdf, layered.table, wo, wi);
         const Vec3f whole = scalar::evaluate_layered_bsdf(bsdf, layered.table, wo, wi).value;
         // Without the facets of the base and what metal leaves over, the rest is what the coat reflects.
@@ -88,7 +88,7 @@ TEST(DiffusePart, of_layers_without_coat_and_metal_is_all_but_the_facets) {
     const Layered layered(material);
     for (uint32_t k = 0; k < 500; ++k) {
         const Vec3f wo = direction(0.3f, 1), wi = draw_direction(k, 1);
-        const scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(layered.surface, layered.table, wo.z);
+        const scalar::LayeredBsdf bsdf = scalar::make_layered_bsdf(layered.surface, layered.table, wo);
         expect_close(scalar::evaluate_layered_diffuse(bsdf, layered.table, wo, wi),
                      scalar::evaluate_layered_bsdf(bsdf, layered.table, wo, wi).value);
     }

@@ -120,14 +120,17 @@ struct Case {
     scalar::BsdfParameters material;
     uint32_t layers; ///< record of make_layers; kNoIndex: without
     uint32_t glass;  ///< record of make_glass, likewise
-    Vec3f light;
+    Vec3f tangent, light;
     float light_pdf, light_lift;
     Vec2f pick, u;
 };
 
-/// One material with all layers and one with some of each sort, the roughness of one textured.
+constexpr uint32_t kLayeredCount = 9, kGlassCount = 4;
+
+/// One material with all layers and one with some of each sort, the roughness of one textured; some of them
+/// anisotropic.
 MaterialLayers make_layers() {
-    std::vector<Material> materials(6);
+    std::vector<Material> materials(kLayeredCount);
     materials[0].coat_weight = 0.7f, materials[0].coat_color = {0.9f, 0.5f, 0.2f};
     materials[0].fuzz_weight = 0.8f, materials[0].base_diffuse_roughness = 0.6f;
     materials[0].metallic = 0.3f, materials[0].specular_color = {1, 0.8f, 0.5f};
@@ -138,17 +141,23 @@ MaterialLayers make_layers() {
     auto texture = std::make_shared<Texture>();
     texture->width = texture->height = 1, texture->floats = {1, 1, 1, 1};
     materials[5].coat_weight = 0.4f, materials[5].roughness_texture = texture;
+    materials[6].specular_roughness_anisotropy = 0.7f;
+    materials[7] = materials[5], materials[7].specular_roughness_anisotropy = 0.4f;
+    materials[7].coat_roughness = 0.5f, materials[7].coat_roughness_anisotropy = 0.8f;
+    materials[8] = materials[0], materials[8].coat_roughness = 0.6f;
+    materials[8].coat_roughness_anisotropy = 1;
     return make_material_layers(materials);
 }
 
 /// One of each kind.
 MaterialGlass make_glass() {
-    std::vector<Material> materials(3);
+    std::vector<Material> materials(kGlassCount);
     for (Material& m : materials) m.transmission_weight = 1, m.specular_color = {1, 0.7f, 0.4f};
     materials[0].transmission_color = {0.9f, 0.5f, 0.2f}, materials[0].ior = 1.3f;
     materials[1].is_thin_walled = materials[2].is_thin_walled = true;
     materials[1].transmission_color = {0.2f, 0.5f, 0.9f};
     materials[2].roughness = 0;
+    materials[3].specular_roughness_anisotropy = 0.6f;
     return make_material_glass(materials);
 }
 
@@ -174,12 +183,12 @@ std::vector<Case> make_cases() {
                       is_diffuse ? 1 : 1 + numbers.next()};
         // Batches without layers, with some, and of layers alone.
         const size_t batch = k / 16 % 5;
-        c.layers = batch == 4 || (batch % 2 == 1 && k % 4 != 0) ? uint32_t(k % 6) : kNoIndex;
+        c.layers = batch == 4 || (batch % 2 == 1 && k % 4 != 0) ? uint32_t(k % kLayeredCount) : kNoIndex;
         // The same with glass, in other batches.
         const size_t third = k / 16 % 3;
-        c.glass = third == 2 || (third == 1 && k % 5 == 0) ? uint32_t(k % 3) : kNoIndex;
+        c.glass = third == 2 || (third == 1 && k % 5 == 0) ? uint32_t(k % kGlassCount) : kNoIndex;
         if (c.glass != kNoIndex) c.layers = kNoIndex;
-        c.light = numbers.direction();
+        c.light = numbers.direction(), c.tangent = numbers.direction();
         c.light_pdf = k % 7 == 0 ? 0 : numbers.next() + 0.1f;
         // From behind, as it comes to a coarse triangle of a smooth surface.
         const bool is_lifted =
@@ -201,6 +210,7 @@ void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
     lanes.roughness[lane] = c.material.roughness, lanes.metallic[lane] = c.material.metallic;
     lanes.ior[lane] = c.material.ior, lanes.light_pdf[lane] = c.light_pdf;
     lanes.light_lift[lane] = c.light_lift;
+    cpu::set_lane(c.tangent, lane, lanes.tangent);
     lanes.layers[lane] = c.layers, lanes.layered_metallic[lane] = c.material.metallic;
     if (lane == 0) lanes.has_layers = lanes.has_glass = 0;
     if (c.layers != kNoIndex) lanes.has_layers |= 1u << lane;
@@ -217,6 +227,11 @@ struct CaseMaterials {
     MaterialGlass glass = make_glass();
 };
 
+bool has_tangent(const Case& c, const CaseMaterials& materials) {
+    if (c.glass != kNoIndex) return materials.glass.records[c.glass].anisotropy > 0;
+    return c.layers != kNoIndex && materials.layers.records[c.layers].azimuth_scale > 0;
+}
+
 /// The BSDF of a case, with or without layers, or of glass.
 struct CaseBsdf {
     CaseBsdf(const Case& c, const CaseMaterials& materials, const Vec3f& viewer, bool is_inside)
@@ -232,7 +247,7 @@ struct CaseBsdf {
         if (!has_layers) return;
         scalar::LayeredSurface surface{c.material.base_color, c.material.roughness, layers.records[c.layers]};
         surface.layers.metallic = c.material.metallic;
-        layered = scalar::make_layered_bsdf(surface, table, wo.z);
+        layered = scalar::make_layered_bsdf(surface, table, wo);
     }
     scalar::BsdfValue evaluate(const Vec3f& wi) const {
         return is_glass     ? scalar::evaluate_glass_bsdf(glass, wo, wi)
@@ -271,7 +286,9 @@ void expect_lane(const Case& c, const CaseMaterials& materials, const cpu::Verte
     const Vec3f shading = is_behind ? -c.point.shading_normal : c.point.shading_normal;
     EXPECT_EQ(get_lane(lanes.geometric_normal, lane), geometric);
     EXPECT_EQ(get_lane(lanes.shading_normal, lane), shading);
-    const scalar::Basis basis = scalar::make_basis(scalar::bend_normal(shading, geometric, wo));
+    const Vec3f normal = scalar::bend_normal(shading, geometric, wo);
+    const scalar::Basis basis =
+        has_tangent(c, materials) ? scalar::make_basis_along(normal, c.tangent) : scalar::make_basis(normal);
     const Vec3f wo_local = scalar::lift_viewer(scalar::to_local(basis, wo));
     const CaseBsdf bsdf(c, materials, wo_local, is_behind);
 

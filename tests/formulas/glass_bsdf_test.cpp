@@ -20,12 +20,13 @@ namespace {
 using scalar::GlassBsdf;
 using scalar::GlassParameters;
 
-GlassParameters make_glass(float ior, float kind = scalar::kSolidGlass) {
+GlassParameters make_glass(float ior, float kind = scalar::kSolidGlass, float anisotropy = 0) {
     return {.weight = 1,
             .ior = ior,
             .specular_color = {1, 1, 1},
             .tint = {1, 1, 1},
             .depth = {0, 0, 0},
+            .anisotropy = anisotropy,
             .kind = kind};
 }
 
@@ -145,8 +146,9 @@ TEST(GlassBsdf, is_reciprocal_with_the_squares_of_both_iors) {
     for (int k = 0; k < 2000; ++k) {
         const float ior = 1.05f + random.next();
         const float roughness = 0.1f + 0.9f * random.next();
-        const GlassBsdf outside = scalar::make_glass_bsdf(make_glass(ior), roughness, false);
-        const GlassBsdf inside = scalar::make_glass_bsdf(make_glass(ior), roughness, true);
+        const GlassParameters glass = make_glass(ior, scalar::kSolidGlass, k % 2 == 0 ? 0 : random.next());
+        const GlassBsdf outside = scalar::make_glass_bsdf(glass, roughness, false);
+        const GlassBsdf inside = scalar::make_glass_bsdf(glass, roughness, true);
         const Vec3f a = direction(0.05f + 0.9f * random.next(), 6 * random.next());
         const Vec3f b = direction(0.05f + 0.9f * random.next(), 6 * random.next());
         for (const GlassBsdf& bsdf : {outside, inside}) {
@@ -189,7 +191,8 @@ TEST(GlassBsdf, draws_directions_as_its_density_says) {
     for (const float kind : {scalar::kSolidGlass, scalar::kRoughWall})
         for (const bool is_inside : {false, true})
             for (const float side : {1.0f, -1.0f}) {
-                const GlassBsdf bsdf = scalar::make_glass_bsdf(make_glass(1.6f, kind), 0.6f, is_inside);
+                const GlassBsdf bsdf =
+                    scalar::make_glass_bsdf(make_glass(1.6f, kind, is_inside ? 0.5f : 0.0f), 0.6f, is_inside);
                 const Vec3f wo = direction(0.6f, 0.7f);
                 Random random(6);
                 const auto turn = [&](const Vec3f& d) { return Vec3f{d.x, d.y, side * d.z}; };
@@ -211,8 +214,8 @@ TEST(GlassBsdf, gives_weights_that_are_value_over_density_and_no_larger_than_rad
     for (int k = 0; k < 20000; ++k) {
         const float ior = 1.01f + 2 * random.next();
         const float kind = std::floor(3 * random.next());
-        const GlassBsdf bsdf =
-            scalar::make_glass_bsdf(make_glass(ior, kind), random.next(), random.next() < 0.5f);
+        const GlassBsdf bsdf = scalar::make_glass_bsdf(make_glass(ior, kind, k % 2 == 0 ? 0 : random.next()),
+                                                       random.next(), random.next() < 0.5f);
         const Vec3f wo = normalize(direction(1e-4f + 0.9998f * random.next(), 2));
         const float lobe = random.next();
         const auto drawn = scalar::sample_glass_bsdf(bsdf, wo, lobe, random.next_pair());

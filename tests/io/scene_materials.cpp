@@ -12,6 +12,7 @@ TEST_F(SceneFiles, materials_have_the_names_of_open_pbr) {
     const char* const text = R"({"materials": {"a": {"base_weight": 0.1, "base_color": [0.2, 0.3, 0.4],
         "base_diffuse_roughness": 0.5, "base_metalness": 0.6, "specular_weight": 0.7,
         "specular_color": [0.8, 0.9, 1], "specular_roughness": 0.11, "specular_ior": 1.2, "coat_weight": 0.13,
+        "specular_roughness_anisotropy": 0.31, "coat_roughness_anisotropy": 0.32,
         "coat_color": [0.14, 0.15, 0.16], "coat_roughness": 0.17, "coat_ior": 1.8, "coat_darkening": 0.19,
         "fuzz_weight": 0.2, "fuzz_color": [0.21, 0.22, 0.23], "fuzz_roughness": 0.24, "emission_luminance": 4,
         "emission_color": [1, 0.5, 0.25]}}})";
@@ -29,6 +30,8 @@ TEST_F(SceneFiles, materials_have_the_names_of_open_pbr) {
         EXPECT_EQ(m.coat_weight, 0.13f);
         EXPECT_EQ(m.coat_color, (Vec3f{0.14f, 0.15f, 0.16f}));
         EXPECT_EQ(m.coat_roughness, 0.17f);
+        EXPECT_EQ(m.specular_roughness_anisotropy, 0.31f);
+        EXPECT_EQ(m.coat_roughness_anisotropy, 0.32f);
         EXPECT_EQ(m.coat_ior, 1.8f);
         EXPECT_EQ(m.coat_darkening, 0.19f);
         EXPECT_EQ(m.fuzz_weight, 0.2f);
@@ -62,8 +65,12 @@ TEST_F(SceneFiles, a_material_says_each_number_under_one_name) {
     EXPECT_HAS(of_material(R"("opacity": -1)"), "materials.m.opacity: must be in [0, 1]");
     EXPECT_HAS(of_material(R"("coat_ior": 0.5)"), "materials.m.coat_ior: must be at least 1");
     EXPECT_HAS(of_material(R"("fuzz_color": [0, 0, 2])"), "materials.m.fuzz_color[2]");
+    EXPECT_HAS(of_material(R"("specular_roughness_anisotropy": 1.5)"),
+               "materials.m.specular_roughness_anisotropy: must be in [0, 1], not 1.5");
+    EXPECT_HAS(of_material(R"("coat_roughness_anisotropy": {"file": "a.png"})"),
+               "materials.m.coat_roughness_anisotropy: cannot have a texture");
     for (const char* later :
-         {"transmission_scatter", "subsurface_weight", "specular_roughness_anisotropy", "thin_film_weight"})
+         {"transmission_scatter", "subsurface_weight", "geometry_tangent", "thin_film_weight"})
         EXPECT_HAS(of_material(std::string("\"") + later + R"(": 0.5)"),
                    std::string("materials.m.") + later + ": this input of OpenPBR is not rendered");
 }

@@ -2,7 +2,7 @@
 import pathlib
 import re
 
-FOLDERS = ["include", "examples", "src", "apps", "tests", "fuzz", "bench", "python", "cmake", "tools", "docs", ".ci"]
+FOLDERS = ["include", "examples", "src", "apps", "tests", "fuzz", "bench", "python", "blender", "cmake", "tools", "docs", ".ci"]
 CODE = {".h", ".cpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 SCRIPTS = {".py", ".sh", ".cmake"}

@@ -158,6 +158,32 @@ TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
                "neither none, cubic nor bspline");
 }
 
+TEST(ValidateScene, refuses_anisotropy_without_uvs_or_with_too_many_textures) {
+    const auto without_uvs = [](const auto& change) {
+        return complaint([&](Scene& s) {
+            s.objects[0].material = 0, s.objects[0].displacement = kNoIndex;
+            s.meshes[0].uv_indices.clear();
+            change(s.materials[0]);
+        });
+    };
+    EXPECT_EQ(without_uvs([](Material& m) { m.coat_roughness_anisotropy = 1; }), "accepted");
+    EXPECT_HAS(without_uvs([](Material& m) { m.specular_roughness_anisotropy = 0.1f; }),
+               "mesh 'quad' has no uvs, which the specular_roughness_anisotropy of its material needs");
+    EXPECT_HAS(without_uvs([](Material& m) { m.coat_weight = m.coat_roughness_anisotropy = 1; }),
+               "mesh 'quad' has no uvs, which the coat_roughness_anisotropy of its material needs");
+    const auto with_textures = [](float anisotropy) {
+        return complaint([&](Scene& s) {
+            s.materials[0].specular_roughness_anisotropy = anisotropy;
+            const auto texture = s.displacements[0].tiles[0].texture;
+            for (const auto input :
+                 {MaterialInput::roughness, MaterialInput::coat_weight, MaterialInput::fuzz_weight})
+                s.materials[0].textures.push_back({.input = input, .tiles = {{1001, texture}}});
+        });
+    };
+    EXPECT_EQ(with_textures(0), "accepted");
+    EXPECT_HAS(with_textures(0.5f), "and at most 2 may beside an anisotropy");
+}
+
 TEST(ValidateScene, refuses_glass_under_layers_and_clear_walls_that_glow) {
     const auto of_glass = [](const auto& change) {
         return complaint([&](Scene& s) {
@@ -185,6 +211,10 @@ TEST(ValidateScene, refuses_values_out_of_range) {
                "base_diffuse_roughness");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].specular_weight = kNan; }), "specular_weight");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].specular_color.y = 2; }), "specular_color");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].specular_roughness_anisotropy = 2; }),
+               "specular_roughness_anisotropy is 2");
+    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_roughness_anisotropy = kNan; }),
+               "coat_roughness_anisotropy");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_weight = 2; }), "coat_weight");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_color.z = -1; }), "coat_color");
     EXPECT_HAS(complaint([](Scene& s) { s.materials[0].coat_roughness = 2; }), "coat_roughness");

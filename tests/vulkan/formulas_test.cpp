@@ -60,7 +60,7 @@ using scalar::FormulaInput;
 using scalar::FormulaOutput;
 
 constexpr uint32_t kCount = 1u << 14;
-constexpr uint32_t kPartCount = 10;
+constexpr uint32_t kPartCount = 11;
 
 std::vector<FormulaInput> make_inputs() {
     std::mt19937 random(1);
@@ -96,7 +96,7 @@ FormulaOutput run_in_cpp(const FormulaInput& input) {
     return {scalar::run_exact(input),   scalar::run_warp(input),    scalar::run_camera(input),
             scalar::run_shading(input), scalar::run_light(input),   scalar::run_tone(input),
             scalar::run_source(input),  scalar::run_surface(input), scalar::run_layers(input),
-            scalar::run_glass(input)};
+            scalar::run_glass(input),   scalar::run_facets(input)};
 }
 
 /// Largest |device - cpp| / (1 + |cpp|) over the floats of one part.
@@ -145,6 +145,7 @@ TEST_F(Formulas, of_the_camera_are_close) { expect_close(&FormulaOutput::camera,
 TEST_F(Formulas, of_the_bsdf_are_close) { expect_close(&FormulaOutput::shading, 2e-4f); }
 TEST_F(Formulas, of_layers_are_close) { expect_close(&FormulaOutput::layers, 5e-4f); }
 TEST_F(Formulas, of_glass_are_close) { expect_close(&FormulaOutput::glass, 5e-4f); }
+TEST_F(Formulas, of_facets_are_close) { expect_close(&FormulaOutput::facets, 5e-4f); }
 TEST_F(Formulas, of_lights_are_close) { expect_close(&FormulaOutput::light, 1e-4f); }
 TEST_F(Formulas, of_tones_are_close) { expect_close(&FormulaOutput::tone, 1e-5f); }
 

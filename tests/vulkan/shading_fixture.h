@@ -298,7 +298,7 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     if (record == kNoIndex) return v;
     scalar::LayeredSurface surface{m.base_color, m.roughness, scene.layers.records[record]};
     surface.layers.metallic = m.metallic;
-    v.layered = scalar::make_layered_bsdf(surface, v.table, v.wo_local.z);
+    v.layered = scalar::make_layered_bsdf(surface, v.table, v.wo_local);
     return v;
 }
 

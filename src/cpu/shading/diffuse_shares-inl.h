@@ -22,11 +22,12 @@ HWY_NOINLINE void find_diffuse_shares(const cpu::VertexBatch& batch, cpu::Vertex
     Vec3 bounce = evaluate_diffuse(bsdf, wo_local, along_ray);
     if (v.has_layers & first_lanes(batch.count)) {
         const LayeredLanes layered = make_layered_lanes(batch, basis, wo_local, v);
-        const auto evaluate = [&](const Vec3& wi) {
-            return evaluate_layered_diffuse(layered.bsdf, layered.table, wo_local, wi);
+        const auto evaluate = [&](const LaneVectors& direction) {
+            return evaluate_layered_diffuse(layered.bsdf, layered.table, layered.wo_local,
+                                            to_local(layered.basis, load_vectors(direction)));
         };
-        light = select(layered.has_layers, evaluate(to_light), light);
-        bounce = select(layered.has_layers, evaluate(along_ray), bounce);
+        light = select(layered.has_layers, evaluate(v.light_direction), light);
+        bounce = select(layered.has_layers, evaluate(v.bounce_direction), bounce);
     }
     if (const LaneMask glass = v.has_glass & first_lanes(batch.count)) {
         const Bool is_glass = from_mask(glass);

@@ -24,7 +24,7 @@ HWY_INLINE GlassParameters gather_glass(const scalar::GlassParameters* records, 
     GlassParameters g;
     g.weight = from.read(), g.ior = from.read();
     g.specular_color = from.read_vector(), g.tint = from.read_vector(), g.depth = from.read_vector();
-    g.kind = from.read();
+    g.anisotropy = from.read(), g.kind = from.read();
     return g;
 }
 
@@ -81,6 +81,8 @@ HWY_NOINLINE void reflect_glass(const cpu::VertexBatch& batch, const PointLanes&
     glass.bsdf = make_glass_bsdf(gather_glass(batch.glass, load_indices(v.glass, lanes)),
                                  Float::load(v.roughness), is_behind);
     glass.is_glass = from_mask(lanes);
+    const Bool& has_tangent = glass.bsdf.facets.is_stretched;
+    if (is_any(has_tangent)) turn_frame(batch, v, has_tangent, glass.basis, glass.wo_local);
     reflect_light(point, glass, v);
     if (batch.pick_pairs)
         reflect_path(point, glass, load_pairs(batch.pick_pairs, batch.count).y,

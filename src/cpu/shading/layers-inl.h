@@ -71,7 +71,8 @@ HWY_INLINE LayerParameters gather_layers(const scalar::LayerParameters* records,
     l.coat_depth = from.read_vector();
     l.coat_darkening = from.read(), l.coat_inside = from.read();
     l.fuzz_color = from.read_vector();
-    for (Float* number : {&l.fuzz_weight, &l.fuzz_exponent, &l.fuzz_scale, &l.row_scale})
+    for (Float* number : {&l.fuzz_weight, &l.fuzz_exponent, &l.fuzz_scale, &l.specular_anisotropy,
+                          &l.coat_anisotropy, &l.azimuth_scale, &l.row_scale})
         *number = from.read();
     l.first_entry = from.read_integer();
     return l;
@@ -113,7 +114,9 @@ HWY_INLINE LayeredLanes make_layered_lanes(const cpu::VertexBatch& batch, const 
     LayeredSurface surface{load_vectors(v.base_color), Float::load(v.roughness),
                            gather_layers(batch.layers.records, load_indices(v.layers, lanes))};
     surface.layers.metallic = Float::load(v.layered_metallic);
-    layered.bsdf = make_layered_bsdf(surface, layered.table, wo_local.z);
+    const Bool has_tangent = surface.layers.azimuth_scale > Float(0.0f);
+    if (is_any(has_tangent)) turn_frame(batch, v, has_tangent, layered.basis, layered.wo_local);
+    layered.bsdf = make_layered_bsdf(surface, layered.table, layered.wo_local);
     return layered;
 }
 

@@ -50,6 +50,7 @@ struct VertexLanes {
     uint32_t has_layers;              ///< bits of lanes with layers; metallic 0 and ior 1 save work in them
     alignas(64) uint32_t layers[16];  ///< of such a lane, its record
     alignas(64) float layered_metallic[16]; ///< of such a lane, in place of the record's
+    alignas(64) float tangent[3][16];       ///< of a lane whose layers or glass are anisotropic, world space
     uint32_t has_glass;             ///< bits of lanes that are glass; metallic 0 and ior 1 save work in them
     alignas(64) uint32_t glass[16]; ///< of such a lane, its place in VertexBatch::glass
     // Found. Normals are on the viewer's side; origins are moved off the surface.

@@ -11,7 +11,7 @@ VertexInputs::VertexInputs(const PreparedScene& scene, size_t vertex_count)
     if (has_layers_) {
         layers_ = scene.layers.records, entries_ = scene.layers.entries;
         layers_.resize(layers_.size() + vertex_count);
-        entries_.resize(entries_.size() + vertex_count * kVertexEntries);
+        entries_.resize(entries_.size() + vertex_count * scene.layers.vertex_entries);
     }
     if (has_glass_) {
         glass_ = scene.glass.records;
@@ -44,7 +44,7 @@ void VertexInputs::set_textured(size_t n, uint32_t instance, const Vec2f& uv, Po
         const MaterialLayers& found = scene_.layers;
         scalar::LayerParameters l =
             scalar::set_layer_inputs(found.records[material.layers], numbers, textured->constants);
-        const size_t first = found.entries.size() + n * kVertexEntries;
+        const size_t first = found.entries.size() + n * found.vertex_entries;
         fill_vertex_block({found.entries.data()}, found.grids[material.layers], numbers, l, &entries_[first]);
         l.first_entry = uint32_t(first);
         material.layers = uint32_t(found.records.size() + n);

@@ -21,6 +21,7 @@ HWY_INLINE Vec2 read_ggx_table(const Uint& index) {
 using scalar::kGgxAverages;
 #define RELIEF_LANES
 // clang-format off
+#include "formulas/facets.h"
 #include "formulas/ggx_albedo.h"
 #include "formulas/bsdf.h"
 // clang-format on
@@ -88,6 +89,16 @@ HWY_INLINE void store_vectors(const Vec3& v, LaneVectors& target) {
 HWY_INLINE Bool is_black(const Vec3& v) {
     const Float zero(0.0f);
     return v.x == zero && v.y == zero && v.z == zero;
+}
+
+/// Turns a frame about its normal so that its first axis is the tangent, in the lanes that have one. Out of
+/// line: it is rare.
+HWY_NOINLINE void turn_frame(const cpu::VertexBatch& batch, const cpu::VertexLanes& v,
+                             const Bool& has_tangent, Basis& basis, Vec3& wo_local) {
+    const Basis turned = make_basis_along(basis.n, load_vectors(v.tangent));
+    const Vec3 wo = lift_viewer(to_local(turned, load_viewers(batch.rays, batch.count)));
+    basis.t = select(has_tangent, turned.t, basis.t), basis.b = select(has_tangent, turned.b, basis.b);
+    wo_local = select(has_tangent, wo, wo_local);
 }
 
 HWY_INLINE void store_light(const PointLanes& point, const Vec3& direction, const BsdfValue& toward,

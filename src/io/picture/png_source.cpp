@@ -103,8 +103,8 @@ class PngSource final : public PixelSource {
         for (size_t x = 0; x < size_t(header_.width); ++x) {
             for (size_t c = 0; c < size_t(channel_count); ++c) {
                 const size_t k = x * channels + c;
-                const float value =
-                    is_wide_ ? float(row[2 * k] << 8 | row[2 * k + 1]) / 65535.0f : float(row[k]) / 255.0f;
+                const float value = is_wide_ ? float(row[2 * k] << 8 | row[2 * k + 1]) * (1.0f / 65535)
+                                             : float(row[k]) * (1.0f / 255);
                 values[x * stride + c] = convert(value);
             }
         }

@@ -21,17 +21,18 @@ inline constexpr auto kEnvironment =
 inline constexpr auto kMaterial = make_keys(
     "base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "metallic_texture",
     "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
-    "specular_color", "specular_roughness", "specular_ior", "coat_weight", "coat_color", "coat_roughness",
-    "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_color", "fuzz_roughness", "emission_luminance",
-    "emission_color", "opacity", "geometry_opacity", "opacity_texture", "normal_texture", "geometry_normal",
-    "transmission_weight", "transmission_color", "transmission_depth", "geometry_thin_walled", "light_group");
+    "specular_color", "specular_roughness", "specular_roughness_anisotropy", "specular_ior", "coat_weight",
+    "coat_color", "coat_roughness", "coat_roughness_anisotropy", "coat_ior", "coat_darkening", "fuzz_weight",
+    "fuzz_color", "fuzz_roughness", "emission_luminance", "emission_color", "opacity", "geometry_opacity",
+    "opacity_texture", "normal_texture", "geometry_normal", "transmission_weight", "transmission_color",
+    "transmission_depth", "geometry_thin_walled", "light_group");
 /// Inputs of OpenPBR 1.1 that are refused by name.
-inline constexpr auto kMaterialLacks = make_keys(
-    "specular_roughness_anisotropy", "subsurface_weight", "subsurface_color", "subsurface_radius",
-    "subsurface_radius_scale", "subsurface_scatter_anisotropy", "transmission_scatter",
-    "transmission_scatter_anisotropy", "transmission_dispersion_scale", "transmission_dispersion_abbe_number",
-    "coat_roughness_anisotropy", "thin_film_weight", "thin_film_thickness", "thin_film_ior",
-    "geometry_tangent", "geometry_coat_normal", "geometry_coat_tangent");
+inline constexpr auto kMaterialLacks =
+    make_keys("subsurface_weight", "subsurface_color", "subsurface_radius", "subsurface_radius_scale",
+              "subsurface_scatter_anisotropy", "transmission_scatter", "transmission_scatter_anisotropy",
+              "transmission_dispersion_scale", "transmission_dispersion_abbe_number", "thin_film_weight",
+              "thin_film_thickness", "thin_film_ior", "geometry_tangent", "geometry_coat_normal",
+              "geometry_coat_tangent");
 inline constexpr auto kColourTexture = make_keys("file", "filter", "color_space");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
 inline constexpr auto kNormalTexture =

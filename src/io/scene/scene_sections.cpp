@@ -319,6 +319,12 @@ void read_emission(const JsonNode& node, Vec3f& emission) {
     emission = scale * factor;
 }
 
+void read_anisotropy(const JsonNode& node, std::string_view key, float& value) {
+    if (const auto found = node.find(key); found && found->is_object())
+        found->fail("cannot have a texture", "give it as a number; the roughness itself may have one");
+    read_float(node, key, value, 0, 1);
+}
+
 void read_layers(const JsonNode& node, Material& material) {
     for (const auto& [key, value] : {std::pair("base_weight", &material.base_weight),
                                      std::pair("base_diffuse_roughness", &material.base_diffuse_roughness),
@@ -334,6 +340,8 @@ void read_layers(const JsonNode& node, Material& material) {
     read_color_factor(node, "coat_color", material.coat_color);
     read_color_factor(node, "fuzz_color", material.fuzz_color);
     read_float(node, "coat_ior", material.coat_ior, 1);
+    read_anisotropy(node, "specular_roughness_anisotropy", material.specular_roughness_anisotropy);
+    read_anisotropy(node, "coat_roughness_anisotropy", material.coat_roughness_anisotropy);
     read_color_factor(node, "transmission_color", material.transmission_color);
     read_float(node, "transmission_depth", material.transmission_depth, 0);
     read_optional(node, "geometry_thin_walled", material.is_thin_walled,

@@ -42,9 +42,11 @@ void write_layers(const Material& material, Json& node) {
     write("base_diffuse_roughness", &Material::base_diffuse_roughness);
     write("specular_weight", &Material::specular_weight);
     write("specular_color", &Material::specular_color);
+    write("specular_roughness_anisotropy", &Material::specular_roughness_anisotropy);
     write("coat_weight", &Material::coat_weight);
     write("coat_color", &Material::coat_color);
     write("coat_roughness", &Material::coat_roughness);
+    write("coat_roughness_anisotropy", &Material::coat_roughness_anisotropy);
     write("coat_ior", &Material::coat_ior);
     write("coat_darkening", &Material::coat_darkening);
     write("fuzz_weight", &Material::fuzz_weight);

@@ -113,6 +113,8 @@ const uint kShadowCatchersConstant = 19u;
 const uint kInputTexturesConstant = 20u;
 // Of kernels that add light to paths: not 0 where the picture has guides of a denoiser.
 const uint kGuidesConstant = 21u;
+// Of kernels that scatter or find shading normals: not 0 where the roughness of a material has a direction.
+const uint kAnisotropyConstant = 22u;
 
 #include "formulas/end.h"
 #endif

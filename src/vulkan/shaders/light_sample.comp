@@ -135,11 +135,12 @@ VertexMaterial load_material(uint path_index, HitData hit) {
     uint index = instances[hit.instance].material;
     if (!is_catcher(hit, push.depth)) return load_vertex_material(index, push.capacity, path_index);
     VertexMaterial white;
-    white.numbers = materials[index];
+    white.numbers = load_material_numbers(index);
     white.numbers.emission = vec3(0.0);
     white.numbers.ior = 1.0;
     white.numbers.has_layers = white.numbers.has_glass = 0u;
     white.table = make_layer_table(kGridTable);
+    white.tangent = vec3(0.0);
     return white;
 }
 

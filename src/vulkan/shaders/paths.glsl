@@ -10,6 +10,7 @@
 #include "formulas/bounce_lod.h"
 #include "vulkan/shaders/ggx_table.glsl"
 #include "formulas/ggx_albedo.h"
+#include "formulas/facets.h"
 #include "formulas/bsdf.h"
 #include "formulas/layered_bsdf.h"
 #include "formulas/light_layers.h"
@@ -32,6 +33,7 @@ layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData c
 layout(scalar, set = 0, binding = kBindPaths) buffer Paths { PathData paths[]; };
 layout(scalar, set = 0, binding = kBindPoints) buffer Points { SurfacePointData points[]; };
 layout(scalar, set = 0, binding = kBindPoints) buffer PointNumbers { InputNumbers point_numbers[]; };
+layout(scalar, set = 0, binding = kBindPoints) buffer PointTangents { float point_tangents[]; };
 layout(scalar, set = 0, binding = kBindFilm) buffer FilmSums { FilmSumsData film[]; };
 layout(scalar, set = 0, binding = kBindPathList) buffer PathList { uint path_list[]; };
 layout(scalar, set = 0, binding = kBindNextPathList) buffer NextPathList { uint next_path_list[]; };
@@ -44,6 +46,7 @@ layout(constant_id = kLightTreeConstant) const uint kHasLightTree = 0;
 layout(constant_id = kLightLinksConstant) const uint kHasLightLinks = 0;
 layout(constant_id = kLightTexturesConstant) const uint kHasLightTextures = 0;
 layout(constant_id = kGlassConstant) const uint kHasGlass = 0;
+layout(constant_id = kAnisotropyConstant) const uint kHasAnisotropy = 0;
 
 layout(constant_id = kShadowCatchersConstant) const uint kHasShadowCatchers = 0;
 
@@ -57,18 +60,51 @@ uint find_point_numbers(uint capacity, uint path_index) {
     return capacity * kSurfacePointWords / kInputWords + 1u + path_index;
 }
 
+/// First word of the tangent at a path's point, if its material is anisotropic; behind all of these.
+uint find_point_tangent(uint capacity, uint path_index) {
+    uint first = kHasInputTextures != 0u ? find_point_numbers(capacity, capacity) * kInputWords
+                                         : capacity * kSurfacePointWords;
+    return first + 3u * path_index;
+}
+
+/// Without a trace of anisotropy where there is none.
+MaterialData load_material_numbers(uint index) {
+    MaterialData material = materials[index];
+    if (kHasAnisotropy != 0u) return material;
+    material.layers.specular_anisotropy = 0.0;
+    material.layers.coat_anisotropy = 0.0;
+    material.layers.azimuth_scale = 0.0;
+    material.glass.anisotropy = 0.0;
+    return material;
+}
+
+/// Of load_material_numbers().
+bool is_anisotropic(MaterialData material) {
+    return (material.has_layers != 0u && material.layers.azimuth_scale > 0.0) ||
+           (material.has_glass != 0u && material.glass.anisotropy > 0.0);
+}
+
 /// A material at a vertex.
 struct VertexMaterial {
     MaterialData numbers;
     LayerTable table; ///< of layers
+    vec3 tangent;     ///< of anisotropic ones
 };
+
+vec3 load_point_tangent(uint capacity, uint path_index) {
+    uint first = find_point_tangent(capacity, path_index);
+    return vec3(point_tangents[first], point_tangents[first + 1u], point_tangents[first + 2u]);
+}
 
 layout(scalar, set = 0, binding = kBindMaterials) readonly buffer VertexInputs { MaterialInputData vertex_inputs[]; };
 
 VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) {
     VertexMaterial material;
-    material.numbers = materials[index];
+    material.numbers = load_material_numbers(index);
     material.table = make_layer_table(kGridTable);
+    material.tangent = vec3(0.0);
+    if (kHasAnisotropy != 0u && is_anisotropic(material.numbers))
+        material.tangent = load_point_tangent(capacity, path_index);
     if (kHasInputTextures == 0u || material.numbers.inputs == kNone) return material;
     MaterialInputData inputs = vertex_inputs[material.numbers.inputs];
     InputNumbers numbers = point_numbers[find_point_numbers(capacity, path_index)];
@@ -78,7 +114,9 @@ VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) 
     LayerParameters layers = set_layer_inputs(material.numbers.layers, numbers, inputs.constants);
     material.table.is_block = true;
     material.table.place = place_layers(inputs.grid, layers.first_entry, numbers);
-    layers.fuzz_scale = read_layer_entry(material.table, kLayerColumnCount + 1u).y;
+    if (kHasAnisotropy == 0u) material.table.place.azimuth_count = 1u;
+    uint average = find_block_average(material.table.place.azimuth_count);
+    layers.fuzz_scale = read_layer_entry(material.table, average + 1u).y;
     layers.first_entry = 0u;
     layers.row_scale = 0.0;
     material.numbers.layers = layers;
@@ -114,6 +152,8 @@ Scattering make_scattering(SurfacePointData point, VertexMaterial at, vec3 wo, f
     Scattering result;
     result.table = at.table;
     result.basis = make_basis(point.bent_normal);
+    if (kHasAnisotropy != 0u && is_anisotropic(material))
+        result.basis = make_basis_along(point.bent_normal, at.tangent);
     result.wo_local = lift_viewer(to_local(result.basis, wo));
     result.u_lobe = u_pick;
     result.is_glass = false;
@@ -131,7 +171,7 @@ Scattering make_scattering(SurfacePointData point, VertexMaterial at, vec3 wo, f
     if (result.has_layers) {
         LayeredSurface surface = {point.base_color, point.roughness, material.layers};
         surface.layers.metallic = point.metallic;
-        result.layered = make_layered_bsdf(surface, result.table, result.wo_local.z);
+        result.layered = make_layered_bsdf(surface, result.table, result.wo_local);
         return result;
     }
     BsdfParameters parameters = {point.base_color, point.roughness, point.metallic, material.ior};

@@ -18,6 +18,8 @@ struct Appearance {
     float roughness, metallic;
     vec3 normal_texel; ///< where the material has a normal map
     bool has_normal_texel;
+    vec3 tangent; ///< of anisotropic materials
+    bool has_tangent;
     bool has_numbers; ///< false wherever kHasInputTextures is 0
     InputNumbers numbers;
 };
@@ -59,7 +61,7 @@ void apply_material(MaterialData material, inout Appearance appearance) {
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
-vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit, uvec4 quad, vec3 texel, vec3 normal) {
+vec3 find_tangent(InstanceData instance, HitData hit, uvec4 quad, vec3 normal) {
     SurfaceData s = surfaces[instance.surface];
     vec2 at = vec2(hit.u, hit.v);
     int first = int(s.first_tangent + 4u * hit.patch_index);
@@ -69,7 +71,12 @@ vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit,
                                      : interpolate_quad(tangents[0], tangents[1], tangents[2], tangents[3], at);
     vec3 base = normal;
     if (s.map != kNone) base = make_unit(transform_normal(instance.object_from_origin, blend_normals(s, quad, at)));
-    vec3 tangent = turn_tangent(make_unit(transform_vector(instance.world_from_object, blended)), base, normal);
+    return turn_tangent(make_unit(transform_vector(instance.world_from_object, blended)), base, normal);
+}
+
+/// `tangent` is that of `normal`.
+vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit, vec3 tangent, vec3 texel, vec3 normal) {
+    int first = int(surfaces[instance.surface].first_tangent + 4u * hit.patch_index);
     bool is_turned = (texelFetch(override_bits, first).x & 1u) != 0u;
     bool is_mirrored = (instance.levels & kMirrored) != 0u;
     return map_normal(normal, tangent, is_turned != is_mirrored ? -1.0 : 1.0,
@@ -86,10 +93,14 @@ Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) 
     vec3 normal = orient_shading_normal(transform_normal(instance.object_from_origin, interpolated), geometric_normal);
     Appearance appearance;
     appearance.uv = interpolate_uv(s, corners, at);
-    MaterialData material = materials[instance.material];
+    MaterialData material = load_material_numbers(instance.material);
     apply_material(material, appearance);
-    if (kHasNormalMaps != 0u && appearance.has_normal_texel)
-        normal = apply_normal_map(material, instance, hit, corners.quad, appearance.normal_texel, normal);
+    bool is_mapped = kHasNormalMaps != 0u && appearance.has_normal_texel;
+    appearance.has_tangent = kHasAnisotropy != 0u && is_anisotropic(material);
+    if (is_mapped || appearance.has_tangent)
+        appearance.tangent = find_tangent(instance, hit, corners.quad, normal);
+    if (is_mapped)
+        normal = apply_normal_map(material, instance, hit, appearance.tangent, appearance.normal_texel, normal);
     appearance.shading_normal = is_flipped ? -normal : normal;
     return appearance;
 }
@@ -112,6 +123,10 @@ void main() {
     points[path_index].metallic = appearance.metallic;
     if (kHasInputTextures != 0u && appearance.has_numbers)
         point_numbers[find_point_numbers(push.capacity, path_index)] = appearance.numbers;
+    if (appearance.has_tangent) {
+        uint first = find_point_tangent(push.capacity, path_index);
+        for (uint k = 0u; k < 3u; ++k) point_tangents[first + k] = appearance.tangent[k];
+    }
     if (push.depth > 0u || is_caught) return;
     film[path_index].shading_normal += appearance.shading_normal;
     film[path_index].albedo += appearance.base_color;

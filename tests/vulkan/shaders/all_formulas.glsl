@@ -17,6 +17,7 @@
 #include "formulas/environment.h"
 #include "formulas/environment_data.h"
 #include "formulas/exact.h"
+#include "formulas/facets.h"
 #include "formulas/frame.h"
 #include "formulas/ggx_albedo.h"
 #include "formulas/glass.h"

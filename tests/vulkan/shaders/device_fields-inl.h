@@ -67,9 +67,9 @@ struct AllStructs {
     FIELD(s.dielectric_f90) FIELD(s.diffuse_roughness) FIELD(s.coat_weight) FIELD(s.coat_roughness) \
     FIELD(s.coat_f0) FIELD(s.coat_f90) FIELD(s.coat_inverse_ior2) FIELD3(s.coat_depth) FIELD(s.coat_darkening) \
     FIELD(s.coat_inside) FIELD3(s.fuzz_color) FIELD(s.fuzz_weight) FIELD(s.fuzz_exponent) FIELD(s.fuzz_scale) \
-    FIELD(s.row_scale) FIELD(s.first_entry)
+    FIELD(s.specular_anisotropy) FIELD(s.coat_anisotropy) FIELD(s.azimuth_scale) FIELD(s.row_scale) FIELD(s.first_entry)
 #define FIELDS_GLASS(s) \
-    FIELD(s.weight) FIELD(s.ior) FIELD3(s.specular_color) FIELD3(s.tint) FIELD3(s.depth) FIELD(s.kind)
+    FIELD(s.weight) FIELD(s.ior) FIELD3(s.specular_color) FIELD3(s.tint) FIELD3(s.depth) FIELD(s.anisotropy) FIELD(s.kind)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
     FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
@@ -82,7 +82,7 @@ struct AllStructs {
     FIELDS_WORDS(s, 24) FIELDS_WORDS(s, 28)
 #define FIELDS_GRID(s) \
     FIELD(s.axis_count) FIELD4(s.place) FIELD4(s.stride) FIELD4(s.lower) FIELD4(s.scale) FIELD4(s.last) \
-    FIELD(s.row_count) FIELD(s.fuzz_lower) FIELD(s.fuzz_scale) FIELD(s.fuzz_last)
+    FIELD(s.row_count) FIELD(s.azimuth_count) FIELD(s.fuzz_lower) FIELD(s.fuzz_scale) FIELD(s.fuzz_last)
 #define FIELDS_MATERIAL_INPUT(s) \
     FIELDS_NUMBERS(s.numbers) FIELD(s.constants.ior) FIELD(s.constants.coat_ior) FIELD(s.constants.is_absorbing) \
     FIELDS_GRID(s.grid) FIELD(s.has_normal) FIELD(s.first_texture) FIELD(s.texture_count)

@@ -56,6 +56,13 @@ struct GlassResults {
     float drawn_u, drawn_metallic;
 };
 
+struct FacetResults {
+    Vec2 value, seen;
+    Vec3 direction;
+    Basis basis;
+    Vec2 rest;
+};
+
 struct LightResults {
     float weight;
     Vec2 place;
@@ -99,6 +106,7 @@ struct FormulaOutput {
     SurfaceResults surface;
     LayerResults layers;
     GlassResults glass;
+    FacetResults facets;
 };
 
 FN ExactResults run_exact(FormulaInput from) {
@@ -190,11 +198,7 @@ FN ShadingResults run_shading(FormulaInput from) {
     return r;
 }
 
-/// Of a material with all layers. The table of rests is one of numbers in [0, 1]: make_test_layers().
-FN LayerResults run_layers(FormulaInput from) {
-    LayeredSurface s;
-    s.base_color = make_triple(from.u[0], from.u[1], from.u[2]);
-    s.roughness = 0.3f + 0.7f * from.u[3];
+FN LayerParameters make_test_parameters(FormulaInput from) {
     LayerParameters l;
     l.specular_color = make_triple(from.u[4], from.u[5], 1.0f);
     l.specular_weight = from.u[6];
@@ -214,12 +218,24 @@ FN LayerResults run_layers(FormulaInput from) {
     l.fuzz_weight = from.u[5];
     l.fuzz_exponent = 1.0f + 10.0f * from.u[7];
     l.fuzz_scale = 0.9f;
-    l.row_scale = 3.0f;
+    l.specular_anisotropy = from.u[10];
+    l.coat_anisotropy = from.u[9];
+    // Not constant: glslc -O of shaderc 2023.2 crashes where it can see that there is one azimuth.
+    l.azimuth_scale = from.u[0] < 0.5f ? 0.0f : 2.0f;
+    l.row_scale = 1.0f;
     l.first_entry = 32u;
-    s.layers = l;
+    return l;
+}
+
+/// Of a material with all layers. The table of rests is one of numbers in [0, 1]: make_test_layers().
+FN LayerResults run_layers(FormulaInput from) {
+    LayeredSurface s;
+    s.base_color = make_triple(from.u[0], from.u[1], from.u[2]);
+    s.roughness = 0.3f + 0.7f * from.u[3];
+    s.layers = make_test_parameters(from);
     Vec3 wo = square_to_cone(make_pair(from.u[6], from.u[7]), 0.95f);
     Vec3 wi = square_to_cone(make_pair(from.u[8], from.u[9]), 0.95f);
-    LayeredBsdf b = make_layered_bsdf(s, make_test_layers(), wo.z);
+    LayeredBsdf b = make_layered_bsdf(s, make_test_layers(), wo);
     BsdfValue v = evaluate_layered_bsdf(b, make_test_layers(), wo, wi);
     BsdfSample drawn =
         sample_layered_bsdf(b, make_test_layers(), wo, from.u[2], make_pair(from.u[10], from.u[11]));
@@ -243,6 +259,7 @@ FN GlassResults run_glass(FormulaInput from) {
     g.specular_color = make_triple(from.u[2], 1.0f, 0.5f);
     g.tint = make_triple(1.0f, from.u[3], 0.5f);
     g.depth = make_triple(0.0f, 3.0f * from.u[4], 1.0f);
+    g.anisotropy = from.u[11];
     g.kind = from.u[5] < 0.5f ? kSolidGlass : from.u[5] < 0.8f ? kRoughWall : kClearWall;
     float roughness = 0.3f + 0.7f * from.u[6];
     Vec3 wo = square_to_cone(make_pair(from.u[7], from.u[8]), 0.95f);
@@ -262,6 +279,22 @@ FN GlassResults run_glass(FormulaInput from) {
     r.drawn_weight = choice.weight;
     r.drawn_u = choice.u;
     r.drawn_metallic = choice.metallic;
+    return r;
+}
+
+/// Of a direction, and what the table says of it.
+FN FacetResults run_facets(FormulaInput from) {
+    float roughness = 0.3f + 0.7f * from.u[0];
+    Vec3 wo = square_to_cone(make_pair(from.u[1], from.u[2]), 0.95f);
+    Vec3 wi = square_to_cone(make_pair(from.u[3], from.u[4]), 0.95f);
+    Facets f = make_facets(roughness, 0.9f * from.u[5]);
+    LayerParameters l = make_test_parameters(from);
+    FacetResults r;
+    r.value = evaluate_facets(f, normalize(wo + wi), wo, wi);
+    r.seen = make_pair(find_seen_roughness(roughness, from.u[6], wo), find_azimuth(wi));
+    r.direction = sample_ggx_reflection(f.alpha, wo, make_pair(from.u[7], from.u[8]));
+    r.basis = make_basis_along(wo, square_to_sphere(make_pair(from.u[9], from.u[10])));
+    r.rest = lookup_layer_rest(make_test_layers(), l, roughness, wi);
     return r;
 }
 

@@ -24,4 +24,5 @@ void main() {
     if (kPart == 7u) outputs[i].surface = run_surface(from);
     if (kPart == 8u) outputs[i].layers = run_layers(from);
     if (kPart == 9u) outputs[i].glass = run_glass(from);
+    if (kPart == 10u) outputs[i].facets = run_facets(from);
 }

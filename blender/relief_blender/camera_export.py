@@ -1,0 +1,137 @@
+"""Blender's camera as Relief's, with the window of the picture that it looks through."""
+import math
+from typing import NamedTuple
+
+import numpy as np
+import relief
+
+from . import axes
+
+FAR = 1000  # how many times its height an orthographic view is looked at from
+
+
+class View(NamedTuple):
+    """A camera and the whole picture that `crop` is a window of: x0, y0, x1, y1 from the top left."""
+    camera: object
+    size: tuple
+    crop: tuple
+    forward: np.ndarray  # in Relief's axes
+    right: np.ndarray
+    up: np.ndarray
+    tangent: float       # of half the vertical angle of the whole picture
+    depth_offset: float  # by how much depths are too large
+
+
+def find_basis(matrix_world):
+    """(origin, right, up, forward) of a camera in Relief's axes; its scale does not count."""
+    matrix = axes.convert_matrix(matrix_world)
+    right, up, back = (matrix[:3, i] / np.linalg.norm(matrix[:3, i]) for i in range(3))
+    return matrix[:3, 3], right, up, -back
+
+
+def place_window(projection, width, height):
+    """(size of the whole picture, left, top, remaining shift in pixels (x right, y down)).
+
+    A shifted lens is a window beside the middle of a larger picture, to half a pixel; a turn of the camera by what
+    remains does the rest."""
+    is_orthographic = projection[3][3] == 1
+    across, upwards = (projection[i][3] if is_orthographic else -projection[i][2] for i in range(2))
+    centre_x, centre_y = width / 2 * (1 + across), height / 2 * (1 - upwards)  # of the axis, from the top left
+    whole, starts, rests = [], [], []
+    for length, centre in ((width, centre_x), (height, centre_y)):
+        nearest = round(centre * 2) / 2
+        half = max(nearest, length - nearest)
+        whole.append(int(round(2 * half)))
+        starts.append(int(round(half - nearest)))
+        rests.append(centre - nearest)
+    return whole, starts, rests
+
+
+def turn(right, up, forward, x, y):
+    """The basis turned so that its middle looks at x right, y up of it at distance 1."""
+    new = forward + x * right + y * up
+    new /= np.linalg.norm(new)
+    side = np.cross(new, up)
+    side /= np.linalg.norm(side)
+    return side, np.cross(side, new), new
+
+
+def find_focus(camera, origin, forward):
+    """Distance along the view axis."""
+    target = camera.dof.focus_object
+    if target is None:
+        return camera.dof.focus_distance
+    return float(np.dot(np.array(axes.convert_vector(target.matrix_world.translation)) - origin, forward))
+
+
+def make_view(frame, projection, basis, report):
+    """The View of a projection matrix.
+
+    frame: (width, height, border), border None or x0, y0, x1, y1 in pixels from the top left.
+    projection: 4x4 of OpenGL, as calc_matrix_camera gives it."""
+    width, height, border = frame
+    origin, right, up, forward = basis
+    is_orthographic = projection[3][3] == 1
+    if abs(projection[1][1] / projection[0][0] * height / width - 1) > 1e-3:
+        report("pixels that are not square are taken for square ones")
+    tangent, offset = 1 / projection[1][1], 0.0
+    if is_orthographic:
+        report(f"an orthographic view is a view from {FAR} times its height away")
+        offset = FAR * 2 * tangent
+        origin = origin - forward * offset
+        tangent = tangent / offset
+    whole, starts, rests = place_window(projection, width, height)
+    pixel = 2 * tangent / height
+    if rests != [0, 0]:
+        right, up, forward = turn(right, up, forward, -rests[0] * pixel, rests[1] * pixel)
+    tangent *= whole[1] / height
+    x0, y0, x1, y1 = border or (0, 0, width, height)
+    crop = (starts[0] + x0, starts[1] + y0, starts[0] + x1, starts[1] + y1)
+    camera = relief.Camera(from_=origin.tolist(), to=(origin + forward).tolist(), up=up.tolist(),
+                           fov_degrees=math.degrees(2 * math.atan(tangent)), focus_distance=1.0)
+    return View(camera, tuple(whole), crop, forward, right, up, tangent, offset)
+
+
+def add_depth_of_field(view, camera, basis, report):
+    """Lens and focus of a bpy.types.Camera."""
+    if not camera.dof.use_dof:
+        return
+    if camera.type != "PERSP":
+        report("depth of field of a view that is not a perspective is left out")
+        return
+    view.camera["aperture_radius"] = camera.lens * 1e-3 / (2 * camera.dof.aperture_fstop)
+    view.camera["focus_distance"] = max(find_focus(camera, basis[0], basis[3]), 1e-4)
+    if camera.dof.aperture_blades or camera.dof.aperture_ratio != 1:
+        report("the aperture is round")
+
+
+def find_border(render, width, height):
+    """Pixels of the border from the top left, half open, or None; as Blender rounds them."""
+    if not render.use_border:
+        return None
+    x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
+    y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+    if x1 <= x0 or y1 <= y0:
+        return None
+    return x0, height - y1, x1, height - y0
+
+
+def export_camera(depsgraph, report):
+    """The View of a final render. `report` is a Report."""
+    scene, render = depsgraph.scene, depsgraph.scene.render
+    factor = render.resolution_percentage / 100
+    width, height = max(int(render.resolution_x * factor), 1), max(int(render.resolution_y * factor), 1)
+    if scene.camera is None:
+        raise RuntimeError("the scene has no camera")
+    camera = scene.camera.evaluated_get(depsgraph)
+
+    def tell(text):
+        report.add("camera", camera.name, text)
+    if camera.data.type == "PANO":
+        tell("a panoramic view is the perspective of its lens")
+    projection = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
+                                           scale_y=render.pixel_aspect_y)
+    basis = find_basis(camera.matrix_world)
+    view = make_view((width, height, find_border(render, width, height)), projection, basis, tell)
+    add_depth_of_field(view, camera.data, basis, tell)
+    return view

@@ -1,0 +1,148 @@
+"""The render engine: final renders and the viewport."""
+import bpy
+import relief
+
+from . import passes, statistics
+from .camera_export import export_camera
+from .properties import find_threads
+from .render_job import RenderJob
+from .report import Report
+from .scene_export import SceneExport
+from .viewport import Viewport
+
+
+def make_settings(scene, view, layers):
+    """Keywords of relief.render for a final render."""
+    own = scene.relief
+    return {"size": view.size, "crop": view.crop, "spp": own.samples, "bounces": own.bounces, "seed": own.seed,
+            "noise": own.noise, "time_limit": own.time_limit, "clamp_indirect": own.clamp_indirect,
+            "pixel_error": own.pixel_error, "engine": own.engine, "denoise": own.denoise, "layers": layers,
+            "threads": find_threads(scene.render),
+            "background": "transparent" if scene.render.film_transparent else None}
+
+
+class ReliefEngine(bpy.types.RenderEngine):
+    bl_idname = "RELIEF"
+    bl_label = "Relief"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+
+    def update_render_passes(self, scene=None, view_layer=None):
+        passes.register(self, scene, view_layer)
+
+    # Final renders
+
+    def update(self, data, depsgraph):
+        """Takes the scene over, in the main thread. A fault is shown by render()."""
+        self._report, self._fault = Report(), None
+        self.update_stats("", "Relief: taking over the scene")
+        try:
+            self._view = export_camera(depsgraph, self._report)
+            self._scene = SceneExport(depsgraph, self._report).run()
+            self._scene.camera = self._view.camera
+        except (RuntimeError, relief.Error) as fault:
+            self._fault = fault
+
+    def render(self, depsgraph):
+        if self._fault is not None:
+            self._fail(self._fault, depsgraph.scene)
+            return
+        scene = depsgraph.scene
+        layers = passes.find_layers(depsgraph.view_layer)
+        passes.report_missing(depsgraph.view_layer, self._report)
+        job = RenderJob(self._scene, make_settings(scene, self._view, layers))
+        self._scene = None
+        try:
+            self._follow(job, depsgraph)
+        finally:
+            job.cancel()
+            job.join()
+
+    def _follow(self, job, depsgraph):
+        while True:
+            kind, thing = job.poll(0.1)
+            if self._is_stopped():
+                job.cancel()
+            if kind == "progress":
+                self.update_progress(thing.fraction)
+                self.update_stats("", f"Sample {thing.samples_done}/{thing.samples_total}")
+            elif kind == "picture":
+                self._show(thing, depsgraph, is_last=False)
+            elif kind == "done":
+                self._finish(thing, depsgraph)
+                return
+            elif kind == "fault":
+                self._fail(thing, depsgraph.scene)
+                return
+
+    def _is_stopped(self):
+        return self.test_break()
+
+    def _show(self, picture, depsgraph, is_last):
+        """Writes a picture into the result."""
+        x0, y0, x1, y1 = self._view.crop
+        result = self.begin_result(0, 0, x1 - x0, y1 - y0, layer=depsgraph.view_layer.name)
+        made = result.layers[0].passes
+        passes.put(made["Combined"], passes.make_combined(picture.color, depsgraph.scene.render.film_transparent))
+        for p in passes.wanted_passes(depsgraph.view_layer):
+            passes.put(made[p.name], passes.make_pass(p, picture[p.layer], self._view))
+        for name in passes.wanted_mattes(depsgraph.view_layer) if is_last else []:
+            for rank in range(passes.MATTE_RANKS):
+                passes.put(made[f"{name}{rank:02}"], picture[f"{name}{rank:02}"])
+        self.end_result(result)
+
+    def _finish(self, picture, depsgraph):
+        self._show(picture, depsgraph, is_last=True)
+        for warning in picture.warnings:
+            self._report.add("scene", "", warning)
+        statistics.keep(depsgraph.scene.name, picture.statistics, self._report.lines)
+        self._report.tell(lambda line: self.report({"WARNING"}, line))
+
+    def _fail(self, fault, scene):
+        """Shows an error; the statistics keep it, as the panel is what one looks at next."""
+        # Blender 4.5 ends with a segmentation fault where a render that failed has no result to write.
+        self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
+        hint = getattr(fault, "hint", None)
+        text = f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else "")
+        statistics.keep(scene.name, {}, [text, *self._report.lines])
+        self.error_set(text)
+        self._report.tell(lambda line: self.report({"WARNING"}, line))
+
+    # Viewport
+
+    def view_update(self, context, depsgraph):
+        self._find_viewport().update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        self._find_viewport().draw(context, depsgraph)
+
+    def _find_viewport(self):
+        if not hasattr(self, "_viewport"):
+            self._viewport = Viewport(self)
+        return self._viewport
+
+    def __del__(self):
+        viewport = getattr(self, "_viewport", None)
+        if viewport is not None:
+            viewport.stop()
+
+
+def find_panels():
+    """Panels of Blender that Relief takes part in: those of others that are not about an engine's own settings."""
+    excluded = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_eevee_performance"}
+    return [panel for panel in bpy.types.Panel.__subclasses__()
+            if "BLENDER_RENDER" in getattr(panel, "COMPAT_ENGINES", ()) and panel.__name__ not in excluded]
+
+
+def register():
+    bpy.utils.register_class(ReliefEngine)
+    for panel in find_panels():
+        panel.COMPAT_ENGINES.add("RELIEF")
+
+
+def unregister():
+    for panel in bpy.types.Panel.__subclasses__():
+        if "RELIEF" in getattr(panel, "COMPAT_ENGINES", ()):
+            panel.COMPAT_ENGINES.discard("RELIEF")
+    bpy.utils.unregister_class(ReliefEngine)

@@ -1,0 +1,122 @@
+"""Materials of Blender as materials and displacements of Relief, each once."""
+from typing import NamedTuple
+
+import numpy as np
+import relief
+
+from .displacement_export import DisplacementReader
+from .node_tree import NotExpressible, Wire, find_output
+from .node_values import NodeValues
+from .shaders import FALLBACK, Shaders
+from .textures import TextureWriter
+from .values import Constant, Place, Textured, make_constant
+
+LAYERED_NUMBERS = ["coat_weight", "coat_roughness", "fuzz_weight", "fuzz_roughness", "base_diffuse_roughness", "roughness"]
+COLORS = {"base_color", "specular_color", "coat_color", "fuzz_color", "transmission_color"}
+UNTEXTURED = {"ior", "coat_ior"}
+
+
+class ExportedMaterial(NamedTuple):
+    """Names in the scene, and the place that the uvs of its meshes are to have."""
+    material: str
+    displacement: str | None = None
+    base: Place = Place()
+    is_tangent: bool = False
+    is_world_height: bool = False
+
+
+class MaterialExport:
+    """Adds materials to a relief.Scene. What Relief has no keys for goes to the report under their names."""
+
+    def __init__(self, scene, report):
+        self._scene, self._report, self._done = scene, report, {}
+
+    def export(self, material):
+        """`material` may be None: Blender's grey."""
+        key = material.name_full if material else ""
+        if key not in self._done:
+            self._done[key] = self._make(material)
+        return self._done[key]
+
+    def _make(self, material):
+        if material is None:
+            self._scene.materials.setdefault("default", relief.Material(base_color=[0.8, 0.8, 0.8]))
+            return ExportedMaterial("default")
+        name = material.name_full
+
+        def report(text):
+            self._report.add("material", name, text)
+        node_values = NodeValues(report)
+        keys, displacement = self._read(material, node_values, report)
+        base = displacement.value.place if displacement else self._choose_place(keys)
+        base = Place(base.uv_map, base.scale, base.offset)
+        if not displacement:
+            base = Place(base.uv_map)
+        self._scene.materials[name] = self._write(keys, TextureWriter(node_values.texels, report, base), report)
+        if displacement is None:
+            return ExportedMaterial(name, None, base)
+        self._scene.displacements[name] = displacement.write(node_values.texels)
+        return ExportedMaterial(name, name, base, displacement.is_tangent, displacement.is_world_height)
+
+    def _read(self, material, node_values, report):
+        """(keys of the surface, displacement or None)."""
+        tree = material.node_tree
+        is_by_nodes = tree is not None and (material.use_nodes or not hasattr(material, "use_nodes"))
+        if not is_by_nodes:
+            return {"base_color": make_constant(list(material.diffuse_color)), "metallic": make_constant(material.metallic),
+                    "roughness": make_constant(material.roughness)}, None
+        output = find_output(tree)
+        if output is None:
+            report("it has no output node: it is grey")
+            return dict(FALLBACK), None
+        try:
+            keys = Shaders(node_values, report).surface(Wire(output.inputs["Surface"]))
+        except NotExpressible as fault:
+            report(f"{fault}: it is grey")
+            keys = dict(FALLBACK)
+        if output.inputs["Volume"].is_linked:
+            report("its volume is not taken over")
+        return keys, DisplacementReader(material, node_values, report).read(output)
+
+    @staticmethod
+    def _choose_place(keys):
+        """The place of the first texture, colours first."""
+        found = [v for k, v in sorted(keys.items(), key=lambda item: item[0] != "base_color") if isinstance(v, Textured)]
+        if "normal" in keys:
+            found.append(keys["normal"][0])
+        return found[0].place if found else Place()
+
+    def _write(self, keys, writer, report):
+        keys = resolve_conflicts(dict(keys), report, writer.mean)
+        result = relief.Material()
+        for key, value in keys.items():
+            label = key.replace("_", " ")
+            if key == "normal":
+                result["geometry_normal"] = writer.normal(*value)
+            elif key in UNTEXTURED:
+                result[key] = writer.number(value, label, 1.0, 1e6)
+            elif key == "emission":
+                result[key] = writer.color(value, label, 0.0, np.inf)
+            elif key in COLORS:
+                result[key] = writer.color(value, label)
+            else:
+                result["geometry_opacity" if key == "opacity" else key] = writer.number(value, label)
+        return result
+
+
+def resolve_conflicts(keys, report, find_mean):
+    """What Relief refuses together: the rarer part goes, and is named."""
+    opacity = keys.get("opacity", make_constant(1))
+    if isinstance(opacity, Constant) and opacity.number == 1:
+        keys.pop("opacity", None)
+    elif "emission" in keys:
+        report("a cut-out does not emit: its emission is left out")
+        keys.pop("emission")
+    if "transmission_weight" in keys and ("coat_weight" in keys or "fuzz_weight" in keys):
+        report("glass has no coat or sheen: they are left out")
+        keys = {k: v for k, v in keys.items() if not k.startswith(("coat_", "fuzz_"))}
+    textured = [key for key in LAYERED_NUMBERS if isinstance(keys.get(key), Textured)]
+    for key in textured[4:]:
+        report(f"{key.replace('_', ' ')}: the fifth texture of its layers is its mean")
+        keys[key] = find_mean(keys[key])
+    return keys

@@ -1,0 +1,92 @@
+"""Meshes of Blender as NumPy arrays."""
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class MeshArrays:
+    """One mesh. Corners are in the order of faces."""
+    positions: np.ndarray         # (points, 3)
+    sizes: np.ndarray             # (faces,)
+    corners: np.ndarray           # (corners,) points
+    face_materials: np.ndarray    # (faces,)
+    corner_normals: np.ndarray    # (corners, 3)
+    uvs: np.ndarray | None = None  # (corners, 2)
+
+
+def read(items, attribute, width, dtype=np.float32):
+    array = np.empty(len(items) * width, dtype)
+    items.foreach_get(attribute, array)
+    return array.reshape(-1, width) if width > 1 else array
+
+
+def find_uv_layer(mesh, name):
+    """The layer of a name, else the one that renders, else None."""
+    layer = mesh.uv_layers.get(name) if name else None
+    return layer or next((layer for layer in mesh.uv_layers if layer.active_render), None)
+
+
+def read_mesh(mesh, uv_name=""):
+    """Arrays of a bpy.types.Mesh."""
+    layer = find_uv_layer(mesh, uv_name)
+    return MeshArrays(
+        positions=read(mesh.vertices, "co", 3), sizes=read(mesh.polygons, "loop_total", 1, np.int32),
+        corners=read(mesh.loops, "vertex_index", 1, np.int32),
+        face_materials=read(mesh.polygons, "material_index", 1, np.int32),
+        corner_normals=read(mesh.corner_normals, "vector", 3),
+        uvs=read(layer.uv, "vector", 2) if layer and len(layer.uv) else None)
+
+
+def read_float_attribute(mesh, name, domain):
+    """Values of an attribute on points or edges, or None where there is none."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != domain or attribute.data_type != "FLOAT":
+        return None
+    return read(attribute.data, "value", 1)
+
+
+def read_creases(mesh):
+    """(edges (K, 2), sharpness (K,)): Blender's crease c is a sharpness of 10 c^2; corners are edges of one point."""
+    edges, sharpness = np.zeros((0, 2), np.int32), np.zeros(0, np.float32)
+    crease = read_float_attribute(mesh, "crease_edge", "EDGE")
+    if crease is not None:
+        used = crease > 0
+        edges, sharpness = read(mesh.edges, "vertices", 2, np.int32)[used], 10 * crease[used] ** 2
+    corner = read_float_attribute(mesh, "crease_vert", "POINT")
+    if corner is not None:
+        points = np.flatnonzero(corner > 0).astype(np.int32)
+        edges = np.concatenate([edges, np.stack([points, points], -1)])
+        sharpness = np.concatenate([sharpness, 10 * corner[points] ** 2])
+    return edges, sharpness.astype(np.float32)
+
+
+def read_frames(mesh, uv_name):
+    """(normals of points at the corners, tangents (corners, 4) or None): of the whole mesh, for its parts.
+
+    Tangents are those of MikkTSpace, which Blender has for triangles and quads alone."""
+    corners = read(mesh.loops, "vertex_index", 1, np.int32)
+    normals = read(mesh.vertex_normals, "vector", 3)[corners]
+    layer = find_uv_layer(mesh, uv_name)
+    if layer is None or len(mesh.polygons) and read(mesh.polygons, "loop_total", 1, np.int32).max() > 4:
+        return normals, None
+    mesh.calc_tangents(uvmap=layer.name)
+    tangents = np.concatenate([read(mesh.loops, "tangent", 3), read(mesh.loops, "bitangent_sign", 1)[:, None]], -1)
+    mesh.free_tangents()
+    return normals, tangents
+
+
+def index_equal(corners, rows):
+    """(rows, indices of the corners): equal rows at one point are one, so that uvs and normals stay connected."""
+    keys = np.concatenate([corners[:, None].astype(np.int64), rows.astype(np.float32).view(np.int32)], -1)
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return rows[first], inverse.reshape(-1).astype(np.uint32)
+
+
+def select_faces(arrays, is_chosen):
+    """(arrays of some faces with their points alone, mask of their corners)."""
+    corner_mask = np.repeat(is_chosen, arrays.sizes)
+    points, corners = np.unique(arrays.corners[corner_mask], return_inverse=True)
+    uvs = arrays.uvs[corner_mask] if arrays.uvs is not None else None
+    return MeshArrays(arrays.positions[points], arrays.sizes[is_chosen], corners.reshape(-1).astype(np.int32),
+                      arrays.face_materials[is_chosen], arrays.corner_normals[corner_mask], uvs), corner_mask

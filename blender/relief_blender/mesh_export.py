@@ -1,0 +1,155 @@
+"""Evaluated meshes as meshes of Relief: one a mesh and material."""
+from typing import NamedTuple
+
+import numpy as np
+import relief
+
+from . import mesh_arrays, subdivision, topology
+from .values import Place
+
+
+class MeshPart(NamedTuple):
+    """A mesh in the scene and the material that it is for."""
+    mesh: str
+    material: str
+    displacement: str | None
+    is_world_height: bool
+
+
+def find_materials(evaluated, mesh):
+    """Materials by slot: of the object where a slot says so, else of the mesh."""
+    slots = evaluated.material_slots
+    result = [m for m in mesh.materials] or [None]
+    for i, slot in enumerate(slots):
+        if slot.link == "OBJECT" and i < len(result):
+            result[i] = slot.material
+    return result
+
+
+class MeshExport:
+    """Adds meshes to a relief.Scene, each once for all objects that share it."""
+
+    def __init__(self, scene, materials, depsgraph, report):
+        self._scene, self._materials, self._depsgraph, self._report = scene, materials, depsgraph, report
+        self._is_render = depsgraph.mode == "RENDER"
+        self._done = {}
+
+    def export(self, evaluated, is_made_by_nodes=False):
+        """The MeshParts of an evaluated object. Geometry nodes make instances of meshes that are no object's own."""
+        slots = tuple(slot.material.name_full if slot.material else "" for slot in evaluated.material_slots
+                      if slot.link == "OBJECT")
+        modifier = None if is_made_by_nodes else subdivision.find_modifier(evaluated, self._is_render)
+        owner = evaluated.original.name_full if modifier else ""
+        key = (evaluated.data.as_pointer(), slots, owner)
+        if key not in self._done:
+            self._done[key] = self._make(evaluated, modifier)
+        return self._done[key]
+
+    def _make(self, evaluated, modifier):
+        if modifier:
+            with subdivision.cage_of(evaluated, modifier, self._depsgraph) as cage:
+                parts = self._add_cage(evaluated, cage, modifier)
+            if parts is not None:
+                return parts
+        if evaluated.type == "MESH":
+            return self._add_mesh(evaluated, evaluated.data)
+        mesh = evaluated.to_mesh()
+        try:
+            return self._add_mesh(evaluated, mesh) if mesh else []
+        finally:
+            evaluated.to_mesh_clear()
+
+    def _used(self, evaluated, mesh):
+        """{slot: ExportedMaterial} of the slots that faces use; slots beyond the last are the last."""
+        materials = find_materials(evaluated, mesh)
+        indices = np.unique(np.minimum(mesh_arrays.read(mesh.polygons, "material_index", 1, np.int32), len(materials) - 1))
+        return {int(i): self._materials.export(materials[i]) for i in indices}
+
+    def _add_cage(self, evaluated, cage, modifier):
+        """Parts of a subdivision surface; None where its faces are of several materials that Relief cannot join."""
+        name = evaluated.original.name_full
+
+        def report(text):
+            self._report.add("object", name, text)
+        used = self._used(evaluated, cage)
+        if not used:
+            return []
+        adaptive = subdivision.is_adaptive(evaluated, modifier)
+        if len(used) > 1:
+            if adaptive:
+                report("several materials on an adaptive subdivision: it is subdivided by its Levels instead")
+            return None
+        material = next(iter(used.values()))
+        arrays = mesh_arrays.read_mesh(cage, material.base.uv_map)
+        if modifier.subdivision_type != "CATMULL_CLARK":
+            return [self._add(evaluated, arrays, material)]
+        if not topology.can_be_subdivided(arrays):
+            report("its cage has points at one place, edges of three faces or faces turned against each other: "
+                   "it is subdivided by its Levels")
+            return None
+        subdivision.report_differences(modifier, report)
+        keys = subdivision.make_keys(modifier, adaptive, self._is_render, len(arrays.sizes), material.displacement is not None)
+        creases = mesh_arrays.read_creases(cage) if modifier.use_creases else None
+        return [self._add(evaluated, arrays, material, subdivision=keys,
+                          creases=creases if creases and len(creases[0]) else None)]
+
+    def _add_mesh(self, evaluated, mesh):
+        used = self._used(evaluated, mesh)
+        if len(used) == 1:
+            material = next(iter(used.values()))
+            return [self._add(evaluated, mesh_arrays.read_mesh(mesh, material.base.uv_map), material)]
+        return [self._add_part(evaluated, mesh, slot, material, max(used)) for slot, material in used.items()]
+
+    def _add_part(self, evaluated, mesh, slot, material, last):
+        """The faces of one material; displaced ones take their frames from the whole mesh, so that borders meet."""
+        whole = mesh_arrays.read_mesh(mesh, material.base.uv_map)
+        part, mask = mesh_arrays.select_faces(whole, np.minimum(whole.face_materials, last) == slot)
+        tangents = None
+        if material.is_tangent:
+            normals, tangents = mesh_arrays.read_frames(mesh, material.base.uv_map)
+            part.corner_normals = normals[mask]
+            tangents = tangents[mask] if tangents is not None else None
+            if tangents is None:
+                self._report.add("object", evaluated.original.name_full,
+                                 "borders of its displaced materials may open: it has faces of more than four corners")
+            else:
+                material = material._replace(displacement=self._make_framed(material.displacement))
+        return self._add(evaluated, part, material, tangents=tangents)
+
+    def _make_framed(self, displacement):
+        """The same displacement in the frames that come with a mesh."""
+        name = f"{displacement} in given frames"
+        if name not in self._scene.displacements:
+            framed = relief.Displacement(**self._scene.displacements[displacement])
+            framed["frame"] = "file"
+            self._scene.displacements[name] = framed
+        return name
+
+    def _add(self, evaluated, arrays, material, **keys):
+        """Adds a mesh to the scene."""
+        name = self._make_name(evaluated, material)
+        uvs = uv_indices = None
+        if arrays.uvs is not None:
+            uvs, uv_indices = mesh_arrays.index_equal(arrays.corners, self._place_uvs(arrays.uvs, material.base))
+        elif material.displacement is not None:
+            self._report.add("object", evaluated.original.name_full, "it has no uv map: it is not displaced")
+        normals, normal_indices = mesh_arrays.index_equal(arrays.corners, arrays.corner_normals)
+        self._scene.meshes[name] = relief.Mesh(
+            arrays.positions, (arrays.sizes, arrays.corners), uvs=uvs, uv_indices=uv_indices, normals=normals,
+            normal_indices=normal_indices, **{key: value for key, value in keys.items() if value is not None})
+        displacement = material.displacement if uvs is not None else None
+        return MeshPart(name, material.material, displacement, material.is_world_height)
+
+    @staticmethod
+    def _place_uvs(uvs, base):
+        if base == Place(base.uv_map):
+            return uvs
+        return (uvs * np.array(base.scale, np.float32) + np.array(base.offset, np.float32)).astype(np.float32)
+
+    def _make_name(self, evaluated, material):
+        stem = f"{evaluated.data.name} of {material.material}" if evaluated.data else material.material
+        name, number = stem, 1
+        while name in self._scene.meshes:
+            number += 1
+            name = f"{stem} {number}"
+        return name

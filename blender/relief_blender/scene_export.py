@@ -1,0 +1,99 @@
+"""A depsgraph of Blender as a relief.Scene: objects and instances, materials, lights, world. Not the camera."""
+import numpy as np
+import relief
+
+from . import axes
+from .lights_export import export_light
+from .material_export import MaterialExport
+from .mesh_export import MeshExport
+from .world_export import export_world
+
+MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SILENT_TYPES = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"}
+
+
+class SceneExport:
+    """`scene` is the relief.Scene, filled by run()."""
+
+    def __init__(self, depsgraph, report):
+        self.scene = relief.Scene()
+        self._depsgraph, self._report = depsgraph, report
+        materials = MaterialExport(self.scene, report)
+        self._meshes = MeshExport(self.scene, materials, depsgraph, report)
+        self._has_catchers = depsgraph.scene.render.film_transparent
+
+    def run(self):
+        lights = []
+        for instance in self._depsgraph.object_instances:
+            if not instance.show_self:
+                continue
+            if instance.object.type in MESH_TYPES:
+                self._add_object(instance)
+            elif instance.object.type == "LIGHT":
+                self._add_light(instance, lights)
+            elif instance.object.type not in SILENT_TYPES:
+                name = instance.object.original.name_full
+                self._report.add("object", name, f"{instance.object.type.lower()} objects are not taken over")
+        self.scene.lights = lights
+        self.scene.environment = export_world(self._depsgraph.scene.world, self._report)
+        self._report_render()
+        return self.scene
+
+    def _report_render(self):
+        render = self._depsgraph.scene.render
+        if render.use_motion_blur:
+            self._report.add("scene", "", "motion blur is left out")
+        if render.use_freestyle:
+            self._report.add("scene", "", "Freestyle is left out")
+
+    def _add_light(self, instance, lights):
+        known = {entry["name"] for entry in self.scene.objects}
+        lights.append(export_light(instance.object, instance.matrix_world, self._report, known))
+
+    def _is_shown(self, evaluated):
+        """Whether the camera sees an object; what it would be to other rays is named where it differs."""
+        name = evaluated.original.name_full
+        if evaluated.is_holdout:
+            self._report.add("object", name, "holdout is left out: it is seen")
+        if not evaluated.visible_camera:
+            self._report.add("object", name, "the camera does not see it: it is left out, its shadows and reflections too")
+            return False
+        flags = ("visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+        if not all(getattr(evaluated, flag) for flag in flags):
+            self._report.add("object", name, "ray visibility is left out: all rays see it")
+        for system in evaluated.particle_systems:
+            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+                self._report.add("object", name, "hair is not taken over")
+        return True
+
+    def _add_object(self, instance):
+        evaluated = instance.object
+        if not self._is_shown(evaluated):
+            return
+        is_made_by_nodes = instance.is_instance and instance.parent.original == evaluated.original
+        matrix = axes.convert_matrix(instance.matrix_world)
+        if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
+            self._report.add("object", evaluated.original.name_full, "it has no volume by its scale: it is left out")
+            return
+        for part in self._meshes.export(evaluated, is_made_by_nodes):
+            entry = {"name": evaluated.original.name_full, "mesh": part.mesh, "material": part.material,
+                     "transform": {"matrix": matrix.reshape(-1).tolist()}}
+            if part.displacement is not None:
+                entry["displacement"] = self._scale_displacement(part, matrix, evaluated)
+            if evaluated.is_shadow_catcher and self._has_catchers:
+                entry["shadow_catcher"] = True
+            self.scene.objects.append(entry)
+
+    def _scale_displacement(self, part, matrix, evaluated):
+        """Heights in the world's unit, on an object that is scaled: a displacement of its own for each scale."""
+        scales = axes.find_axis_scale(matrix)
+        if not part.is_world_height or np.allclose(scales, 1, atol=1e-4):
+            return part.displacement
+        if np.ptp(scales) > 1e-3 * scales.max():
+            self._report.add("object", evaluated.original.name_full, "heights in world space take the mean of its scale")
+        name = f"{part.displacement} by {float(np.mean(scales)):.6g}"
+        if name not in self.scene.displacements:
+            scaled = relief.Displacement(**self.scene.displacements[part.displacement])
+            scaled["scale"] = scaled["scale"] / float(np.mean(scales))
+            self.scene.displacements[name] = scaled
+        return name

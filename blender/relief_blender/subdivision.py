@@ -1,0 +1,64 @@
+"""A subdivision surface modifier as Relief's `subdivision`: its cage, and the keys."""
+from contextlib import contextmanager
+
+ADAPTIVE_FACES = 1 << 20  # about how many quads an adaptively subdivided surface without a map gets
+
+
+def find_modifier(evaluated, is_render):
+    """The last enabled modifier if it is a Catmull-Clark or adaptive subdivision surface, else None."""
+    if evaluated.type != "MESH":
+        return None
+    shown = [m for m in evaluated.modifiers if (m.show_render if is_render else m.show_viewport)]
+    if not shown or shown[-1].type != "SUBSURF":
+        return None
+    modifier = shown[-1]
+    if modifier.subdivision_type == "CATMULL_CLARK" or is_adaptive(evaluated, modifier):
+        return modifier
+    return None
+
+
+def is_adaptive(evaluated, modifier):
+    """Cycles' adaptive subdivision: of the modifier from Blender 5.0 on, before of the object."""
+    if hasattr(modifier, "use_adaptive_subdivision"):
+        return modifier.use_adaptive_subdivision
+    cycles = getattr(evaluated.original, "cycles", None)
+    return bool(cycles and getattr(cycles, "use_adaptive_subdivision", False))
+
+
+@contextmanager
+def cage_of(evaluated, modifier, depsgraph):
+    """The mesh below the modifier, all others applied."""
+    shown = modifier.show_render, modifier.show_viewport
+    modifier.show_render = modifier.show_viewport = False
+    try:
+        yield evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    finally:
+        evaluated.to_mesh_clear()
+        modifier.show_render, modifier.show_viewport = shown
+
+
+def choose_level(levels, adaptive, face_count, is_displaced):
+    """`level` of Relief. A displaced surface gets its detail from the picture; its patches need few levels."""
+    most = 3 if is_displaced else 6
+    level = most if adaptive else min(max(levels, 1), most if is_displaced else 8)
+    while level > 1 and adaptive and face_count * 4 ** level > ADAPTIVE_FACES:
+        level -= 1
+    return level
+
+
+def make_keys(modifier, adaptive, is_render, face_count, is_displaced):
+    """The key `subdivision` of a mesh."""
+    levels = modifier.render_levels if is_render else modifier.levels
+    return {"scheme": "catmark", "level": choose_level(levels, adaptive, face_count, is_displaced),
+            "uv": "linear" if modifier.uv_smooth == "NONE" else "smooth",
+            "boundary": "edge-only" if modifier.boundary_smooth == "ALL" else "edge-and-corner",
+            "creases": bool(modifier.use_creases)}
+
+
+def report_differences(modifier, report):
+    """What of the modifier's settings Relief does otherwise."""
+    if modifier.uv_smooth in {"PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE", "SMOOTH_ALL"}:
+        name = modifier.bl_rna.properties["uv_smooth"].enum_items[modifier.uv_smooth].name
+        report(f'UV Smooth "{name}" of the subdivision is Keep Corners, Junctions')
+    if not modifier.use_limit_surface:
+        report("the subdivision surface is its limit surface")

@@ -1,0 +1,128 @@
+"""The life of the add-on: registering, cancelling, faults, the viewport's renders."""
+from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
+import time
+import types
+
+import bpy
+import numpy as np
+import relief_blender
+from mathutils import Matrix
+from relief_blender import statistics
+from relief_blender.engine import ReliefEngine
+from relief_blender.viewport import Viewport
+
+import relief
+
+
+class Engine(BlenderTest):
+    def test_it_registers_and_unregisters_cleanly(self):
+        relief_blender.unregister()
+        self.assertFalse(hasattr(bpy.types.Scene, "relief"))
+        self.assertFalse(any("RELIEF" in getattr(p, "COMPAT_ENGINES", ()) for p in bpy.types.Panel.__subclasses__()))
+        with self.assertRaises(TypeError):
+            bpy.context.scene.render.engine = "RELIEF"
+        relief_blender.register()
+        bpy.context.scene.render.engine = "RELIEF"
+        self.assertGreater(bpy.context.scene.relief.samples, 0)
+
+    def test_statistics_and_report_are_kept_for_the_panel(self):
+        make_material(make_grid(3), Subsurface_Weight=0.5)
+        self.render("RELIEF")
+        found, lines = statistics.find(bpy.context.scene.name)
+        self.assertEqual(len(lines), 1)
+        labels = dict(statistics.describe(found))
+        self.assertEqual((labels["Instances"], labels["Triangles"]), ("1", "18"), labels)
+        self.assertNotIn("0.0 MiB", labels["Peak of the process"])
+        self.assertTrue(labels["Device"])
+
+    def test_a_scene_without_a_camera_is_a_fault_and_no_crash(self):
+        scene = bpy.context.scene
+        scene.camera, scene.render.engine = None, "RELIEF"
+        with self.assertRaises(RuntimeError):
+            bpy.ops.render.render()
+
+    def test_a_fault_of_the_renderer_is_shown(self):
+        make_grid(2)
+        scene = bpy.context.scene
+        scene.render.engine = "RELIEF"
+        scene.render.filepath = str(self.folder / "fault.exr")
+        original, relief.render = relief.render, self.fail_to_render
+        try:
+            bpy.ops.render.render(write_still=True)
+        finally:
+            relief.render = original
+        self.assertIn("no such device", statistics.find(scene.name)[1][0])
+
+    @staticmethod
+    def fail_to_render(*arguments, **keywords):
+        raise relief.Error("no such device")
+
+    def test_breaking_a_render_ends_it_soon(self):
+        make_grid(2)
+        scene = bpy.context.scene
+        scene.render.engine, scene.relief.samples = "RELIEF", 1 << 20
+        original, ReliefEngine._is_stopped = ReliefEngine._is_stopped, lambda engine: True
+        start = time.monotonic()
+        try:
+            bpy.ops.render.render()
+        finally:
+            ReliefEngine._is_stopped = original
+        self.assertLess(time.monotonic() - start, 10)
+
+
+class View(BlenderTest):
+    """The viewport's logic, with a region and a screen that are made up."""
+
+    def setUp(self):
+        super().setUp()
+        self.grid = make_grid(2)
+        make_material(self.grid)
+        bpy.context.scene.relief.viewport_samples = 4
+        self.drawn = []
+        self.engine = types.SimpleNamespace(tag_redraw=lambda: None, report=lambda kind, text: self.fail(text))
+        self.viewport = Viewport(self.engine, lambda scene, array, width, height: self.drawn.append(array))
+        self.addCleanup(self.viewport.stop)
+        self.depsgraph = bpy.context.evaluated_depsgraph_get()
+
+    def make_context(self, turn=0.0):
+        camera = self.camera.evaluated_get(self.depsgraph)
+        projection = camera.calc_matrix_camera(self.depsgraph, x=80, y=60)
+        view = (camera.matrix_world @ Matrix.Rotation(turn, 4, "Z")).inverted()
+        region_data = types.SimpleNamespace(window_matrix=projection, view_matrix=view, view_perspective="PERSP")
+        return types.SimpleNamespace(region=types.SimpleNamespace(width=80, height=60), region_data=region_data)
+
+    def draw_until_done(self, context):
+        self.drawn.clear()
+        limit = time.monotonic() + 60
+        while time.monotonic() < limit:
+            self.viewport.draw(context, self.depsgraph)
+            if self.viewport._job is None and not self.viewport._factors:
+                break
+            time.sleep(0.02)
+        return self.drawn[-1]
+
+    def test_a_coarse_picture_comes_before_the_fine_one(self):
+        self.viewport.update(self.make_context(), self.depsgraph)
+        fine = self.draw_until_done(self.make_context())
+        self.assertEqual(fine.shape, (60, 80, 4))
+        self.assertEqual(self.drawn[0].shape, (15, 20, 4))
+        self.assertGreater(fine[..., 3].mean(), 0.05)
+
+    def test_turning_the_view_begins_anew_without_a_new_scene(self):
+        self.viewport.update(self.make_context(), self.depsgraph)
+        first = self.draw_until_done(self.make_context())
+        scene = self.viewport._scene
+        second = self.draw_until_done(self.make_context(0.7))
+        self.assertGreater(np.abs(first - second).mean(), 0.01)
+        self.assertIs(self.viewport._scene, scene)
+
+    def test_the_viewport_shows_what_the_render_shows(self):
+        self.viewport.update(self.make_context(), self.depsgraph)
+        viewed = self.draw_until_done(self.make_context())[..., 3] > 0.5
+        render = bpy.context.scene.render
+        render.resolution_x, render.resolution_y = 80, 60
+        self.assertLess(np.mean(viewed != self.render("RELIEF").mask), 0.01)
+
+
+if __name__ == "__main__":
+    main()
