@@ -265,9 +265,10 @@ class Materials(UsdTest):
     def test_open_pbr_keeps_its_names(self):
         look = self.load_look("ND_open_pbr_surface_surfaceshader", "mtlx", base_color=(0.5, 0.25, 1.0), fuzz_weight=0.5,
                               fuzz_color=(0.25, 0.5, 1.0), specular_roughness=0.125, coat_weight=0.75, emission_luminance=4.0,
-                              emission_color=(0.5, 0.25, 0.0), subsurface_weight=0.5)
+                              emission_color=(0.5, 0.25, 0.0), subsurface_weight=0.5, specular_roughness_anisotropy=0.75)
         self.assertEqual(look, {"base_color": [0.5, 0.25, 1], "fuzz_weight": 0.5, "fuzz_color": [0.25, 0.5, 1], "fuzz_roughness": 0.5,
-                                "specular_roughness": 0.125, "coat_weight": 0.75, "coat_roughness": 0, "emission": [2, 1, 0]})
+                                "specular_roughness": 0.125, "specular_roughness_anisotropy": 0.75, "coat_weight": 0.75,
+                                "coat_roughness": 0, "emission": [2, 1, 0]})
         self.assertTrue(self.reported("/look", "subsurface_weight is not taken over"))
 
     def test_the_standard_surface_by_its_other_names(self):

@@ -11,7 +11,7 @@ import relief
 from .context import Context
 from .displacements import read_displacement
 from .material_keys import KeySetter
-from .openpbr import read_open_pbr, read_standard_surface
+from .openpbr import ANISOTROPY, read_open_pbr, read_standard_surface
 from .preview_surface import read_preview_surface
 from .shading import Network
 
@@ -26,7 +26,11 @@ class ReadMaterial:
     uvs: str | None           # the uv set of its textures
     displacement: dict | None # keys of the scene file
     emits: bool
-    needs_uvs: bool           # it has a normal map
+    needs_uvs: bool           # it has a normal map or is anisotropic
+
+
+def needs_uvs(keys: dict) -> bool:
+    return "geometry_normal" in keys or any(keys.get(name) for name in ANISOTROPY)
 
 
 class MaterialReader:
@@ -78,7 +82,7 @@ class MaterialReader:
         uvs = setter.uvs[0] if setter.uvs else None
         if displacement is not None:
             uvs = displacement.pop("uvs", None) or uvs
-        return ReadMaterial(name, uvs, displacement, setter.emits(), "geometry_normal" in setter.keys)
+        return ReadMaterial(name, uvs, displacement, setter.emits(), needs_uvs(setter.keys))
 
     def find_surface(self, material: UsdShade.Material):
         """MaterialX's surface before the one for all renderers."""

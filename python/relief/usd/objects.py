@@ -115,7 +115,7 @@ class ObjectReader:
             displaced = None
         material = part.material
         if material is not None and material.needs_uvs and not has_uvs:
-            self.context.report.add(item.prim, "has no uvs: its material, which has a normal map, is left out")
+            self.context.report.add(item.prim, "has no uvs: its material, which needs them, is left out")
             material = None
         keys["mesh"] = mesh_name
         if displaced is not None:

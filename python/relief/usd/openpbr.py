@@ -13,9 +13,9 @@ NUMBERS = {"base_weight": 1.0, "base_diffuse_roughness": 0.0, "base_metalness": 
            "fuzz_weight": 0.0, "fuzz_roughness": 0.5, "transmission_weight": 0.0}
 COLORS = {"base_color": 0.8, "specular_color": 1.0, "coat_color": 1.0, "fuzz_color": 1.0, "transmission_color": 1.0}
 PLAIN = {"specular_ior": 1.5, "coat_ior": 1.6}
+ANISOTROPY = ("specular_roughness_anisotropy", "coat_roughness_anisotropy")
 # Inputs of no effect at their values here, that Relief does not have.
-MISSING = {"subsurface_weight": 0.0, "specular_roughness_anisotropy": 0.0, "coat_roughness_anisotropy": 0.0,
-           "thin_film_weight": 0.0, "transmission_dispersion_scale": 0.0}
+MISSING = {"subsurface_weight": 0.0, "thin_film_weight": 0.0, "transmission_dispersion_scale": 0.0}
 # Names of the standard surface for those of OpenPBR; values where they differ by default.
 STANDARD = {"base_weight": ("base", 1.0), "base_diffuse_roughness": ("diffuse_roughness", 0.0),
             "base_metalness": ("metalness", 0.0), "specular_weight": ("specular", 1.0),
@@ -36,6 +36,8 @@ def read_open_pbr(network: Network, shader: UsdShade.Shader, setter: KeySetter) 
         setter.color(name, network.read(shader, name, default))
     for name, default in PLAIN.items():
         setter.plain_number(name, network.read(shader, name, default), 1, 100)
+    for name in ANISOTROPY:
+        setter.plain_number(name, network.read(shader, name, 0.0))
     read_inside(network, shader, setter, "geometry_thin_walled")
     luminance = network.read(shader, "emission_luminance", 0.0)
     setter.emission(luminance, network.read(shader, "emission_color", 1.0))
@@ -116,7 +118,7 @@ def drop_defaults(setter: KeySetter) -> None:
                 del keys[name]
     if keys.get("coat_weight") is None:
         keys.pop("coat_darkening", None)
-    defaults = {"base_weight": 1.0, "base_diffuse_roughness": 0.0, "base_metalness": 0.0, "specular_weight": 1.0,
+    defaults = {**{name: 0.0 for name in ANISOTROPY}, "base_weight": 1.0, "base_diffuse_roughness": 0.0, "base_metalness": 0.0, "specular_weight": 1.0,
                 "specular_ior": 1.5, "specular_color": [1.0, 1.0, 1.0], "coat_color": [1.0, 1.0, 1.0],
                 "fuzz_color": [1.0, 1.0, 1.0], "coat_ior": 1.6, "coat_darkening": 1.0, "transmission_depth": 0.0,
                 "transmission_color": [1.0, 1.0, 1.0]}

@@ -8,7 +8,8 @@ ALIASES = {"roughness": "specular_roughness", "metallic": "base_metalness", "ior
            "opacity_texture": "geometry_opacity", "normal_texture": "geometry_normal"}
 NUMBERS = ("base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight", "specular_roughness", "specular_ior",
            "coat_weight", "coat_roughness", "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_roughness",
-           "transmission_weight", "transmission_depth", "geometry_opacity", "emission_luminance")
+           "transmission_weight", "transmission_depth", "geometry_opacity", "emission_luminance", "specular_roughness_anisotropy",
+           "coat_roughness_anisotropy")
 COLORS = ("base_color", "specular_color", "coat_color", "fuzz_color", "transmission_color", "emission_color")
 # Where Relief's default is not OpenPBR's, and what the surface for previews takes.
 DEFAULTS = {"specular_roughness": 0.5, "base_color": [0.8, 0.8, 0.8]}
@@ -70,6 +71,8 @@ class MaterialWriter:
             self.write_normal(path, surface, preview, value)
             return
         if key not in NUMBERS and key not in COLORS:
+            if key != "light_group":
+                self.writer.report.add(path, f"{key} is not written")
             return
         is_color = key in COLORS
         kind = Sdf.ValueTypeNames.Color3f if is_color else Sdf.ValueTypeNames.Float
