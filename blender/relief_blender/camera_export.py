@@ -1,4 +1,4 @@
-"""Blender's camera as Relief's, with the window of the picture that it looks through."""
+"""Blender's camera as Relief's, with the window of the picture that is rendered."""
 import math
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ FAR = 1000  # how many times its height an orthographic view is looked at from
 
 
 class View(NamedTuple):
-    """A camera and the whole picture that `crop` is a window of: x0, y0, x1, y1 from the top left."""
+    """A camera and the picture that `crop` is a window of: x0, y0, x1, y1 from the top left."""
     camera: object
     size: tuple
     crop: tuple
@@ -29,31 +29,11 @@ def find_basis(matrix_world):
     return matrix[:3, 3], right, up, -back
 
 
-def place_window(projection, width, height):
-    """(size of the whole picture, left, top, remaining shift in pixels (x right, y down)).
-
-    A shifted lens is a window beside the middle of a larger picture, to half a pixel; a turn of the camera by what
-    remains does the rest."""
+def find_shift(projection, width, height):
+    """The middle of the picture from the view axis, to the right and up, in heights of the picture."""
     is_orthographic = projection[3][3] == 1
-    across, upwards = (projection[i][3] if is_orthographic else -projection[i][2] for i in range(2))
-    centre_x, centre_y = width / 2 * (1 + across), height / 2 * (1 - upwards)  # of the axis, from the top left
-    whole, starts, rests = [], [], []
-    for length, centre in ((width, centre_x), (height, centre_y)):
-        nearest = round(centre * 2) / 2
-        half = max(nearest, length - nearest)
-        whole.append(int(round(2 * half)))
-        starts.append(int(round(half - nearest)))
-        rests.append(centre - nearest)
-    return whole, starts, rests
-
-
-def turn(right, up, forward, x, y):
-    """The basis turned so that its middle looks at x right, y up of it at distance 1."""
-    new = forward + x * right + y * up
-    new /= np.linalg.norm(new)
-    side = np.cross(new, up)
-    side /= np.linalg.norm(side)
-    return side, np.cross(side, new), new
+    across, upwards = (-projection[i][3] if is_orthographic else projection[i][2] for i in range(2))
+    return [across * width / (2 * height), upwards / 2]
 
 
 def find_focus(camera, origin, forward):
@@ -80,16 +60,11 @@ def make_view(frame, projection, basis, report):
         offset = FAR * 2 * tangent
         origin = origin - forward * offset
         tangent = tangent / offset
-    whole, starts, rests = place_window(projection, width, height)
-    pixel = 2 * tangent / height
-    if rests != [0, 0]:
-        right, up, forward = turn(right, up, forward, -rests[0] * pixel, rests[1] * pixel)
-    tangent *= whole[1] / height
-    x0, y0, x1, y1 = border or (0, 0, width, height)
-    crop = (starts[0] + x0, starts[1] + y0, starts[0] + x1, starts[1] + y1)
     camera = relief.Camera(from_=origin.tolist(), to=(origin + forward).tolist(), up=up.tolist(),
-                           fov_degrees=math.degrees(2 * math.atan(tangent)), focus_distance=1.0)
-    return View(camera, tuple(whole), crop, forward, right, up, tangent, offset)
+                           fov_degrees=math.degrees(2 * math.atan(tangent)), focus_distance=1.0,
+                           shift=find_shift(projection, width, height))
+    crop = border or (0, 0, width, height)
+    return View(camera, (width, height), crop, forward, right, up, tangent, offset)
 
 
 def add_depth_of_field(view, camera, basis, report):

@@ -73,8 +73,9 @@ def make_ways(view):
     """(cosines to the view axis, of shape (height, width)) of the middles of a View's pixels."""
     x0, y0, x1, y1 = view.crop
     width, height = view.size
-    x = ((np.arange(x0, x1) + 0.5) / height * 2 - width / height) * view.tangent
-    y = (1 - (np.arange(y0, y1) + 0.5) / height * 2) * view.tangent
+    right, up = view.camera["shift"]
+    x = ((np.arange(x0, x1) + 0.5) / height * 2 - width / height + 2 * right) * view.tangent
+    y = (1 - (np.arange(y0, y1) + 0.5) / height * 2 + 2 * up) * view.tangent
     return 1 / np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
 
 

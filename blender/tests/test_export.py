@@ -4,7 +4,7 @@ from support import (BlenderTest, displace, main, make_grid, make_hook, make_ima
 import bpy
 import numpy as np
 from relief_blender import images, topology, world_export
-from relief_blender.camera_export import place_window
+from relief_blender.camera_export import find_shift
 from relief_blender.material_export import MaterialExport
 from relief_blender.mesh_arrays import MeshArrays, index_equal
 from relief_blender.report import Report
@@ -247,15 +247,15 @@ class Meshes(BlenderTest):
 
 
 class Cameras(BlenderTest):
-    def test_a_window_of_a_shifted_lens_is_whole_pixels(self):
-        for shift in (0, 0.1, 0.3337, -0.21):
+    def test_a_shifted_lens_looks_past_the_axis(self):
+        for offset in (0, 0.1, 0.3337, -0.21):
             projection = np.diag([2.0, 3.0, -1.0, 0.0])
-            projection[0][2], projection[1][2] = shift, -shift / 2
-            size, starts, rests = place_window(projection, 200, 151)
-            for axis, (length, centre) in enumerate(((200, 100 * (1 - shift)), (151, 75.5 * (1 - shift / 2)))):
-                self.assertLessEqual(abs(rests[axis]), 0.25)
-                self.assertAlmostEqual(size[axis] / 2 - starts[axis] + rests[axis], centre, places=4)
-                self.assertTrue(0 <= starts[axis] and starts[axis] + length <= size[axis])
+            projection[0][2], projection[1][2] = offset, -offset / 2
+            right, up = find_shift(projection, 200, 151)
+            # Of a point on the axis, in pixels from the middle.
+            axis = projection @ np.array([0, 0, -1, 1])
+            self.assertAlmostEqual(-right * 151, axis[0] * 100, places=4)
+            self.assertAlmostEqual(-up * 151, axis[1] * 75.5, places=4)
 
     def test_rotations_are_those_of_blender(self):
         from mathutils import Euler
