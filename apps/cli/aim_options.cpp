@@ -10,6 +10,7 @@
 
 #include "common/values.h"
 #include "relief/io.h"
+#include "relief/shot.h"
 
 namespace relief::cli {
 
@@ -214,9 +215,7 @@ void add_picture_entries(const AimArguments& arguments, const std::filesystem::p
 }
 
 std::filesystem::path name_turn(const std::filesystem::path& output, int index) {
-    std::filesystem::path name = output;
-    return name.replace_filename(
-        fmt::format("{}.{:04}{}", output.stem().string(), index + 1, output.extension().string()));
+    return name_frame(output, index + 1);
 }
 
 } // namespace relief::cli

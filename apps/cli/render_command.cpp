@@ -138,10 +138,15 @@ int render_shot(const RenderOptions& options, double start) {
     refuse_picture(options);
     Shot shot = with_scene_hint(options, [&] { return Shot(options.input, make_mesh_reader()); });
     const std::vector<int>& frames = options.frames.empty() ? shot.frames() : options.frames;
-    const int first = frames.empty() ? 1 : frames.front();
-    const bool is_series = !options.frames.empty() || frames.size() > 1;
-    if (!is_series || options.pixel)
-        return render_scene(options, with_scene_hint(options, [&] { return shot.load(first); }), start);
+    if (frames.empty() && options.skips_existing)
+        throw Error(ErrorKind::usage, {"the scene file names no frames", "--skip-existing", "--frames 1-24"});
+    if (frames.empty() || options.pixel || (frames.size() == 1 && !options.skips_existing)) {
+        RenderOptions one = options;
+        if (!frames.empty() && options.checkpoint.resumed.empty())
+            one.output = name_frame(options.output, frames.front());
+        const int frame = frames.empty() ? 1 : frames.front();
+        return render_scene(one, with_scene_hint(options, [&] { return shot.load(frame); }), start);
+    }
     check_series(options);
     const auto load = [&](int frame) {
         Scene scene = with_scene_hint(options, [&] { return shot.load(frame); });

@@ -261,10 +261,10 @@ void check_aim(const RenderOptions& o) {
 }
 
 void check_frames(const RenderOptions& o) {
-    if (!o.frames.empty() && is_mesh_file(o.input))
+    if ((!o.frames.empty() || o.skips_existing) && is_mesh_file(o.input))
         throw Error(ErrorKind::usage, {"frames are those of a scene file", "--frames",
                                        "--turntable N turns the camera about a mesh"});
-    if (!o.frames.empty()) check_series(o);
+    if (o.frames.size() > 1 || o.skips_existing) check_series(o);
     if (o.skips_existing && get_lower_extension(o.output) != ".exr")
         throw Error(ErrorKind::usage,
                     {"only .exr files say what they show", "--skip-existing", "-o FILE.####.exr"});
@@ -291,8 +291,9 @@ void check_series(const RenderOptions& o) {
         return;
     throw Error(
         ErrorKind::usage,
-        {"frames are several pictures", "--frames",
-         "leave out --edits, --pixel, --stats, --turntable, --save-scene, --checkpoint and --resume"});
+        {"several frames are several pictures", "--frames, or render.frames of the scene file",
+         "--frames with one frame, or leave out --edits, --pixel, --stats, --turntable, --save-scene, "
+         "--checkpoint and --resume"});
 }
 
 void add_render_options(CLI::App& verb, RenderOptions& o) {

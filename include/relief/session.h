@@ -19,6 +19,9 @@ struct MapEdit {
     Texture texels;           ///< raw values in the map's encoding
 };
 
+/// What comes between pictures. `views`: cameras; pictures cost less then, but an edit costs a whole one.
+enum class SessionUse { edits, views };
+
 /// Cost of an edit.
 struct EditReport {
     uint64_t patches = 0; ///< patches that were updated, of all surfaces with that map
@@ -35,7 +38,7 @@ struct EditReport {
 class Session {
   public:
     /// Copies the maps of the scene. Throws as render(), and Error{usage} for SurfaceMode::tessellated.
-    Session(Scene scene, const RenderSettings& settings);
+    Session(Scene scene, const RenderSettings& settings, SessionUse use = SessionUse::edits);
     ~Session();
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
@@ -52,8 +55,13 @@ class Session {
     /// The next picture is of another view of the scene, all of it traced anew. The CPU engine's default
     /// traversal keeps its trees; others are made anew. `image` may differ from that of the session in all
     /// but its layers; `scene_hash` names what it shows as Scene::hash does, 0: made of the old one and the
-    /// camera. Throws as render(), and Error{usage} for other layers; nothing changes then.
+    /// camera. Throws as render(), and Error{usage} for other layers; nothing changes then, but that an
+    /// engine which failed is made anew by the next call. The picture is that of a fresh session bit for bit;
+    /// where is_far_away(), up to rounding.
     void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0);
+
+    /// Some object lies so far from the world's origin that places may be taken relative to the first camera.
+    bool is_far_away() const;
 
     /// Throws what edit() would throw; changes nothing.
     void check(const MapEdit& edit) const;

@@ -39,6 +39,10 @@ class Shot {
     /// Whether any value or file depends on the frame.
     bool is_animated() const;
 
+    /// The scene file and all files that it names at a frame; reads none of them. Throws Error{bad_input} for
+    /// one that is not there.
+    std::vector<std::filesystem::path> list_files(double frame) const;
+
     /// The scene at a frame, which may lie between two: files of its whole part, values in between. Textures
     /// of the last call are not read again. Throws as load_scene.
     Scene load(double frame);

@@ -72,7 +72,7 @@ class Picture:
         return self._image.metadata
 
     def save(self, file: Union[str, os.PathLike[str]], tonemap: str = "agx", exposure: Union[float, str] = 0) -> None:
-        """Writes .exr with all channels, .hdr, or .png with the display transform `tonemap` (agx, filmic, standard, raw) and
+        """Writes .exr with all channels, .hdr, or .png with the display transform `tonemap` (agx, aces, filmic, standard, raw) and
         `exposure` in stops, or "auto". The file is replaced atomically."""
         entries = dict(self._entries)
         if os.fspath(file).lower().endswith(".png"):

@@ -18,7 +18,10 @@ PictureCallback = Callable[[Picture], Any]
 
 
 def find_denoisers() -> list[str]:
-    """Libraries of Open Image Denoise 2 in installed packages, the newest first."""
+    """Libraries of Open Image Denoise 2: that of RELIEF_OIDN, else those in installed packages, the newest first."""
+    given = os.environ.get("RELIEF_OIDN")
+    if given:
+        return [given]
     found: list[str] = []
     for package in ("pyoidn", "oidn", "bpy"):
         spec = importlib.util.find_spec(package)
@@ -110,6 +113,9 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     return finish(answer, entries)
 
 
+VIEW_SETTINGS = {"size", "spp", "bounces", "seed", "noise", "time_limit", "clamp_indirect", "background", "crop", "first_sample"}
+
+
 class Session:
     """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
     what changed.
@@ -123,9 +129,13 @@ class Session:
         self._session = _relief.Session(parse_any(scene), keywords)
 
     def change_view(self, camera: Optional[Camera] = None, **settings: Any) -> None:
-        """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces,
-        noise, ... All of it is traced anew; trees stay where the levels of surfaces do. Layers stay those of the session."""
-        keywords = {**self._keywords, **{key: value for key, value in settings.items() if value is not None}}
+        """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces, seed,
+        noise, time_limit, clamp_indirect, background, crop, first_sample; None sets one back. All of it is traced anew; trees
+        stay where the levels of surfaces do."""
+        others = sorted(set(settings) - VIEW_SETTINGS)
+        if others:
+            raise TypeError(f"change_view() changes the camera and the image, not {', '.join(others)}: begin another Session")
+        keywords = {key: value for key, value in {**self._keywords, **settings}.items() if value is not None}
         parsed = None
         if camera is not None:
             scene = Scene()

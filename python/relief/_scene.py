@@ -31,7 +31,7 @@ class _Collector:
 
     def name_picture(self, value: Any, place: str) -> Optional[str]:
         """The name of an array or of tiles; None for anything else."""
-        name = f"memory:{place}"
+        name = f"memory:{len(self.textures)}"
         if isinstance(value, Mapping) and value and all(isinstance(key, (int, np.integer)) for key in value):
             for udim, tile in value.items():
                 if not 1001 <= int(udim) <= 9999:
@@ -44,6 +44,8 @@ class _Collector:
         return name
 
     def convert(self, value: Any, place: str, key: str = "") -> Any:
+        if key == "keys" and is_array(value):
+            value = to_numpy(value, place).tolist()
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"{place}: {value} is no number of a scene file")
         if isinstance(value, (str, bool, int, float)) or value is None:
@@ -67,7 +69,7 @@ class _Collector:
         keys = dict(value) if isinstance(value, Mapping) else {"file": value}
         mesh = keys.get("file")
         if isinstance(mesh, Mesh):
-            keys["file"] = f"memory:meshes.{name}"
+            keys["file"] = f"memory:mesh {len(self.meshes)}"
             self.meshes[keys["file"]] = mesh._collect()
             if mesh.subdivision is not None:
                 keys.setdefault("subdivision", mesh.subdivision)

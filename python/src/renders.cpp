@@ -1,6 +1,7 @@
 // Pictures of scenes, at once or one after the other while maps are painted.
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -67,7 +68,12 @@ nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const Ren
         RenderResult result = render(std::move(parsed.scene), settings, &observer);
         if (!denoiser || result.whole_samples == 0) return result;
         const auto start = std::chrono::steady_clock::now();
-        denoiser->denoise(result.image, [&] { return observer.is_cancelled(); });
+        try {
+            if (!denoiser->denoise(result.image, [&] { return observer.is_cancelled(); }))
+                result.is_complete = false;
+        } catch (const std::exception& error) { // the picture is there
+            result.statistics.warnings.push_back(std::string("the picture is not denoised: ") + error.what());
+        }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         result.statistics.denoise_s = time.count();
         result.statistics.total_s += time.count();

@@ -163,9 +163,16 @@ class SessionTest(unittest.TestCase):
         picture = session.render()
         self.assertEqual(picture.array.shape[:2], (40, 32))
         np.testing.assert_array_equal(picture.array, relief.render(scene, size=(32, 40), spp=2).array)
-        for bad in (dict(camera=relief.Camera(from_=(0, 0, 0), to=(0, 0, 0))), dict(size=(0, 5)), dict(layers=("depth",))):
+        for bad in (dict(camera=relief.Camera(from_=(0, 0, 0), to=(0, 0, 0))), dict(size=(0, 5))):
             with self.assertRaises(relief.Error):
                 session.change_view(**bad)
+        for other in (dict(layers=("depth",)), dict(level=1), dict(engine="vulkan"), dict(no_such_setting=1)):
+            with self.assertRaisesRegex(TypeError, "begin another Session"):
+                session.change_view(**other)
+        session.change_view(crop=(4, 4, 20, 20))
+        self.assertEqual(session.render().array.shape[:2], (16, 16))
+        session.change_view(crop=None)
+        self.assertEqual(session.render().array.shape[:2], (40, 32))
 
     def test_bad_edits_are_refused(self):
         session = relief.Session(scenes.make_scene(), spp=1)

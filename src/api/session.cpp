@@ -19,13 +19,15 @@ namespace relief {
 struct Session::Implementation {
     RenderSettings settings;
     std::vector<std::string> layers; ///< as the caller gave them
-    double prepare_s = 0;            ///< since the last picture
+    SessionUse use;
+    double prepare_s = 0; ///< since the last picture
     std::shared_ptr<const InstanceMattes> mattes;
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
 
-    Implementation(Scene scene, const RenderSettings& given) : layers(given.image.layers) {
+    Implementation(Scene scene, const RenderSettings& given, SessionUse session_use)
+        : layers(given.image.layers), use(session_use) {
         validate_settings(given);
         settings = complete_settings(given, has_shadow_catchers(scene));
         validate_method(settings, scene.camera);
@@ -41,11 +43,17 @@ struct Session::Implementation {
     void start_engine() {
         film.reset(), engine.reset(); // so that a device does not hold two
         engine = make_engine(editor->scene(), settings);
-        engine->expect_changes();
+        if (use == SessionUse::edits) engine->expect_changes();
+    }
+
+    /// One that could not be made, or was lost, is made again.
+    void need_engine() {
+        if (!engine) start_engine();
     }
 
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(RenderObserver* observer) {
+        need_engine();
         const PictureSpace space = make_picture_space(*editor->scene());
         RenderControl control(observer);
         if (film) {
@@ -70,6 +78,7 @@ struct Session::Implementation {
         validate_camera(camera);
         validate_method(changed, camera);
         changed = complete_settings(changed, editor->scene()->has_shadow_catchers);
+        need_engine();
         settings = changed;
         film.reset();
         if (!engine->change_view(editor->change_view(camera, settings, scene_hash), settings.image))
@@ -80,6 +89,7 @@ struct Session::Implementation {
     EditReport apply(const MapEdit& edit) {
         const Timer timer;
         const CheckedEdit checked = editor->check(edit);
+        need_engine();
         // If anything fails from here on, the next picture is rendered from scratch.
         std::unique_ptr<Film> kept = std::move(film);
         const bool was_enclosed = editor->scene()->may_enclose_camera;
@@ -98,8 +108,8 @@ struct Session::Implementation {
     }
 };
 
-Session::Session(Scene scene, const RenderSettings& settings)
-    : implementation_(std::make_unique<Implementation>(std::move(scene), settings)) {}
+Session::Session(Scene scene, const RenderSettings& settings, SessionUse use)
+    : implementation_(std::make_unique<Implementation>(std::move(scene), settings, use)) {}
 
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
@@ -136,6 +146,8 @@ void Session::change_view(const Camera& camera, const ImageSettings& image, uint
     with_threads(implementation_->settings.device.threads,
                  [&] { implementation_->change_view(camera, image, scene_hash); });
 }
+
+bool Session::is_far_away() const { return implementation_->editor->scene()->has_far_objects; }
 
 void Session::check(const MapEdit& edit) const {
     with_threads(implementation_->settings.device.threads, [&] { implementation_->editor->check(edit); });

@@ -58,11 +58,16 @@ struct Tracer::Implementation {
         return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
     }
 
-    /// Takes what the camera decides from the scene.
+    /// Takes what the camera and the sizes of objects decide from the scene.
     void follow_camera(const PreparedScene& scene) {
         const float pixel =
             float(2 * std::tan(scene.camera.fov_degrees * std::numbers::pi / 360) / scene.height);
         view.pixel_angle = pixel_error * pixel;
+        constexpr float kNarrow = 0.125f; // of the largest object's radius
+        view.narrow = 0;
+        for (const Instance& instance : scene.instances)
+            if (scene.surfaces[instance.surface].has_displacement)
+                view.narrow = std::max(view.narrow, kNarrow * instance.reach);
         find_most_tree_bytes();
     }
 

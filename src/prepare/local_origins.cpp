@@ -74,11 +74,13 @@ Point find_place(const Affine& world_from_object, const Vec3f& taken_off) {
                transform_vector(world_from_object, to_point(taken_off)));
 }
 
-/// Whether an object would cast its shadows on itself from places too coarse, and would not as seen from the
-/// camera.
+/// Whether an object would cast its shadows on itself from places too coarse.
+bool is_far_away(const Point& place, double reach) { return find_length(place) > kFarForShadows * reach; }
+
+/// Such an object, which would not as seen from the camera.
 bool is_better_seen_from(const Vec3f& camera, const Point& place, double reach) {
-    const double distance = find_length(place);
-    return distance > kFarForShadows * reach && 2 * find_length(subtract(place, to_point(camera))) < distance;
+    return is_far_away(place, reach) &&
+           2 * find_length(subtract(place, to_point(camera))) < find_length(place);
 }
 
 void move_world_to_camera(PreparedScene& scene) {
@@ -144,9 +146,9 @@ void place_instances(const Scene& scene, std::span<const Vec3f> taken_off, Scene
         places.push_back(find_place(object.world_from_object, taken_off[object.mesh]));
         const double reach = reaches[instance.surface];
         instance.reach = find_reach(prepared.surfaces[instance.surface], reach, object.world_from_object);
-        is_camera_better =
-            is_camera_better || is_better_seen_from(prepared.camera.from, places.back(),
-                                                    reach * bound_scale(object.world_from_object));
+        const double world_reach = reach * bound_scale(object.world_from_object);
+        prepared.has_far_objects |= is_far_away(places.back(), world_reach);
+        is_camera_better |= is_better_seen_from(prepared.camera.from, places.back(), world_reach);
     }
     if (origin == SceneOrigin::camera && is_camera_better) move_world_to_camera(prepared);
     for (size_t k = 0; k < places.size(); ++k) {

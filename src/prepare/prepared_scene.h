@@ -25,6 +25,7 @@ namespace relief {
 
 /// The way from the world into the space of an object.
 struct ObjectSpace {
+    bool has_far_objects = false; ///< so far from the world's origin that shadows would lose digits
     Vec3f origin{}; ///< what places are measured from first, world space: 0 but for objects that lie far away
     Affine from_origin; ///< of what is left then; its linear part is the inverse of world_from_object's
 

@@ -69,14 +69,48 @@ TEST_F(FramesTest, that_are_there_whole_are_kept) {
     EXPECT_NE(stamp("s.0003.exr"), torn);
     EXPECT_EQ(read_image(folder_ / "s.0003.exr").width, 24);
     // Of other samples, another size or scene it is another picture.
-    for (const std::vector<std::string>& other :
-         {std::vector<std::string>{"--spp", "3"}, {"--size", "12x8"}, {"--bounces", "0"}, {"--seed", "4"}}) {
+    for (const std::vector<std::string>& other : {std::vector<std::string>{"--spp", "3"},
+                                                  {"--size", "12x8"},
+                                                  {"--bounces", "0"},
+                                                  {"--seed", "4"},
+                                                  {"--layers", "depth"},
+                                                  {"--noise", "0.3"},
+                                                  {"--background", "transparent"},
+                                                  {"--background", "black"},
+                                                  {"--crop", "0,0,24,8"},
+                                                  {"--tile", "0/2"},
+                                                  {"--tile", "1/2"}}) {
         std::vector<std::string> command = {"render", "shot.json", "-o", "s.exr", "--skip-existing"};
         command.insert(command.end(), other.begin(), other.end());
         const auto before = stamp("s.0001.exr");
         ASSERT_EQ(run(command).exit_code, 0);
         EXPECT_NE(stamp("s.0001.exr"), before) << other[0];
     }
+}
+
+TEST_F(FramesTest, take_the_place_of_no_file_of_another_frame) {
+    std::filesystem::copy(folder_ / "bump.exr", folder_ / "env.0002.exr");
+    std::filesystem::copy(folder_ / "bump.exr", folder_ / "map.0002.exr");
+    const std::string before = read("env.0002.exr");
+    write("shot.json", R"({"render": {"width": 8, "height": 8, "spp": 1},
+      "camera": {"from": {"keys": [[1, [0, 0, 5]], [3, [2, 1, 4]]]}}, "environment": {"file": "env.0002.exr"},
+      "meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}]})");
+    const CommandResult result = run({"render", "shot.json", "-o", "env.####.exr", "--frames", "1-3"});
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_EQ(read("env.0002.exr"), before);
+    EXPECT_FALSE(exists("env.0001.exr")) << "before the first frame";
+}
+
+TEST_F(FramesTest, that_lack_a_file_are_told_before_the_first) {
+    std::filesystem::copy(folder_ / "bump.exr", folder_ / "wave.0001.exr");
+    write("shot.json", R"({"render": {"width": 8, "height": 8, "spp": 1, "frames": "1-2"},
+      "displacements": {"bump": {"file": "wave.####.exr", "type": "vector"}}, "environment": {"color": [1, 1, 1]},
+      "meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane", "displacement": "bump"}]})");
+    const CommandResult result = run({"render", "shot.json", "-o", "s.exr"});
+    EXPECT_EQ(result.exit_code, 3) << result.errors;
+    EXPECT_NE(result.errors.find("wave.0002.exr"), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("frame 2"), std::string::npos) << result.errors;
+    EXPECT_FALSE(exists("s.0001.exr"));
 }
 
 TEST_F(FramesTest, go_with_no_options_of_one_picture) {
@@ -93,6 +127,9 @@ TEST_F(FramesTest, go_with_no_options_of_one_picture) {
     expect_refused({"--frames", "3-1"});
     expect_refused({"--skip-existing", "-o", "no.png"});
     EXPECT_EQ(run({"render", "plane.obj", "--frames", "1-2", "-o", "m.exr"}).exit_code, 2);
+    EXPECT_EQ(run({"render", "plane.obj", "--skip-existing", "-o", "m.exr"}).exit_code, 2);
+    write("still.json", R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}]})");
+    EXPECT_EQ(run({"render", "still.json", "--skip-existing", "-o", "m.exr"}).exit_code, 2);
 }
 
 } // namespace

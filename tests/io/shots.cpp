@@ -48,6 +48,18 @@ TEST(KeyedValues, are_smooth_through_their_keys_and_overshoot_none) {
     for (double frame = 0; frame <= 16; frame += 0.25) EXPECT_LE(find_fov(keyed, frame), 40);
 }
 
+TEST(KeyedValues, stay_between_their_neighbours_at_any_steps) {
+    const char* keyed = R"({"keys": [[1, 0], [11, 0.01], [21, 1], [21.5, 1.001], [90, 2], [90.1, 40]],
+                            "interpolation": "smooth"})";
+    for (double frame = 1; frame < 90.1; frame += 0.05) {
+        const double value = find_fov(keyed, frame);
+        EXPECT_GE(value, 0) << frame;
+        if (frame >= 11) EXPECT_GE(value, 0.01) << frame;
+        if (frame <= 21) EXPECT_LE(value, 1) << frame;
+        if (frame <= 90) EXPECT_LE(value, 2) << frame;
+    }
+}
+
 Affine find_turn(const std::string& keyed, double frame) {
     const Json document =
         parse_json(R"({"objects": [{"transform": {"rotate_degrees": )" + keyed + "}}]}", "s.json");
@@ -111,7 +123,7 @@ TEST(KeyedValues, refuse_what_makes_no_curve) {
 TEST(FrameNumbers, are_lists_and_ranges) {
     EXPECT_EQ(parse_frames("3"), (std::vector<int>{3}));
     EXPECT_EQ(parse_frames("1-7x3,5,4-5"), (std::vector<int>{1, 4, 7, 5}));
-    for (const char* text : {"", "a", "1-", "5-1", "1-5x0", "1,,2", "-3", "1000001", "1 2"})
+    for (const char* text : {"", "a", "-0", "1-", "5-1", "1-5x0", "1,,2", "-3", "1000001", "1 2"})
         EXPECT_THROW(parse_frames(text), Error) << text;
 }
 
@@ -121,6 +133,7 @@ TEST(FrameNumbers, are_put_into_names) {
     EXPECT_EQ(name_frame("out.####/shot.exr", 7), "out.####/shot.0007.exr");
     EXPECT_EQ(name_frame("a#1.exr", 7), "a#1.0007.exr");
     EXPECT_EQ(fill_frame_number("wave.###.exr", 3.75), "wave.003.exr");
+    EXPECT_EQ(fill_frame_number("take.##/#wave.####.exr", 3), "take.03/#wave.0003.exr");
 }
 
 constexpr const char* kMovingScene = R"({"render": {"frames": "2-4", "spp": 3},

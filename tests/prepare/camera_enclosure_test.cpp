@@ -1,6 +1,8 @@
 // Cameras in displaced bodies, whose rays must not change surfaces on their way out.
 #include "prepare/camera_enclosure.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "math/affine.h"
@@ -74,6 +76,31 @@ TEST(CameraEnclosure, is_not_of_bodies_that_are_open_or_not_displaced) {
     mesh.position_indices.resize(mesh.position_indices.size() / 2);
     mesh.uv_indices.resize(mesh.uv_indices.size() / 2);
     EXPECT_FALSE(is_enclosed(open));
+}
+
+/// A hollow body: the inner wall is turned round.
+TEST(CameraEnclosure, is_of_both_walls_of_one_body) {
+    Scene scene = make_ball_scene();
+    Mesh& mesh = scene.meshes[0];
+    const auto count = uint32_t(mesh.positions.size());
+    for (uint32_t k = 0; k < count; ++k) mesh.positions.push_back(mesh.positions[k] * 1.5f);
+    const size_t corners = mesh.position_indices.size();
+    mesh.face_sizes.insert(mesh.face_sizes.end(), mesh.face_sizes.begin(), mesh.face_sizes.end());
+    for (size_t k = 0; k < corners; ++k) {
+        const size_t turned = k / 4 * 4 + 3 - k % 4;
+        mesh.position_indices.push_back(mesh.position_indices[k] + count);
+        mesh.uv_indices.push_back(mesh.uv_indices[k]);
+        if (turned < k) {
+            std::swap(mesh.position_indices[k], mesh.position_indices[turned]);
+            std::swap(mesh.uv_indices[k], mesh.uv_indices[turned]);
+        }
+    }
+    scene.camera.from = {0.3f, 0.1f, 0};
+    EXPECT_TRUE(is_enclosed(scene)) << "in the hollow";
+    scene.camera.from = {1.25f, 0, 0};
+    EXPECT_TRUE(is_enclosed(scene)) << "between the walls";
+    scene.camera.from = {2, 0, 0};
+    EXPECT_FALSE(is_enclosed(scene));
 }
 
 TEST(CameraEnclosure, comes_with_an_edit) {

@@ -143,9 +143,13 @@ HWY_INLINE bool is_any_far_away(const BundleRays& rays, const Instance& placed) 
 /// Width of the box of the origins over the distance of neighbours; of a tile of 16 x 16 pixels some 16.
 inline constexpr float kWidestBeam = 64;
 
+/// The same of rays in any order: two. Rays through a lens are in any order there, but its width is narrow.
+inline constexpr float kWidthInOrder = 3;
+
 /// False where rays begin on things that lie far apart: a beam about them would hold all that is between.
-/// Also where most neighbours begin in one place. After pad_inactive_lanes.
-inline bool are_neighbours_close(const BundleRays& rays) {
+/// Also where most neighbours begin in one place, and where a beam that is not `narrow` has rays in any
+/// order. After pad_inactive_lanes.
+inline bool are_neighbours_close(const BundleRays& rays, float narrow) {
     constexpr uint32_t kSamples = 15; // of the distances of neighbours, for their median
     std::array<float, kSamples> distance;
     for (uint32_t n = 0; n < kSamples; ++n) {
@@ -153,9 +157,10 @@ inline bool are_neighbours_close(const BundleRays& rays) {
         distance[n] = length(rays.origin_of(k + 1) - rays.origin_of(k));
     }
     std::nth_element(distance.begin(), distance.begin() + kSamples / 2, distance.end());
-    const float widest = kWidestBeam * distance[kSamples / 2];
+    const float median = distance[kSamples / 2];
     const Vec3f extent = rays.origins.extent();
-    return extent.x <= widest && extent.y <= widest && extent.z <= widest;
+    const float width = std::fmax(std::fmax(extent.x, extent.y), extent.z);
+    return width <= kWidestBeam * median && (width <= narrow || width >= kWidthInOrder * median);
 }
 
 } // namespace relief::HWY_NAMESPACE

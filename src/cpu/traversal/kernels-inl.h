@@ -86,7 +86,7 @@ size_t trace_front(const cpu::SceneView& scene, cpu::TraceContext& context, cons
     load_beam(rays, count, bundle);
     if (bundle.count < kLeastBundle) return 0;
     pad_inactive_lanes(bundle);
-    if (!are_neighbours_close(bundle)) return 0;
+    if (!are_neighbours_close(bundle, scene.narrow)) return 0;
     scene.cache->refresh(context);
     return trace_bundle<ParallelBeam>(scene, context, bundle, hits) ? bundle.count : 0;
 }

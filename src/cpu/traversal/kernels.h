@@ -23,6 +23,7 @@ struct SceneView {
     PatchTreeCache* cache = nullptr;
     LeafKind leaf = LeafKind::exact;
     LodRule lod = LodRule::field;
+    float narrow = 0; ///< width of a beam of rays in any order that is narrow beside the displaced objects
     float pixel_angle = 0; ///< size of `pixel_error` pixels at distance 1; LodRule::ray only
     uint32_t visibility_mask = kVisibleToAll; ///< of the rays; an only instance has it tested beforehand
 

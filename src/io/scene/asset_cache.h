@@ -45,6 +45,8 @@ class AssetCache {
 
     /// Textures of another cache are not read again.
     void reuse(AssetCache& other) { earlier_ = std::move(other.textures_); }
+    /// Those of it that were not asked for are let go.
+    void forget_earlier() { earlier_.clear(); }
     /// Moves a mesh in memory out of the assets; nullopt for a file. Throws Error{bad_input} the second time.
     std::optional<Mesh> take_mesh(const std::string& file);
 

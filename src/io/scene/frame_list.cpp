@@ -25,6 +25,7 @@ constexpr int kDigits = 4; ///< of a frame's number, at least
 /// Takes a number in [0, kMaxFrame] from the front.
 std::optional<int> take_number(std::string_view& text) {
     int number = 0;
+    if (text.starts_with('-')) return std::nullopt;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || number < 0 || number > kMaxFrame) return std::nullopt;
     text.remove_prefix(size_t(end - text.data()));

@@ -81,7 +81,8 @@ Track read_track(const Json& value, const JsonNode& node) {
     if (nodes.empty()) node.get("keys").fail("there is no key", "[[frame, value], ...]");
     for (size_t k = 0; k < nodes.size(); ++k) {
         if (!keys[k].is_array() || keys[k].size() != 2) nodes[k].fail("a key is [frame, value]");
-        const double frame = double(nodes[k].elements()[0].as_float(-kMostFrames, kMostFrames));
+        nodes[k].elements()[0].as_float(-kMostFrames, kMostFrames); // checked as a number
+        const double frame = keys[k][0].get<double>();
         if (k > 0 && !(frame > track.frames.back()))
             nodes[k].fail(fmt::format("frame {} does not come after frame {}", frame, track.frames.back()),
                           "keys stand in the order of their frames");
@@ -99,12 +100,16 @@ Track read_track(const Json& value, const JsonNode& node) {
 }
 
 /// Slope at a key of a smooth curve: that of the line between its neighbours (Catmull and Rom 1974), 0 at the
-/// ends and where the value turns back.
+/// ends and where the value turns back, and never so steep that the curve would leave the values beside it
+/// (Fritsch and Carlson 1980).
 double find_slope(const Track& track, const std::vector<double>& values, size_t k) {
     if (k == 0 || k + 1 == track.count()) return 0;
-    const double before = values[k] - values[k - 1], after = values[k + 1] - values[k];
+    const double before = (values[k] - values[k - 1]) / (track.frames[k] - track.frames[k - 1]);
+    const double after = (values[k + 1] - values[k]) / (track.frames[k + 1] - track.frames[k]);
     if (before * after <= 0) return 0;
-    return (values[k + 1] - values[k - 1]) / (track.frames[k + 1] - track.frames[k - 1]);
+    const double mean = (values[k + 1] - values[k - 1]) / (track.frames[k + 1] - track.frames[k - 1]);
+    const double most = 3 * std::min(std::fabs(before), std::fabs(after));
+    return std::copysign(std::min(std::fabs(mean), most), mean);
 }
 
 /// Of one number over all keys; `frame` lies between two.
@@ -262,11 +267,30 @@ Json evaluate_frame(const Json& document, double frame, const std::string& file)
 }
 
 std::string fill_frame_number(const std::string& name, double frame) {
-    const size_t first = name.find("##");
-    if (first == std::string::npos) return name;
-    const size_t last = std::min(name.find_first_not_of('#', first), name.size());
-    return fmt::format("{}{:0{}}{}", name.substr(0, first), int64_t(std::floor(frame)), last - first,
-                       name.substr(last));
+    std::string result;
+    for (size_t k = 0; k < name.size();) {
+        const size_t end = std::min(name.find_first_not_of('#', k), name.size());
+        if (end - k >= 2) {
+            result += fmt::format("{:0{}}", int64_t(std::floor(frame)), end - k);
+            k = end;
+        } else {
+            result += name[k++];
+        }
+    }
+    return result;
+}
+
+std::vector<std::string> list_file_names(const Json& document) {
+    std::vector<std::string> names;
+    const auto visit = [&](const auto& self, const Json& value, std::string_view key) -> void {
+        if (value.is_string() && names_file(key)) names.push_back(value.get<std::string>());
+        if (value.is_object())
+            for (const auto& [name, member] : value.items()) self(self, member, name);
+        if (value.is_array())
+            for (const Json& element : value) self(self, element, key);
+    };
+    visit(visit, document, "");
+    return names;
 }
 
 } // namespace relief

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/scene/json_node.h"
 
@@ -17,8 +18,11 @@ bool is_animated(const Json& document);
 /// included, and else the shortest way (Shoemake 1985). Throws Error{bad_input} with `file` and place.
 Json evaluate_frame(const Json& document, double frame, const std::string& file);
 
-/// `####` in a name becomes the whole part of `frame` with at least as many digits; a name without two `#` in
-/// a row stays as it is.
+/// Names of files in the document, as they stand.
+std::vector<std::string> list_file_names(const Json& document);
+
+/// `####` in a name becomes the whole part of `frame` with at least as many digits, everywhere; single `#`
+/// stay.
 std::string fill_frame_number(const std::string& name, double frame);
 
 } // namespace relief

@@ -1,12 +1,16 @@
 #include "relief/shot.h"
 
+#include <cmath>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "io/file_system.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/keyed_values.h"
 #include "io/scene/scene_reader.h"
 #include "io/scene/scene_sections.h"
+#include "io/scene/tile_names.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -39,12 +43,43 @@ const std::vector<int>& Shot::frames() const { return implementation_->frames; }
 
 bool Shot::is_animated() const { return relief::is_animated(implementation_->document); }
 
+namespace {
+
+void check_frame(double frame) {
+    if (std::fabs(frame) <= kMaxFrame) return;
+    throw Error(ErrorKind::usage, {fmt::format("{} is no frame", frame), "Shot",
+                                   fmt::format("from -{} to {}", kMaxFrame, kMaxFrame)});
+}
+
+} // namespace
+
+std::vector<std::filesystem::path> Shot::list_files(double frame) const {
+    const Implementation& self = *implementation_;
+    check_frame(frame);
+    const AssetCache assets(self.file.parent_path());
+    std::vector<std::filesystem::path> files = {self.file};
+    for (const std::string& name : list_file_names(evaluate_frame(self.document, frame, self.name))) {
+        const std::filesystem::path file = assets.resolve(name);
+        std::error_code code;
+        if (has_tile_token(name))
+            for (auto& [udim, tile] : find_tiles(file)) files.push_back(std::move(tile));
+        else if (std::filesystem::exists(file, code))
+            files.push_back(file);
+        else
+            throw Error(ErrorKind::bad_input, {"there is no such file", file.string(),
+                                               fmt::format("{} names it at frame {}", self.name, frame)});
+    }
+    return files;
+}
+
 Scene Shot::load(double frame) {
     Implementation& self = *implementation_;
+    check_frame(frame);
     Json document = evaluate_frame(self.document, frame, self.name);
     AssetCache assets(self.file.parent_path());
     if (self.assets) assets.reuse(*self.assets);
     ReadScene read = read_scene(document, assets, self.name, self.reader);
+    assets.forget_earlier();
     self.assets.emplace(std::move(assets));
     self.loaded = std::move(document), self.content_hash = read.content_hash;
     return std::move(read.scene);
@@ -53,11 +88,13 @@ Scene Shot::load(double frame) {
 std::optional<Shot::View> Shot::find_view(double frame) const {
     const Implementation& self = *implementation_;
     if (!self.assets) return std::nullopt; // nothing is loaded
+    check_frame(frame);
     Json document = evaluate_frame(self.document, frame, self.name);
     View view;
     if (const auto camera = document.find("camera"); camera != document.end()) {
-        view.camera = read_camera(JsonNode(*camera, "camera", self.name));
-        validate_camera(view.camera);
+        const JsonNode node(*camera, "camera", self.name);
+        view.camera = read_camera(node);
+        node.with_place([&] { validate_camera(view.camera); });
     }
     view.scene_hash = hash_scene(document, self.content_hash);
     Json loaded = self.loaded;
