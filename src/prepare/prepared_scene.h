@@ -25,7 +25,6 @@ namespace relief {
 
 /// The way from the world into the space of an object.
 struct ObjectSpace {
-    bool has_far_objects = false; ///< so far from the world's origin that shadows would lose digits
     Vec3f origin{}; ///< what places are measured from first, world space: 0 but for objects that lie far away
     Affine from_origin; ///< of what is left then; its linear part is the inverse of world_from_object's
 
@@ -85,6 +84,7 @@ struct PreparedScene {
     Camera camera;
     uint32_t mesh_count = 0;   ///< of the scene
     int width = 0, height = 0; ///< of the whole picture
+    bool has_far_objects = false; ///< so far from the world's origin that shadows would lose digits
     Vec3f origin{}; ///< world space is measured from here, camera and lights included: SceneOrigin::camera
     LevelFieldConfig levels;         ///< what the instances' levels were computed with
     bool may_enclose_camera = false; ///< see prepare/camera_enclosure.h

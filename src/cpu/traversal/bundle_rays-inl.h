@@ -144,7 +144,7 @@ HWY_INLINE bool is_any_far_away(const BundleRays& rays, const Instance& placed) 
 inline constexpr float kWidestBeam = 64;
 
 /// The same of rays in any order: two. Rays through a lens are in any order there, but its width is narrow.
-inline constexpr float kWidthInOrder = 3;
+inline constexpr float kWidthInOrder = 4;
 
 /// False where rays begin on things that lie far apart: a beam about them would hold all that is between.
 /// Also where most neighbours begin in one place, and where a beam that is not `narrow` has rays in any
