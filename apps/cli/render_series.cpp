@@ -15,7 +15,7 @@
 #include "common/exit_codes.h"
 #include "common/report.h"
 #include "edit_stream.h"
-#include "inputs.h"
+#include "common/inputs.h"
 #include "interrupt.h"
 #include "relief/aim.h"
 #include "relief/error.h"
