@@ -40,6 +40,7 @@ class Document {
     bool has_changes() const { return has_changes_; }
     /// Something was painted since the maps were saved last.
     bool has_painted() const { return !unsaved_.empty(); }
+    bool has_painted(const std::string& map) const { return unsaved_.contains(map); }
 
     void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
     void change_material(size_t index, const std::function<void(Material&)>& change);

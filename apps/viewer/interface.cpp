@@ -174,12 +174,14 @@ void Interface::run(ScriptRunner* script, double start) {
         if (script) script->step(now);
         for (const InputEvent& event : window_.take_events()) {
             workbench_.handle(event);
-            frames = kRestFrames;
+            // A camera that is dragged is drawn when a picture comes: drawing takes time from rendering.
+            if (event.kind != InputEvent::Kind::move || !window_.is_dragging()) frames = kRestFrames;
         }
         if (workbench_.update(now)) frames = std::max(frames, 1);
         note_statistics(workbench_.render_state(), workbench_.picture().get(), state_);
         poll_display();
-        if (frames == 0 && !needs_texture_ && !ImGui::GetIO().WantCaptureMouse) continue;
+        const ImGuiIO& io = ImGui::GetIO();
+        if (frames == 0 && !needs_texture_ && !io.WantCaptureMouse && !io.WantTextInput) continue;
         draw();
         frames = std::max(frames - 1, 0);
     }

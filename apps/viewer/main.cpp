@@ -1,9 +1,11 @@
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -11,6 +13,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/interface.h"
+#include "viewer/serve.h"
 #include "viewer/viewer_options.h"
 
 namespace relief::viewer {
@@ -30,7 +33,9 @@ int run_viewer(const ViewerOptions& options, double start) {
     if (options.given.width) size.emplace(*options.given.width, *options.given.height);
     Window window(size ? size->first + Interface::kPanelWidth : kWindowWidth,
                   size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
-    Workbench workbench(options.settings, options.given, Window::wake);
+    // A script leaves no traces.
+    Workbench workbench(options.settings, options.given, Window::wake,
+                        options.script.empty() ? find_state_folder() : std::filesystem::path());
     Interface interface(window, workbench, size);
     if (!options.input.file.empty()) workbench.open(options.input);
     if (options.script.empty()) {
@@ -63,6 +68,6 @@ int main(int argument_count, char** arguments) {
         cli::refuse_extras(app, "relief view");
         cli::refuse_empty_names(app);
         viewer::complete_viewer_options(options);
-        return viewer::run_viewer(options, start);
+        return options.port ? viewer::serve(options) : viewer::run_viewer(options, start);
     });
 }

@@ -1,6 +1,7 @@
 // Panels of what a scene holds: displacement, camera, lights, materials, files.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -81,7 +82,16 @@ bool edit_convention(Displacement& map) {
 } // namespace
 
 void draw_file_panel(Workbench& workbench, PanelState& state) {
-    if (!workbench.document() || !ImGui::CollapsingHeader("File", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (!ImGui::CollapsingHeader("File", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (ImGui::BeginCombo("##recent", "open again ...")) {
+        for (const std::filesystem::path& file : workbench.list_recent())
+            if (ImGui::Selectable(file.string().c_str())) {
+                workbench.open({file, {}});
+                state.scene_file.clear();
+            }
+        ImGui::EndCombo();
+    }
+    if (!workbench.document()) return;
     const Document& document = *workbench.document();
     ImGui::TextUnformatted(document.input().file.filename().string().c_str());
     ImGui::SameLine();

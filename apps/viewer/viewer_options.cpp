@@ -41,6 +41,8 @@ void add_viewer_options(CLI::App& app, ViewerOptions& o) {
         });
     add("--script", "FILE", "do what its lines say and print times; docs/viewer.md lists them",
         [&o](const std::string& text) { o.script = text; });
+    add("--serve", "PORT", "no window: a page for browsers on this machine at 127.0.0.1; 0: any port",
+        [&o](const std::string& text) { o.port = int(cli::parse_integer("--serve", text, 0, 65535)); });
     cli::add_engine_options(app, o.engine, o.settings);
     cli::add_mesh_options(app, kMeshGroup, o.input.mesh, o.mesh_only);
     cli::add_map_options(app, o.input.mesh.map, {kMeshGroup, "--preset", "", &o.mesh_only});
@@ -63,6 +65,10 @@ void complete_viewer_options(ViewerOptions& o) {
     for (const std::filesystem::path& file : {o.input.file, o.script})
         if (!file.empty() && !std::filesystem::exists(file))
             throw Error(ErrorKind::bad_input, {"there is no such file", file.string(), ""});
+    if (o.port && (o.input.file.empty() || !o.script.empty()))
+        throw Error(ErrorKind::usage,
+                    {o.script.empty() ? "--serve needs a scene or a mesh" : "--script goes with a window",
+                     "--serve", "relief view SCENE --serve 0"});
     ImageSettings& image = o.settings.image;
     image.width = o.given.width.value_or(image.width), image.height = o.given.height.value_or(image.height);
     image.spp = o.given.spp.value_or(image.spp), image.bounces = o.given.bounces.value_or(image.bounces);

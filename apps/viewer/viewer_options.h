@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct ViewerOptions {
     RenderSettings settings;
     PictureDefaults given;
     std::filesystem::path script;
+    std::optional<int> port; ///< of a server for browsers, in place of a window
 };
 
 /// Adds the options; `options` must outlive parsing.

@@ -26,8 +26,8 @@ std::string& get_last_error() {
 [[noreturn]] void refuse_display() {
     throw Error(ErrorKind::device_missing,
                 {fmt::format("no window can be opened: {}", get_last_error()), "",
-                 "a display with OpenGL 3.3 is needed; over ssh use `ssh -X`, without a screen "
-                 "`xvfb-run relief view --script FILE`, or render pictures with `relief render`"});
+                 "a display with OpenGL 3.3 is needed; without one `relief view SCENE --serve 0` shows "
+                 "the scene in a browser, through a tunnel too, and `relief render` makes pictures"});
 }
 
 Modifiers make_modifiers(int bits) {

@@ -33,6 +33,9 @@ class Window {
     /// Events since the last call that panels do not want.
     std::vector<InputEvent> take_events();
 
+    /// A button is held that was pressed on the picture.
+    bool is_dragging() const { return is_dragging_; }
+
     /// Between these two, ImGui takes widgets.
     void begin_frame();
     void end_frame();

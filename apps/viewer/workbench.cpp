@@ -26,8 +26,8 @@ constexpr float kFlySpeed = 0.8f;
 } // namespace
 
 Workbench::Workbench(const RenderSettings& settings, const PictureDefaults& given,
-                     std::function<void()> on_news)
-    : settings_(settings), given_(given), on_news_(on_news), loop_(std::move(on_news)) {
+                     std::function<void()> on_news, const std::filesystem::path& state_folder)
+    : settings_(settings), given_(given), on_news_(on_news), state_(state_folder), loop_(std::move(on_news)) {
     settings_.image.layers.assign(std::begin(kViewerLayers), std::end(kViewerLayers));
 }
 
@@ -198,6 +198,7 @@ bool Workbench::update(double now) {
     const bool is_painted_on = painter_ && painter_->is_active();
     if (motion_ != Motion::still && !is_painted_on && now_ - last_motion_ > rest) set_motion(Motion::still);
     if (needs_request_) request();
+    if (document_ && !is_painted_on) state_.keep_painted(now_, *document_);
     return std::exchange(has_news_, false);
 }
 

@@ -21,6 +21,7 @@
 #include "viewer/painter.h"
 #include "viewer/picture_view.h"
 #include "viewer/render_loop.h"
+#include "viewer/user_state.h"
 
 namespace relief::viewer {
 
@@ -35,8 +36,9 @@ class Workbench {
   public:
     /// `settings`: of the pictures; their layers are those of the viewer. `given`: what of the picture a
     /// scene file must not change. `on_news` is called by other threads when update() has something to do.
+    /// `state_folder`: of what is kept between two runs; empty: nothing is.
     Workbench(const RenderSettings& settings, const PictureDefaults& given,
-              std::function<void()> on_news = {});
+              std::function<void()> on_news = {}, const std::filesystem::path& state_folder = {});
     ~Workbench();
 
     // Files. Errors become messages.
@@ -46,6 +48,7 @@ class Workbench {
     void drop(const std::filesystem::path& file);
     bool save(const std::filesystem::path& file);
     bool save_map(size_t displacement, const std::filesystem::path& file);
+    std::vector<std::filesystem::path> list_recent() const { return state_.read_recent(); }
     /// Beside the scene or mesh, with `-view` in its name.
     std::filesystem::path suggest_file(const char* extension) const;
     /// Writes the picture, with its layers where it is an .exr, once it has all samples.
@@ -171,6 +174,7 @@ class Workbench {
     bool wants_to_end_ = false, is_help_shown_ = false, has_news_ = true;
 
     FileWatch watch_;
+    UserState state_;
     std::future<Loaded> loading_;
     std::future<Reread> rereading_;
     std::future<std::string> explaining_;

@@ -67,6 +67,9 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
     if (!given_.seed) image.seed = picture.seed.value_or(0);
     if (!scene.warnings.empty()) message_ = scene.warnings.front();
+    if (const auto painted = state_.find_painted(loaded.input.file); !painted.empty())
+        message_ = fmt::format("painted in an earlier run and not saved: {}", painted.front().string());
+    state_.add_recent(loaded.input.file);
     explanation_.clear();
     explained_pixel_.reset();
     needs_snapshot_ = true;
@@ -178,6 +181,7 @@ bool Workbench::save(const std::filesystem::path& file) {
         document_->set_camera(camera_.get());
         const std::vector<std::filesystem::path> written = document_->save(file, settings_.image);
         for (const std::filesystem::path& path : written) watch_.accept(path);
+        state_.forget_painted(*document_);
         message_ = fmt::format("wrote {}", file.string());
         has_news_ = true;
     });

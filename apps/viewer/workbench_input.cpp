@@ -27,7 +27,7 @@ Vec2f Workbench::to_picture(float x, float y) const {
 
 void Workbench::handle(const InputEvent& event) {
     using Kind = InputEvent::Kind;
-    has_news_ = true;
+    has_news_ |= event.kind != Kind::move || tool_ == Tool::paint;
     modifiers_ = event.modifiers;
     switch (event.kind) {
     case Kind::press:

@@ -33,7 +33,10 @@ PACKAGES = {
     "OpenGL": ["libgl-dev"],
     "IMGUI_FOLDER": ["libimgui-dev"],
     "IMGUI_LIBRARY": ["libimgui-dev"],
-    "STB_LIBRARY": ["libimgui-dev"],
+    "STB_LIBRARY": ["libstb-dev"],
+    "STB_FOLDER": ["libstb-dev"],
+    "CIVETWEB_FOLDER": ["libcivetweb-dev"],
+    "CIVETWEB_LIBRARY": ["libcivetweb-dev"],
     # What the tests of an installed Relief look for.
     "relief": ["pkgconf"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.
