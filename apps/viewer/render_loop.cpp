@@ -23,7 +23,8 @@ double read_clock() {
 
 bool are_same(const Camera& a, const Camera& b) {
     return a.from == b.from && a.to == b.to && a.up == b.up && a.fov_degrees == b.fov_degrees &&
-           a.aperture_radius == b.aperture_radius && a.focus_distance == b.focus_distance;
+           a.aperture_radius == b.aperture_radius && a.focus_distance == b.focus_distance &&
+           a.shift == b.shift;
 }
 
 /// Of all that changes between pictures of a viewer.
