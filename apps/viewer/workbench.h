@@ -120,7 +120,7 @@ class Workbench {
         bool has_moved = false;
     };
 
-    void load(const SceneInput& input, bool keeps_camera);
+    void load(SceneInput input, bool keeps_camera);
     void adopt(Loaded loaded);
     void adopt(Reread reread);
     void watch_files();

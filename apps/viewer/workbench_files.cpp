@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/inputs.h"
+#include "common/mesh_reader.h"
 #include "common/values.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -31,7 +32,8 @@ bool is_environment(const std::filesystem::path& file) { return cli::get_lower_e
 
 void Workbench::open(const SceneInput& input) { load(input, false); }
 
-void Workbench::load(const SceneInput& input, bool keeps_camera) {
+void Workbench::load(SceneInput input, bool keeps_camera) {
+    if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
     message_ = fmt::format("loading {}", input.file.filename().string());
     has_news_ = true;
     loading_ = std::async(std::launch::async, [input, keeps_camera, on_news = on_news_] {

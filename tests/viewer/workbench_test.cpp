@@ -216,8 +216,8 @@ TEST_F(WorkbenchTest, keys_turn_frame_and_end) {
 
 TEST_F(WorkbenchTest, focus_brings_the_place_of_a_click_into_the_middle) {
     open_scene();
-    send(Kind::press, 36, 10, MouseButton::left, {.control = true});
-    send(Kind::release, 36, 10);
+    send(Kind::press, 34, 10, MouseButton::left, {.control = true});
+    send(Kind::release, 34, 10);
     EXPECT_GT(bench_->camera().get().to.x, 0.3f);
     EXPECT_GT(bench_->camera().get().to.y, 0.2f);
     EXPECT_NEAR(bench_->camera().distance(), 4, 0.3f);
