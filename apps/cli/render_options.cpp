@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -262,8 +263,10 @@ void check_aim(const RenderOptions& o) {
 
 void check_frames(const RenderOptions& o) {
     if ((!o.frames.empty() || o.skips_existing) && is_mesh_file(o.input))
-        throw Error(ErrorKind::usage, {"frames are those of a scene file", "--frames",
-                                       "--turntable N turns the camera about a mesh"});
+        throw Error(ErrorKind::usage,
+                    {"frames are those of a scene file", "--frames",
+                     fmt::format("--turntable {} turns the camera about a mesh",
+                                 o.frames.empty() ? "N" : std::to_string(o.frames.back()))});
     if (o.frames.size() > 1 || o.skips_existing) check_series(o);
     if (o.skips_existing && get_lower_extension(o.output) != ".exr")
         throw Error(ErrorKind::usage,

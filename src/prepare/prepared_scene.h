@@ -82,8 +82,8 @@ struct PreparedScene {
     std::optional<Environment> environment;
     LightGroups light_groups; ///< of layers that the picture has
     Camera camera;
-    uint32_t mesh_count = 0;   ///< of the scene
-    int width = 0, height = 0; ///< of the whole picture
+    uint32_t mesh_count = 0;      ///< of the scene
+    int width = 0, height = 0;    ///< of the whole picture
     bool has_far_objects = false; ///< so far from the world's origin that shadows would lose digits
     Vec3f origin{}; ///< world space is measured from here, camera and lights included: SceneOrigin::camera
     LevelFieldConfig levels;         ///< what the instances' levels were computed with
