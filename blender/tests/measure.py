@@ -13,7 +13,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def make_scene(arguments):
-    """A torus of 64 quads with a map of 2048 x 2048 that folds over, as a subdivision surface, and one lamp."""
+    """A torus of 64 quads with a map of 2048 x 2048 that folds over, as a subdivision surface, and one light."""
     import bpy
     import numpy as np
     import support

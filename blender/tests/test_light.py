@@ -92,9 +92,9 @@ class Lights(BlenderTest):
         self.assertLess(np.mean(ours.mask != theirs.mask), 0.02)
 
     def test_a_mesh_that_emits(self):
-        lamp = make_grid(1)
-        lamp.location, lamp.scale, lamp.rotation_euler = (0.5, 0.5, 2), (0.4, 0.4, 1), (math.pi, 0, 0)
-        make_material(lamp, Emission_Color=(1, 0.8, 0.6), Emission_Strength=20.0)
+        panel = make_grid(1)
+        panel.location, panel.scale, panel.rotation_euler = (0.5, 0.5, 2), (0.4, 0.4, 1), (math.pi, 0, 0)
+        make_material(panel, Emission_Color=(1, 0.8, 0.6), Emission_Strength=20.0)
         self.compare_brightness()
 
 

@@ -47,7 +47,7 @@ class _Collector:
         if key == "keys" and is_array(value):
             value = to_numpy(value, place).tolist()
         if isinstance(value, float) and not math.isfinite(value):
-            raise ValueError(f"{place}: {value} is no number of a scene file")
+            raise ValueError(f"{place}: {value} is not finite")
         if isinstance(value, (str, bool, int, float)) or value is None:
             return value
         name = self.name_picture(value, place)

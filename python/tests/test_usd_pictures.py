@@ -131,7 +131,7 @@ class RoundTrip(UsdTest):
         scene.add(plane, relief.Displacement(self.make_waves()[..., 2], type="height", midlevel=0.05), None,
                   {"translate": [-1.9, 0.1, -1], "rotate_degrees": [0, 30, 0]}, "hill")
         scene.add(plane, None, relief.Material(base_color=[0, 0, 0], emission=[3, 2, 1]),
-                  {"translate": [-1, 2, -2], "rotate_degrees": [110, 0, 0], "scale": 0.3}, "lamp")
+                  {"translate": [-1, 2, -2], "rotate_degrees": [110, 0, 0], "scale": 0.3}, "light")
         scene.lights = [relief.Light(type="sun", direction=[-1, -2, -1.5], strength=1.5, angle_degrees=2),
                         relief.Light(type="point", position=[1, 2, 1], radius=0.1, strength=2, color=[1, 0.5, 0.3]),
                         relief.Light(type="rectangle", position=[-2, 2, 1], direction=[1, -1, 0], width=1.5, height=0.5, strength=3,
@@ -145,7 +145,7 @@ class RoundTrip(UsdTest):
 
     def test_a_scene_of_every_part_looks_the_same(self):
         again = self.check(self.make_scene())
-        self.assertEqual([o["name"] for o in again.objects], ["waves", "cube", "hill", "lamp"])
+        self.assertEqual([o["name"] for o in again.objects], ["waves", "cube", "hill", "light"])
         self.assertEqual(len(again.meshes), 2)
         self.assertEqual(again.lights[2]["light_link_includes"], ["waves"])
         self.assertEqual(again.render["spp"], 4)
