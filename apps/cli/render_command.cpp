@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -133,27 +134,36 @@ int render_scene(const RenderOptions& options, Scene scene, double start) {
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 
-/// One picture of the first frame, or of all frames of the scene file or the command line.
+/// A picture of one frame, or of the file as it is where there is none. The shot is let go before it is
+/// rendered: it holds the text of the scene, and textures that a render would free.
+int render_frame(const RenderOptions& options, std::optional<Shot>& shot, std::optional<int> frame,
+                 double start) {
+    RenderOptions one = options;
+    if (frame && !options.pixel && options.checkpoint.resumed.empty())
+        one.output = name_frame(options.output, *frame);
+    Scene scene = with_scene_hint(options, [&] { return shot->load(frame.value_or(1)); });
+    shot.reset();
+    return render_scene(one, std::move(scene), start);
+}
+
+/// One picture, or those of all frames of the scene file or the command line.
 int render_shot(const RenderOptions& options, double start) {
     refuse_picture(options);
-    Shot shot = with_scene_hint(options, [&] { return Shot(options.input, make_mesh_reader()); });
-    const std::vector<int>& frames = options.frames.empty() ? shot.frames() : options.frames;
+    std::optional<Shot> shot;
+    with_scene_hint(options, [&] { shot.emplace(options.input, make_mesh_reader()); });
+    const std::vector<int> frames = options.frames.empty() ? shot->frames() : options.frames;
     if (frames.empty() && options.skips_existing)
         throw Error(ErrorKind::usage, {"the scene file names no frames", "--skip-existing", "--frames 1-24"});
-    if (frames.empty() || options.pixel || (frames.size() == 1 && !options.skips_existing)) {
-        RenderOptions one = options;
-        if (!frames.empty() && options.checkpoint.resumed.empty())
-            one.output = name_frame(options.output, frames.front());
-        const int frame = frames.empty() ? 1 : frames.front();
-        return render_scene(one, with_scene_hint(options, [&] { return shot.load(frame); }), start);
-    }
+    if (frames.empty()) return render_frame(options, shot, std::nullopt, start);
+    if (options.pixel || (frames.size() == 1 && !options.skips_existing))
+        return render_frame(options, shot, frames.front(), start);
     check_series(options);
     const auto load = [&](int frame) {
-        Scene scene = with_scene_hint(options, [&] { return shot.load(frame); });
+        Scene scene = with_scene_hint(options, [&] { return shot->load(frame); });
         const RenderSettings settings = prepare_picture(options, scene);
         return std::pair(std::move(scene), settings);
     };
-    return render_frames(options, shot, frames, load, {start, 0});
+    return render_frames(options, *shot, frames, load, {start, 0});
 }
 
 int render_input(const RenderOptions& options, double start) {
