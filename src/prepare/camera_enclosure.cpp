@@ -137,6 +137,7 @@ double find_winding(const Body& body, const Vec3f& place, float around) {
 } // namespace
 
 bool may_enclose_camera(const PreparedScene& scene) {
+    if (scene.levels.fixed_level >= 0) return false; // all rays see one surface
     std::map<uint32_t, Body> bodies;
     double winding = 0;
     for (const Instance& instance : scene.instances) {

@@ -6,10 +6,10 @@
 
 namespace relief {
 
-/// False only where the camera's whole aperture lies outside all closed displaced surfaces and outside the
-/// space between two walls of one. Winding numbers of the undisplaced surfaces decide (Jacobson, Kavan and
-/// Sorkine-Hornung 2013): they are those of the displaced ones wherever the camera lies outside the boxes of
-/// their patches; within one, it may be enclosed.
+/// Where levels are automatic, false only where the camera's whole aperture lies outside all closed displaced
+/// surfaces and outside the space between two walls of one. Winding numbers of the undisplaced surfaces
+/// decide (Jacobson, Kavan and Sorkine-Hornung 2013): they are those of the displaced ones wherever the
+/// camera lies outside the boxes of their patches; within one, it may be enclosed.
 bool may_enclose_camera(const PreparedScene& scene);
 
 } // namespace relief
