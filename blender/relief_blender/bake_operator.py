@@ -6,7 +6,7 @@ import numpy as np
 import relief
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from . import bake, mesh_arrays
+from . import bake, images, mesh_arrays
 
 SPACES = [("TANGENT", "Tangent", "Fits the base also where it bends"), ("OBJECT", "Object", "Along the axes of the object")]
 
@@ -43,17 +43,6 @@ def read_detailed(ob, base_ob, depsgraph):
     matrix = np.array(base_ob.matrix_world.inverted() @ ob.matrix_world)
     positions = (arrays.positions @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
     return relief.Mesh(positions, (arrays.sizes, arrays.corners))
-
-
-def make_image(name, texels):
-    height, width = texels.shape[:2]
-    image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :3] = texels
-    image.pixels.foreach_set(rgba[::-1].reshape(-1))
-    image.update()
-    image.pack()
-    return image
 
 
 def assign(ob, image, space):
@@ -120,7 +109,7 @@ class RELIEF_OT_bake_map(bpy.types.Operator):
         except (bake.BakeError, relief.Error) as fault:
             self.report({"ERROR"}, str(fault))
             return {"CANCELLED"}
-        image = make_image(f"{ob.name} displacement", texels)
+        image = images.make_image(f"{ob.name} displacement", texels)
         if self.use_result:
             assign(ob, image, self.space)
             if multires is not None and not others:

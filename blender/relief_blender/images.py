@@ -79,3 +79,15 @@ def read_tiles(image, report):
     if missing:
         report(f'tiles {" ".join(missing)} of image "{image.name}" are not on disk: save the image')
     return {number: texels for number, texels in tiles.items() if texels is not None}
+
+
+def make_image(name, texels, are_data=True):
+    """A packed float image of (height, width, 3) values, row 0 at the top."""
+    height, width = texels.shape[:2]
+    image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=are_data)
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., :3] = texels
+    image.pixels.foreach_set(rgba[::-1].reshape(-1))
+    image.update()
+    image.pack()
+    return image

@@ -13,6 +13,7 @@ sys.path.insert(0, str(ADDON))
 import relief_blender  # noqa: E402  (from the folder above)
 from exr import read_exr  # noqa: E402
 from relief_blender import statistics  # noqa: E402
+from relief_blender.images import make_image  # noqa: E402, F401  (for the tests)
 
 WIDTH, HEIGHT = 200, 150
 KEEP = pathlib.Path(sys.argv[sys.argv.index("--keep") + 1]).resolve() if "--keep" in sys.argv else None
@@ -185,18 +186,6 @@ def make_grid(count, place=lambda u, v: (2 * u - 1, 2 * v - 1, 0 * u), wrap=(Fal
             faces.append([(i % rows) * columns + j % columns for i, j in corners])
             uvs += [uv(j / count, i / count) for i, j in corners]
     return make_object(points, faces, uvs)
-
-
-def make_image(name, texels, is_data=True):
-    """A float image of (height, width, 3) values, row 0 at the top."""
-    height, width = texels.shape[:2]
-    image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=is_data)
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :3] = texels
-    image.pixels.foreach_set(rgba[::-1].reshape(-1))
-    image.update()
-    image.pack()
-    return image
 
 
 def make_material(ob=None, **inputs):

@@ -9,27 +9,14 @@
 #include "relief/samples.h"
 #include "relief/session.h"
 #include "support/bodies.h"
+#include "support/session_scenes.h"
 #include "surface/test_scenes.h"
 
 namespace relief {
 
 namespace {
 
-Scene make_torus_scene(DisplacementSpace space) {
-    Scene scene = test::make_body_scene(
-        test::make_torus(8, 16), test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), space));
-    scene.displacements[0].wrap = WrapMode::repeat;
-    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
-    scene.environment = Environment{};
-    return scene;
-}
-
-RenderSettings make_settings() {
-    RenderSettings settings;
-    settings.image.width = 96, settings.image.height = 72, settings.image.spp = 2, settings.image.bounces = 2;
-    settings.image.layers = {"depth", "N", "id"};
-    return settings;
-}
+using test::make_rough_torus, test::make_session_settings;
 
 MapEdit make_edit(uint32_t x, uint32_t y, uint32_t width, uint32_t height, float value) {
     MapEdit edit;
@@ -86,9 +73,9 @@ Image follow_edits(Scene& fresh, const RenderSettings& settings, std::initialize
 TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
     for (const DisplacementSpace space : {DisplacementSpace::tangent, DisplacementSpace::object})
         for (const int level : {4, kAutoLevel}) {
-            RenderSettings settings = make_settings();
+            RenderSettings settings = make_session_settings();
             settings.surface.level = level;
-            Scene fresh = make_torus_scene(space);
+            Scene fresh = make_rough_torus(space);
             follow_edits(fresh, settings,
                          {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f),
                           make_edit(0, 63, 40, 1, 0.2f), make_edit(30, 20, 20, 12, 0.0f)});
@@ -97,17 +84,18 @@ TEST(Session, edits_give_the_pictures_of_a_fresh_scene) {
 
 TEST(Session, follows_edits_of_what_lies_far_from_the_origin) {
     const Vec3f place{3e5f, -2e5f, 1e5f};
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     fresh.objects[0].world_from_object.translation = place;
     fresh.camera.from = fresh.camera.from + place, fresh.camera.to = fresh.camera.to + place;
-    follow_edits(fresh, make_settings(), {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f)});
+    follow_edits(fresh, make_session_settings(),
+                 {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.07f)});
 }
 
 TEST(Session, edits_reach_the_copies_of_a_filtered_map) {
     for (const bool has_autobump : {false, true}) {
-        Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+        Scene fresh = make_rough_torus(DisplacementSpace::tangent);
         fresh.displacements[0].filter = MapFilter::mip, fresh.displacements[0].autobump = has_autobump;
-        RenderSettings settings = make_settings();
+        RenderSettings settings = make_session_settings();
         settings.surface.pixel_error = 4;
         const Image before =
             follow_edits(fresh, settings, {make_edit(30, 20, 20, 12, 0.12f), make_edit(90, 0, 6, 64, -0.3f)});
@@ -120,7 +108,7 @@ TEST(Session, edits_reach_the_coefficients_of_a_smooth_map) {
     for (const bool is_dequantized : {false, true})
         for (const MapFilter filter : {MapFilter::cubic, MapFilter::bspline}) {
             Scene fresh =
-                make_torus_scene(is_dequantized ? DisplacementSpace::object : DisplacementSpace::tangent);
+                make_rough_torus(is_dequantized ? DisplacementSpace::object : DisplacementSpace::tangent);
             fresh.displacements[0].filter = filter;
             if (is_dequantized) {
                 auto stairs = std::make_shared<Texture>(*fresh.displacements[0].tiles[0].texture);
@@ -128,7 +116,7 @@ TEST(Session, edits_reach_the_coefficients_of_a_smooth_map) {
                 fresh.displacements[0].tiles[0].texture = stairs;
                 fresh.displacements[0].dequantize = true;
             }
-            const RenderSettings settings = make_settings();
+            const RenderSettings settings = make_session_settings();
             // The last one has the spline go far beyond its texels.
             const Image before = follow_edits(fresh, settings,
                                               {make_edit(30, 20, 20, 12, 0.12f),
@@ -140,7 +128,7 @@ TEST(Session, edits_reach_the_coefficients_of_a_smooth_map) {
 
 TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
     const auto expect_follows = [](const RenderSettings& settings) {
-        Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+        Scene fresh = make_rough_torus(DisplacementSpace::tangent);
         Session session(fresh, settings);
         session.render();
         const MapEdit edit = make_edit(10, 10, 50, 30, 0.1f);
@@ -148,30 +136,30 @@ TEST(Session, follows_edits_with_any_cache_walk_and_rule) {
         bake(fresh, edit);
         expect_same(session.render().image, render(fresh, settings).image);
     };
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_session_settings();
     settings.surface.cache_bytes = 0;
     expect_follows(settings);
     settings.surface.cache_bytes = 300000;
     expect_follows(settings);
     settings.experiment.traversal = TraversalKind::stack;
     expect_follows(settings);
-    settings = make_settings();
+    settings = make_session_settings();
     settings.surface.lod = LodRule::ray, settings.surface.leaf = LeafKind::box;
     expect_follows(settings);
-    settings = make_settings();
+    settings = make_session_settings();
     settings.surface.level = 7; // tiles and their directories
     expect_follows(settings);
 }
 
 TEST(Session, makes_only_the_patches_anew_that_read_the_rectangle) {
-    Session session(make_torus_scene(DisplacementSpace::tangent), make_settings());
+    Session session(make_rough_torus(DisplacementSpace::tangent), make_session_settings());
     // 8 x 16 patches of 6 x 8 texels: one texel in the middle of a patch, then the whole map.
     EXPECT_EQ(session.edit(make_edit(3, 4, 1, 1, 0.1f)).patches, 1u);
     EXPECT_EQ(session.edit(make_edit(0, 0, 96, 64, 0.1f)).patches, 128u);
 }
 
 TEST(Session, keeps_trees_that_an_edit_does_not_reach) {
-    Session session(make_torus_scene(DisplacementSpace::tangent), make_settings());
+    Session session(make_rough_torus(DisplacementSpace::tangent), make_session_settings());
     const uint64_t first = session.render().statistics.bottom_built;
     const uint64_t again = session.render().statistics.bottom_built - first;
     EXPECT_EQ(again, 0u);
@@ -186,9 +174,9 @@ uint64_t count_rays(const RenderResult& result) {
 }
 
 TEST(Session, traces_only_what_an_edit_may_have_reached) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_session_settings();
     settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     Session session(fresh, settings);
     const uint64_t all = count_rays(session.render());
     EXPECT_EQ(count_rays(session.render()), all);
@@ -264,9 +252,9 @@ TEST(Session, traces_what_an_edit_has_taken_away_from_far_off) {
 }
 
 TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     fresh.camera.aperture_radius = 0.05f, fresh.camera.focus_distance = 2.5f;
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_session_settings();
     settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
     settings.image.crop = {37, 11, 301, 203};
     for (const LodRule rule : {LodRule::field, LodRule::ray}) {
@@ -287,12 +275,12 @@ TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
 }
 
 TEST(Session, follows_a_map_that_is_two_tiles) {
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     Displacement& map = fresh.displacements[0];
     for (Vec2f& uv : fresh.meshes[0].uvs) uv.x *= 2;
     map.is_udim = true, map.wrap = WrapMode::clamp;
     map.tiles.push_back({1002, map.tiles[0].texture});
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_session_settings();
     settings.image.width = 320, settings.image.height = 240, settings.image.bounces = 0;
     Session session(fresh, settings);
     session.render();
@@ -306,8 +294,8 @@ TEST(Session, follows_a_map_that_is_two_tiles) {
 }
 
 TEST(Session, follows_edits_that_no_picture_shows_and_edits_that_leave_the_scene) {
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
-    Session session(fresh, make_settings());
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
+    Session session(fresh, make_session_settings());
     session.render();
     // The third reaches far beyond what the torus took up.
     for (const MapEdit& edit : {make_edit(10, 10, 6, 6, 0.06f), make_edit(40, 20, 6, 6, -0.06f),
@@ -315,11 +303,11 @@ TEST(Session, follows_edits_that_no_picture_shows_and_edits_that_leave_the_scene
         session.edit(edit);
         bake(fresh, edit);
     }
-    expect_same(session.render().image, render(fresh, make_settings()).image);
+    expect_same(session.render().image, render(fresh, make_session_settings()).image);
     const MapEdit far = make_edit(60, 30, 6, 6, 1.5f);
     session.edit(far);
     bake(fresh, far);
-    expect_same(session.render().image, render(fresh, make_settings()).image);
+    expect_same(session.render().image, render(fresh, make_session_settings()).image);
 }
 
 TEST(Session, goes_on_where_it_was_interrupted) {
@@ -329,8 +317,8 @@ TEST(Session, goes_on_where_it_was_interrupted) {
         void on_progress(const Progress&) override {}
         bool is_cancelled() const override { return ++looks > limit; }
     };
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
-    RenderSettings settings = make_settings();
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
+    RenderSettings settings = make_session_settings();
     settings.device.threads = 1;
     Session session(fresh, settings);
     for (const int limit : {1, 5, 20, 1000000}) {
@@ -350,7 +338,7 @@ TEST(Session, goes_on_where_it_was_interrupted) {
 }
 
 TEST(Session, edits_reach_the_gutter_between_islands) {
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     Mesh& mesh = fresh.meshes[0];
     for (Vec2f& uv : mesh.uvs) uv = {0.1f + 0.8f * uv.x, 0.1f + 0.8f * uv.y};
     auto map = std::make_shared<Texture>(*fresh.displacements[0].tiles[0].texture);
@@ -359,28 +347,28 @@ TEST(Session, edits_reach_the_gutter_between_islands) {
             if (x < 9 || x >= 86 || y < 6 || y >= 58)
                 for (uint32_t c = 0; c < 3; ++c) map->floats[4 * (y * 96 + x) + c] = 0;
     fresh.displacements[0].tiles[0].texture = map;
-    const Image dilated = render(fresh, make_settings()).image;
+    const Image dilated = render(fresh, make_session_settings()).image;
     fresh.displacements[0].dilate = false;
-    EXPECT_GT(count_differing(dilated, render(fresh, make_settings()).image), 20u);
+    EXPECT_GT(count_differing(dilated, render(fresh, make_session_settings()).image), 20u);
     fresh.displacements[0].dilate = true;
-    Session session(fresh, make_settings());
+    Session session(fresh, make_session_settings());
     expect_same(session.render().image, dilated);
     const MapEdit edit = make_edit(4, 4, 30, 20, 0.1f);
     session.edit(edit);
     bake(fresh, edit);
-    expect_same(session.render().image, render(fresh, make_settings()).image);
+    expect_same(session.render().image, render(fresh, make_session_settings()).image);
 }
 
 TEST(Session, leaves_the_scene_of_its_maker_alone) {
-    const Scene scene = make_torus_scene(DisplacementSpace::tangent);
+    const Scene scene = make_rough_torus(DisplacementSpace::tangent);
     const std::vector<float> before = scene.displacements[0].tiles[0].texture->floats;
-    Session session(scene, make_settings());
+    Session session(scene, make_session_settings());
     session.edit(make_edit(0, 0, 96, 64, 0.1f));
     EXPECT_EQ(scene.displacements[0].tiles[0].texture->floats, before);
 }
 
 TEST(Session, follows_a_surface_that_glows) {
-    Scene fresh = make_torus_scene(DisplacementSpace::tangent);
+    Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     fresh.environment.reset();
     Material glow;
     glow.emission = {3, 2, 1};
@@ -390,16 +378,16 @@ TEST(Session, follows_a_surface_that_glows) {
     Object ball;
     ball.mesh = 1, ball.world_from_object.translation = {0, 1.5f, 0};
     fresh.objects.push_back(ball);
-    Session session(fresh, make_settings());
+    Session session(fresh, make_session_settings());
     const MapEdit edit = make_edit(20, 10, 50, 40, 0.2f);
     session.edit(edit);
     bake(fresh, edit);
-    expect_same(session.render().image, render(fresh, make_settings()).image);
+    expect_same(session.render().image, render(fresh, make_session_settings()).image);
 }
 
 TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
-    const Scene scene = make_torus_scene(DisplacementSpace::tangent);
-    Session session(scene, make_settings());
+    const Scene scene = make_rough_torus(DisplacementSpace::tangent);
+    Session session(scene, make_session_settings());
     const auto expect_error = [](const auto& call, const std::string& reason) {
         try {
             call();
@@ -427,9 +415,9 @@ TEST(Session, refuses_what_it_cannot_do_and_changes_nothing) {
     edit.texels.floats.pop_back();
     expect_refused(edit, "holds no texels");
     EXPECT_NO_THROW(session.check(make_edit(0, 0, 4, 4, 0.1f)));
-    expect_same(session.render().image, render(scene, make_settings()).image);
+    expect_same(session.render().image, render(scene, make_session_settings()).image);
 
-    RenderSettings tessellated = make_settings();
+    RenderSettings tessellated = make_session_settings();
     tessellated.surface.mode = SurfaceMode::tessellated;
     EXPECT_THROW(Session(scene, tessellated), Error);
 }

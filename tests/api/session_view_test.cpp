@@ -5,27 +5,12 @@
 
 #include "relief/error.h"
 #include "relief/session.h"
-#include "support/bodies.h"
+#include "support/session_scenes.h"
 
 namespace relief {
 namespace {
 
-Scene make_rough_torus() {
-    Scene scene = test::make_body_scene(
-        test::make_torus(8, 16),
-        test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), DisplacementSpace::tangent));
-    scene.displacements[0].wrap = WrapMode::repeat, scene.displacements[0].name = "bumps";
-    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
-    scene.environment = Environment{};
-    return scene;
-}
-
-RenderSettings make_view_settings() {
-    RenderSettings settings;
-    settings.image.width = 96, settings.image.height = 72, settings.image.spp = 2, settings.image.bounces = 2;
-    settings.image.layers = {"depth", "N", "id"};
-    return settings;
-}
+using test::make_rough_torus, test::make_session_settings;
 
 /// From afar, near enough for finer levels, and from within the body.
 std::vector<Camera> list_cameras(const Scene& scene) {
@@ -51,8 +36,8 @@ void expect_follows_views(Scene scene, RenderSettings settings) {
 }
 
 TEST(SessionView, gives_the_pictures_of_a_fresh_scene) {
-    expect_follows_views(make_rough_torus(), make_view_settings());
-    RenderSettings settings = make_view_settings();
+    expect_follows_views(make_rough_torus(), make_session_settings());
+    RenderSettings settings = make_session_settings();
     settings.surface.level = 3;
     expect_follows_views(make_rough_torus(), settings);
     settings.surface.level = kAutoLevel, settings.surface.lod = LodRule::ray;
@@ -62,13 +47,13 @@ TEST(SessionView, gives_the_pictures_of_a_fresh_scene) {
 TEST(SessionView, chooses_other_copies_of_filtered_maps) {
     Scene scene = make_rough_torus();
     scene.displacements[0].filter = MapFilter::mip;
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     settings.surface.pixel_error = 4;
     expect_follows_views(scene, settings);
 }
 
 TEST(SessionView, needs_no_engine_that_keeps_its_trees) {
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     settings.experiment.structure = StructureKind::kdtree;
     expect_follows_views(make_rough_torus(), settings);
 }
@@ -78,11 +63,11 @@ TEST(SessionView, follows_far_from_the_origin) {
     Scene scene = make_rough_torus();
     scene.objects[0].world_from_object.translation = place;
     scene.camera.from = scene.camera.from + place, scene.camera.to = scene.camera.to + place;
-    Session session(scene, make_view_settings());
+    Session session(scene, make_session_settings());
     session.render();
     Camera camera = scene.camera;
     camera.from = camera.from + Vec3f{1, 0, 0};
-    session.change_view(camera, make_view_settings().image);
+    session.change_view(camera, make_session_settings().image);
     const Image image = session.render().image;
     const size_t alpha = *image.find_channel("A");
     float covered = 0;
@@ -94,7 +79,7 @@ TEST(SessionView, follows_far_from_the_origin) {
 /// Boxes of vertices, which many rays bring, hold the levels of their view alone.
 TEST(SessionView, forgets_boxes_of_coarser_levels) {
     Scene scene = make_rough_torus();
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     scene.camera.from = {9, 8, 7};
     settings.image.spp = 64, settings.image.bounces = 0;
     Session session(scene, settings);
@@ -107,13 +92,13 @@ TEST(SessionView, forgets_boxes_of_coarser_levels) {
 
 TEST(SessionView, takes_another_size_and_edits_after_it) {
     Scene scene = make_rough_torus();
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     Session session(scene, settings);
     settings.image.width = 40, settings.image.height = 56, settings.image.bounces = 1;
     session.change_view(scene.camera, settings.image);
     EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
     MapEdit edit;
-    edit.displacement = "bumps", edit.x = 30, edit.y = 20;
+    edit.displacement = "map", edit.x = 30, edit.y = 20;
     edit.texels.width = 20, edit.texels.height = 12, edit.texels.channel_count = 3;
     edit.texels.floats.assign(size_t(4) * 20 * 12, 0.1f);
     session.edit(edit);
@@ -126,7 +111,7 @@ TEST(SessionView, takes_another_size_and_edits_after_it) {
 
 TEST(SessionView, refuses_what_a_render_refuses_and_stays_as_it_was) {
     const Scene scene = make_rough_torus();
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     Session session(scene, settings);
     const Image before = session.render().image;
     Camera camera = scene.camera;
@@ -143,7 +128,7 @@ TEST(SessionView, refuses_what_a_render_refuses_and_stays_as_it_was) {
 TEST(SessionView, names_the_picture_by_its_camera) {
     Scene scene = make_rough_torus();
     scene.hash = 5;
-    RenderSettings settings = make_view_settings();
+    RenderSettings settings = make_session_settings();
     Session session(scene, settings);
     const std::string before = session.render().image.metadata.at("relief:scene_hash");
     scene.camera.from.x += 1;

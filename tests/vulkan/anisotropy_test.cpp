@@ -1,22 +1,10 @@
 // Materials whose roughness has a direction: both engines agree.
-#include "cpu/cpu_engine.h"
 #include "support/textured_materials.h"
-#include "vulkan/path_tracer.h"
+#include "vulkan/both_engines.h"
 #include "vulkan/shading_fixture.h"
 
 namespace relief::vulkan::tests {
 namespace {
-
-Image trace_on_device(const Device& device, const std::shared_ptr<const PreparedScene>& prepared,
-                      const RenderSettings& settings) {
-    const DeviceScene device_scene(device, *prepared);
-    Tracer tracer(device, *prepared, device_scene, settings, {.ray_capacity = 4096});
-    PathTracer path_tracer(tracer, settings);
-    Film film(16, 16, settings.image.crop, settings.image.layers);
-    const PixelRange range{film.window(), 0, 16 * 16};
-    path_tracer.trace_samples(film, {&range, 1}, {0, settings.image.spp});
-    return film.resolve();
-}
 
 class AnisotropicPictures : public GpuTest {
   protected:
@@ -35,23 +23,7 @@ class AnisotropicPictures : public GpuTest {
         scene.objects.back().world_from_object = make_translation({0, -1.1f, 0});
         add_lights(scene);
         scene.camera.from = {0, 1.5f, 5};
-        RenderSettings settings = make_small_settings(16, 8, 4);
-        settings.image.layers = {"diffuse_direct", "N", "variance"};
-        const auto prepared = prepare_scene(std::move(scene), settings);
-        const Image found = trace_on_device(device(), prepared, settings);
-        Film film(16, 16, settings.image.crop, settings.image.layers);
-        make_cpu_engine(prepared, settings)->render(film, nullptr);
-        const Image expected = film.resolve();
-        ASSERT_EQ(found.pixels.size(), expected.pixels.size());
-        size_t apart = 0;
-        double sum = 0, expected_sum = 0;
-        for (size_t k = 0; k < found.pixels.size(); ++k) {
-            const float wanted = expected.pixels[k];
-            if (std::fabs(found.pixels[k] - wanted) > 2e-3f * std::max(1.0f, std::fabs(wanted))) ++apart;
-            sum += double(found.pixels[k]), expected_sum += double(wanted);
-        }
-        EXPECT_LT(apart, found.pixels.size() / 20);
-        EXPECT_NEAR(sum, expected_sum, 0.01 * std::fabs(expected_sum));
+        expect_engines_agree(device(), std::move(scene), 8, {"diffuse_direct", "N", "variance"});
     }
 
     static Material make_brushed() {

@@ -1,8 +1,7 @@
 // Inputs of materials with textures: both engines agree within their noise.
-#include "cpu/cpu_engine.h"
 #include "support/textured_materials.h"
 #include "support/z_test.h"
-#include "vulkan/path_tracer.h"
+#include "vulkan/both_engines.h"
 #include "vulkan/shading_fixture.h"
 
 namespace relief::vulkan::tests {
@@ -11,32 +10,7 @@ namespace {
 class TexturedPictures : public GpuTest {
   protected:
     void expect_agreement(Scene scene, int spp) {
-        RenderSettings settings = make_small_settings(16, spp, 4);
-        settings.image.layers = {"albedo", "N", "variance"};
-        const auto prepared = prepare_scene(std::move(scene), settings);
-        const DeviceScene device_scene(device(), *prepared);
-        Tracer tracer(device(), *prepared, device_scene, settings, {.ray_capacity = 4096});
-        PathTracer path_tracer(tracer, settings);
-        Film film(16, 16, settings.image.crop, settings.image.layers);
-        const PixelRange range{film.window(), 0, 16 * 16};
-        path_tracer.trace_samples(film, {&range, 1}, {0, spp});
-        Film same(16, 16, settings.image.crop, settings.image.layers);
-        make_cpu_engine(prepared, settings)->render(same, nullptr);
-        expect_close(film.resolve(), same.resolve());
-    }
-
-    /// Of the same random numbers; a path may go another way for a rounding.
-    static void expect_close(const Image& found, const Image& expected) {
-        ASSERT_EQ(found.pixels.size(), expected.pixels.size());
-        size_t apart = 0;
-        double sum = 0, expected_sum = 0;
-        for (size_t k = 0; k < found.pixels.size(); ++k) {
-            const float wanted = expected.pixels[k];
-            if (std::fabs(found.pixels[k] - wanted) > 2e-3f * std::max(1.0f, std::fabs(wanted))) ++apart;
-            sum += double(found.pixels[k]), expected_sum += double(wanted);
-        }
-        EXPECT_LT(apart, found.pixels.size() / 20);
-        EXPECT_NEAR(sum, expected_sum, 0.01 * std::fabs(expected_sum));
+        expect_engines_agree(device(), std::move(scene), spp, {"albedo", "N", "variance"});
     }
 
     static Scene make_scene(const Material& material) {
