@@ -45,6 +45,29 @@ TEST(BounceLevelsSetting, are_those_of_the_camera_within_a_body) {
                 render_body(BounceLevels::camera, kAutoLevel, kTubeRadius).image.pixels);
 }
 
+/// An open bowl from within: all its rays go towards the inside of its surface.
+TEST(BounceLevelsSetting, are_those_of_the_camera_towards_the_inside_of_a_surface) {
+    const auto render_bowl = [](BounceLevels bounce_levels) {
+        Scene scene = make_scene();
+        Mesh& mesh = scene.meshes[0] = test::make_cube_sphere(6);
+        mesh.face_sizes.resize(mesh.face_sizes.size() / 2);
+        mesh.position_indices.resize(mesh.position_indices.size() / 2);
+        mesh.uv_indices.resize(mesh.uv_indices.size() / 2);
+        scene.displacements[0].scale = {0.2f, 0.2f, 0.2f}; // without folds, whose other side is seen too
+        scene.camera.from = {0, 0, 0}, scene.camera.to = {1, 1, 0.8f};
+        RenderSettings settings;
+        settings.image.width = settings.image.height = 64, settings.image.spp = 2;
+        settings.image.bounces = 2, settings.surface.bounce_levels = bounce_levels;
+        settings.device.threads = 1; // of two, both may make one tree
+        return render(std::move(scene), settings);
+    };
+    const RenderResult coarse = render_bowl(BounceLevels::automatic),
+                       camera = render_bowl(BounceLevels::camera);
+    EXPECT_TRUE(coarse.image.pixels == camera.image.pixels);
+    EXPECT_GT(coarse.statistics.bounce_rays, 1000u);
+    EXPECT_EQ(coarse.statistics.bottom_built, camera.statistics.bottom_built) << "coarser trees were made";
+}
+
 } // namespace
 
 } // namespace relief

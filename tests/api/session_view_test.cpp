@@ -80,11 +80,12 @@ TEST(SessionView, follows_far_from_the_origin) {
 TEST(SessionView, forgets_boxes_of_coarser_levels) {
     Scene scene = make_rough_torus();
     RenderSettings settings = make_session_settings();
-    scene.camera.from = {9, 8, 7};
+    scene.displacements[0].scale = {8, 8, 8}; // so that much lies outside boxes of the corners
+    scene.camera.from = {90, 80, 70};
     settings.image.spp = 64, settings.image.bounces = 0;
     Session session(scene, settings);
     session.render();
-    scene.camera.from = {0.9f, 1.2f, 0.9f};
+    scene.camera.from = {2.4f, 1.9f, 1.2f};
     settings.image.spp = 1;
     session.change_view(scene.camera, settings.image);
     EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
