@@ -8,13 +8,20 @@
 #endif
 #include "formulas/begin.h"
 
+/// Between two entries side by side. Loops here and below leave shaders with one copy of the look-up.
+FN Vec2 blend_layer_pair(LayerTable table, Uint i, Float f) {
+    Vec2 sum = {Float(0.0f), Float(0.0f)};
+    for (int k = 0; k < 2; ++k)
+        sum = sum + read_layer_entry(table, i + Uint(k)) * (k == 0 ? Float(1.0f) - f : f);
+    return sum;
+}
+
 /// Of one row: kLayerColumns entries over the square root of the cosine.
 FN Vec2 blend_layer_entries(LayerTable table, Uint row, Float cos_theta) {
     Float x = sqrt(clamp(cos_theta, Float(0.0f), Float(1.0f))) * Float(kLayerColumns - 1.0f);
     Float column = min(floor(x), Float(kLayerColumns - 2.0f));
     Uint i = row + Uint(column);
-    Float f = x - column;
-    return read_layer_entry(table, i) * (Float(1.0f) - f) + read_layer_entry(table, i + Uint(1u)) * f;
+    return blend_layer_pair(table, i, x - column);
 }
 
 FN Float find_layer_row(LayerParameters layers, Float roughness) {
@@ -23,9 +30,11 @@ FN Float find_layer_row(LayerParameters layers, Float roughness) {
 
 /// Between two rows, the second of which comes right behind.
 FN Vec2 blend_layer_rows_at(LayerTable table, Uint first, Float fraction, Float cos_theta) {
-    Vec2 above = blend_layer_entries(table, first, cos_theta);
-    Vec2 below = blend_layer_entries(table, first + Uint(kLayerColumnCount), cos_theta);
-    return above * (Float(1.0f) - fraction) + below * fraction;
+    Vec2 sum = {Float(0.0f), Float(0.0f)};
+    for (int k = 0; k < 2; ++k)
+        sum = sum + blend_layer_entries(table, first + Uint(k) * Uint(kLayerColumnCount), cos_theta) *
+                        (k == 0 ? Float(1.0f) - fraction : fraction);
+    return sum;
 }
 
 /// Azimuths lie close together across the tangent, where narrow facets change most.
@@ -37,17 +46,21 @@ FN Vec2 lookup_layer_rest(LayerTable table, LayerParameters layers, Float roughn
     Float y = find_layer_row(layers, roughness);
     Float row = min(floor(y), max(layers.row_scale - Float(1.0f), Float(0.0f)));
     Uint first = layers.first_entry + Uint(row * Float(kLayerColumns));
-    Vec2 rest = blend_layer_rows_at(table, first, y - row, w.z);
+    Float azimuth = Float(0.0f);
+    Float between = Float(0.0f);
     Bool has_azimuths = layers.azimuth_scale > Float(0.0f);
-    if (is_any(has_azimuths)) {
+    bool is_blended = is_any(has_azimuths);
+    if (is_blended) {
         Float z = find_azimuth_row(find_azimuth(w)) * layers.azimuth_scale;
-        Float azimuth = min(floor(z), max(layers.azimuth_scale - Float(1.0f), Float(0.0f)));
-        Float stride = (layers.row_scale + Float(1.0f)) * Float(kLayerColumns);
-        Uint near = first + Uint(azimuth * stride);
-        Vec2 there = blend_layer_rows_at(table, near, y - row, w.z) * (Float(1.0f) - (z - azimuth)) +
-                     blend_layer_rows_at(table, near + Uint(stride), y - row, w.z) * (z - azimuth);
-        rest = select(has_azimuths, there, rest);
+        azimuth = min(floor(z), max(layers.azimuth_scale - Float(1.0f), Float(0.0f)));
+        between = select(has_azimuths, z - azimuth, Float(0.0f));
     }
+    Float stride = select(has_azimuths, (layers.row_scale + Float(1.0f)) * Float(kLayerColumns), Float(0.0f));
+    Vec2 rest = {Float(0.0f), Float(0.0f)};
+    for (int k = 0; k < (is_blended ? 2 : 1); ++k)
+        rest = rest +
+               blend_layer_rows_at(table, first + Uint((azimuth + Float(float(k))) * stride), y - row, w.z) *
+                   (k == 0 ? Float(1.0f) - between : between);
     return rest;
 }
 
@@ -62,8 +75,7 @@ FN Vec2 lookup_layer_average(LayerTable table, LayerParameters layers, Float rou
     Float row = min(floor(y), max(layers.row_scale - Float(1.0f), Float(0.0f)));
     Float first = count_layer_rows(layers) * Float(kLayerColumns) + row;
     Uint i = layers.first_entry + Uint(first);
-    return read_layer_entry(table, i) * (Float(1.0f) - (y - row)) +
-           read_layer_entry(table, i + Uint(1u)) * (y - row);
+    return blend_layer_pair(table, i, y - row);
 }
 
 /// Directional albedo of the fuzz of weight 1.

@@ -101,7 +101,9 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
     surface_point_ = make_reading_kernel(tracer, "surface_point");
     shading_normal_ = Kernel(device, {.shader = "shading_normal",
                                       .constants = tracer.device_scene().add_normal_maps({kGroupSize})});
-    light_sample_ = make_scattering_kernel("light_sample");
+    meet_surface_ = make_scattering_kernel("meet_surface");
+    light_sample_ = make_scattering_kernel(
+        tracer.scene().terminators == Terminators::none ? "light_sample" : "light_sample_terminators");
     bounce_ = make_scattering_kernel("bounce");
     far_rays_ = make_kernel(device, "far_rays");
     inner_hits_ = make_reading_kernel(tracer, "inner_hits");
@@ -361,7 +363,11 @@ PathTracer::NextRays PathTracer::shade_depth(const scalar::PathPush& push) {
     if (is_last && push.emitter_count == 0) return {0, 0};
     commands.dispatch(surface_point_, push.count, push);
     commands.dispatch(shading_normal_, push.count, push);
-    commands.dispatch(light_sample_, push.count, push);
+    commands.dispatch(meet_surface_, push.count, push);
+    // The last rays look for light alone.
+    const bool draws_light = (push.depth == 0 || push.depth != push.last_depth) &&
+                             (push.source_count > 0 || push.first_light_node != 0);
+    if (draws_light) commands.dispatch(light_sample_, push.count, push);
     if (push.depth < push.last_depth) commands.dispatch(bounce_, push.count, push);
     return read_lists();
 }

@@ -85,8 +85,8 @@ class PathTracer {
     LightLayers light_layers_;
     bool notes_first_hits_; ///< of every sample, behind the film's other sums
     DeviceLights lights_;
-    Kernel camera_kernel_, background_, surface_point_, shading_normal_, light_sample_, bounce_, far_rays_,
-        inner_hits_, shadow_light_, film_;
+    Kernel camera_kernel_, background_, surface_point_, shading_normal_, meet_surface_, light_sample_,
+        bounce_, far_rays_, inner_hits_, shadow_light_, film_;
     std::optional<Kernel> cut_outs_;                ///< where the scene has some
     std::optional<Kernel> lifted_rays_, lift_rays_; ///< where shadow rays may start above their triangles
     Buffer saved_list_;                             ///< where rays come from that pass them

@@ -207,7 +207,7 @@ TEST_F(ShadingKernels, draw_the_lights_that_the_cpu_engine_draws) {
     make_points(2);
     const scalar::PathPush push = bench().make_push(2);
     bench().commands.fill(bench().counters, 0, sizeof(scalar::CounterData), 0);
-    bench().run("light_sample", push);
+    bench().run("light_sample_terminators", push);
     const auto paths = bench().paths.download<scalar::PathData>(kCount);
     const auto rays = bench().rays.download<scalar::RayData>(2 * kCount);
     const uint32_t count = bench().counters.download<scalar::CounterData>(1)[0].shadow_count;
@@ -239,7 +239,7 @@ TEST_F(ShadingKernels, draw_the_lights_that_the_cpu_engine_draws) {
 TEST_F(ShadingKernels, weigh_the_emission_of_surfaces_that_were_met) {
     for (uint32_t depth : {0u, 1u}) {
         make_points(depth);
-        bench().run("light_sample", bench().make_push(depth));
+        bench().run("meet_surface", bench().make_push(depth));
         const auto paths = bench().paths.download<scalar::PathData>(kCount);
         uint32_t flips = 0, glowing = 0;
         for (uint32_t k = 0; k < kCount; ++k) {

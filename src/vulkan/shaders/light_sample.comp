@@ -1,4 +1,4 @@
-// Light at a vertex: emission of the surface, and next-event estimation, whose shadow ray is traced later.
+// Light drawn at a vertex: next-event estimation, whose shadow ray is traced later.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"
@@ -8,7 +8,6 @@
 #include "vulkan/shaders/light_sums.glsl"
 #include "vulkan/shaders/terminator.glsl"
 #include "vulkan/shaders/material_inputs.glsl"
-#include "formulas/guides.h"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
@@ -30,9 +29,6 @@ DrawnLight draw_from_environment(vec3 normal, bool is_open, vec2 u) {
     result.light.pdf = drawn.pdf;
     return result;
 }
-
-/// A tree has chosen the emissive patch itself.
-float load_probability(uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }
 
 DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u) {
     uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, 0u, emitter);
@@ -57,11 +53,14 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
 }
 
 DrawnLight draw_from(LightPick pick, SurfacePointData at, bool is_open, uint lod_bias, float u_emitter, vec2 u) {
-    if (kHasLightTree != 0u && pick.source == kNone) return draw_from_emitter(at.position, lod_bias, pick.emitter, u);
-    LightSourceData source = sources[pick.source];
-    if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, is_open, u);
-    if (source.kind == kSourceEmitters)
-        return draw_from_emitter(at.position, lod_bias, find_emitter(push.emitter_count, u_emitter), u);
+    uint emitter = kHasLightTree != 0u && pick.source == kNone ? pick.emitter : kNone;
+    LightSourceData source;
+    if (emitter == kNone) {
+        source = sources[pick.source];
+        if (source.kind == kSourceEnvironment) return draw_from_environment(at.geometric_normal, is_open, u);
+        if (source.kind == kSourceEmitters) emitter = find_emitter(push.emitter_count, u_emitter);
+    }
+    if (emitter != kNone) return draw_from_emitter(at.position, lod_bias, emitter, u);
     DrawnLight result = {draw_listed_light(source, at.position, u), false, vec3(0.0), kNone};
     if (has_texture(source) && result.light.pdf > 0.0)
         result.light.weight *= find_light_color(source, at.position, result.light.direction);
@@ -83,38 +82,6 @@ DrawnLight draw_light(SurfacePointData at, uint instance, bool is_open, uint lod
     return drawn;
 }
 
-/// Probability of an emissive patch; without a tree of all of them.
-float find_emitter_probability(LitPoint at, uint emitter) {
-    if (kHasLightTree != 0u) {
-        uint leaf = texelFetch(emitter_table, int(emitter)).y;
-        if (leaf == kNone) return 0.0;
-        float listed = total_irradiance(push.source_count, at);
-        float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, listed);
-        return (1.0 - list_share) * find_in_tree(push.first_light_node, at, leaf);
-    }
-    if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
-    return estimate_irradiance(sources[push.source_count - 1u], at.position) /
-           total_irradiance(push.source_count, at);
-}
-
-/// Density with which draw_light at the previous vertex would have sampled this point.
-float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
-    if (push.emitter_range_count == 0u) return 0.0;
-    uint emitter =
-        find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
-    LitPoint previous = {path.previous, path.normal, path.instance};
-    return find_emitter_probability(previous, emitter) *
-           emitter_density(load_probability(emitter), point.area_per_uv, point.geometric_normal,
-                           point.position - path.previous);
-}
-
-vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emission) {
-    if (emission == vec3(0.0)) return vec3(0.0);
-    if (push.depth == 0u) return path.throughput * emission;
-    vec3 light = path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));
-    return clamp_indirect(light, push.clamp_indirect, push.depth - 1u);
-}
-
 /// `lift`: how far the ray starts above the triangle, where the light comes from below it.
 RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, uint lod_bias) {
     vec3 origin =
@@ -130,25 +97,13 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, ui
     return ray;
 }
 
-/// Shadow catchers are white and diffuse, so that nothing but light and its cosine counts.
-VertexMaterial load_material(uint path_index, HitData hit) {
-    uint index = instances[hit.instance].material;
-    if (!is_catcher(hit, push.depth)) return load_vertex_material(index, push.capacity, path_index);
-    VertexMaterial white;
-    white.numbers = load_material_numbers(index);
-    white.numbers.emission = vec3(0.0);
-    white.numbers.ior = 1.0;
-    white.numbers.has_layers = white.numbers.has_glass = 0u;
-    white.table = make_layer_table(kGridTable);
-    white.tangent = vec3(0.0);
-    return white;
-}
-
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 without bounces and on shadow catchers: no
 /// other ray finds lights.
-bool sample_light(uint path_index, PathData path, SurfacePointData point, HitData hit) {
+bool sample_light(uint path_index, HitData hit) {
+    PathData path = paths[path_index];
+    SurfacePointData point = points[path_index];
     uint material_index = instances[hit.instance].material;
-    VertexMaterial material = load_material(path_index, hit);
+    VertexMaterial material = load_lit_material(path_index, hit, push.capacity, push.depth);
     RayData ray = rays[path_index];
     vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
     vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
@@ -187,80 +142,12 @@ bool sample_light(uint path_index, PathData path, SurfacePointData point, HitDat
     return true;
 }
 
-/// Takes what a body took on the way, and what goes with the choice between glass and the rest.
-PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointData point, uint material_index) {
-    MaterialData material = load_vertex_material(material_index, push.capacity, path_index).numbers;
-    vec3 factor = vec3(1.0);
-    if (material.has_glass != 0u && material.glass.kind == kSolidGlass) {
-        if (point.is_flipped != 0u) path.body = material_index;
-        // Met from outside, whatever the path took for true: at a fold of the surface, say.
-        if (point.is_flipped == 0u && path.body == material_index) path.body = kNone;
-    }
-    if (path.body != kNone) factor = absorb_along(materials[path.body].glass.depth, hit.t);
-    if (material.has_glass != 0u) {
-        vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
-        factor *= draw_vertex_glass(point, material, -rays[path_index].direction, pick.y).weight;
-    }
-    path.throughput *= factor;
-    paths[path_index].throughput = path.throughput;
-    paths[path_index].body = path.body;
-    return path;
-}
-
-/// To the layers of light.
-void share_emission(uint path_index, vec3 light, uint group) {
-    add_to_group(push.capacity, path_index, group, light);
-    if (push.depth == 0u)
-        add_to_kind(push.capacity, path_index, kKindEmission, light);
-    else
-        add_scattered(push.capacity, path_index, light, push.depth - 1u);
-}
-
-GuideVertex make_guide_vertex(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
-    GuideVertex vertex = {point.base_color, material.emission, point.roughness, point.metallic, false};
-    if (kHasGlass != 0u && material.has_glass != 0u) {
-        vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
-        GlassDraw drawn = draw_vertex_glass(point, material, -rays[path_index].direction, pick.y);
-        vertex.is_glass = drawn.is_glass;
-        vertex.metallic = drawn.metallic;
-    }
-    if (kHasLayers != 0u && material.has_layers != 0u && !vertex.is_glass)
-        vertex.roughness = roughen_base(point.roughness, material.layers);
-    return vertex;
-}
-
-void note_guides(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
-    GuideVertex vertex = make_guide_vertex(path_index, path, point, material);
-    bool goes_on = push.depth + 1u < push.last_depth && is_mirror(vertex);
-    note_guided(push.capacity, path_index, !goes_on);
-    if (!goes_on)
-        add_guides(push.capacity, path_index, find_guide_albedo(path.throughput, find_guide_color(vertex)),
-                   point.bent_normal);
-}
-
-/// True if there is a shadow ray.
-bool light_vertex(uint path_index, HitData hit) {
-    PathData path = paths[path_index];
-    SurfacePointData point = points[path_index];
-    uint material_index = instances[hit.instance].material;
-    if (kHasGlass != 0u && !is_catcher(hit, push.depth))
-        path = meet_glass(path_index, path, hit, point, material_index);
-    MaterialData material = load_material(path_index, hit).numbers;
-    vec3 emission = find_emission(path, hit, point, material.emission);
-    paths[path_index].radiance = path.radiance + emission;
-    share_emission(path_index, emission, material.light_group);
-    if (looks_for_guides(push.capacity, path_index, push.depth)) note_guides(path_index, path, point, material);
-    // The last rays look for light alone.
-    if (push.depth > 0u && push.depth == push.last_depth) return false;
-    return (push.source_count > 0u || kHasLightTree != 0u) && sample_light(path_index, path, point, hit);
-}
-
 void main() {
     uint index = invocation_index();
     if (index >= push.count) return;
     uint path_index = path_list[index];
     HitData hit = hits[path_index];
-    uint count = is_hit(hit) && light_vertex(path_index, hit) ? 1u : 0u;
+    uint count = is_hit(hit) && sample_light(path_index, hit) ? 1u : 0u;
     uint place = atomicAdd(counters.shadow_count, count);
     if (count > 0u) shadow_list[place] = push.capacity + path_index;
 }

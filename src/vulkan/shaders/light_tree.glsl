@@ -13,9 +13,23 @@ float estimate_alone(LightNodeData node, LitPoint at) {
 /// Of a node that is near, that of its children, which knows more.
 float estimate_child(uint node_index, LitPoint at) {
     LightNodeData node = light_nodes[node_index];
-    if (node.source != kNone || !is_near(node, at)) return estimate_alone(node, at);
-    LightNodeData first = light_nodes[node_index + 1u];
-    return estimate_alone(first, at) + estimate_alone(light_nodes[first.end], at);
+    bool is_split = node.source == kNone && is_near(node, at);
+    uint place = is_split ? node_index + 1u : node_index;
+    float sum = 0.0;
+    // A loop, so that the estimate is inlined only once.
+    for (uint k = 0u; k < (is_split ? 2u : 1u); ++k) {
+        node = light_nodes[place];
+        sum += estimate_alone(node, at);
+        place = node.end;
+    }
+    return sum;
+}
+
+/// Of the child beside its parent, and of the other.
+vec2 estimate_children(uint first, LitPoint at) {
+    vec2 estimates;
+    for (uint k = 0u; k < 2u; ++k) estimates[k] = estimate_child(k == 0u ? first : light_nodes[first].end, at);
+    return estimates;
 }
 
 /// Part of the draws that the tree gets.
@@ -31,14 +45,13 @@ LightPick pick_in_tree(uint root, LitPoint at, float u, float u_further) {
     while (light_nodes[place].source == kNone) {
         uint first = place + 1u;
         uint second = light_nodes[first].end;
-        float a = estimate_child(first, at);
-        float b = estimate_child(second, at);
-        float sum = a + b;
+        vec2 estimates = estimate_children(first, at);
+        float sum = estimates.x + estimates.y;
         LightPick dark = {kNone, kNone, 0.0};
         if (!(sum > 0.0)) return dark;
-        float share = a / sum;
+        float share = estimates.x / sum;
         place = u < share ? first : second;
-        probability *= place == first ? share : b / sum;
+        probability *= place == first ? share : estimates.y / sum;
         u = place == first ? stretch_random(u, 0.0, share) : stretch_random(u, share, 1.0 - share);
         if (!is_continued && probability < kContinuedBelow) {
             is_continued = true;
@@ -58,11 +71,10 @@ float find_in_tree(uint root, LitPoint at, uint leaf) {
     while (place != leaf) {
         uint first = place + 1u;
         uint second = light_nodes[first].end;
-        float a = estimate_child(first, at);
-        float b = estimate_child(second, at);
-        float sum = a + b;
+        vec2 estimates = estimate_children(first, at);
+        float sum = estimates.x + estimates.y;
         if (!(sum > 0.0)) return 0.0;
-        probability *= (leaf < second ? a : b) / sum;
+        probability *= (leaf < second ? estimates.x : estimates.y) / sum;
         place = leaf < second ? first : second;
     }
     return probability;

@@ -61,15 +61,19 @@ LightPick pick_listed(uint source_count, LitPoint at, float u, float total) {
     LightPick dark = {kNone, kNone, 0.0};
     if (!(total > 0.0)) return dark;
     float target = u * total;
-    uint picked = 0u;
-    float estimate = estimate_source(sources[0], at);
-    for (float running = estimate; running <= target && picked + 1u < source_count; running += estimate)
-        estimate = estimate_source(sources[++picked], at);
-    LightPick pick = {picked, kNone, estimate / total};
-    return pick;
+    float running = 0.0;
+    for (uint k = 0u;; ++k) {
+        float estimate = estimate_source(sources[k], at);
+        running += estimate;
+        LightPick pick = {k, kNone, estimate / total};
+        if (running > target || k + 1u >= source_count) return pick;
+    }
 }
 
 float load_emitter_probability(uint emitter) { return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y); }
+
+/// A tree has chosen the emissive patch itself.
+float load_probability(uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }
 
 /// Emissive patch selected by a random number.
 uint find_emitter(uint emitter_count, float u) {

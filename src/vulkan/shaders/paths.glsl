@@ -123,6 +123,20 @@ VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) 
     return material;
 }
 
+/// Shadow catchers are white and diffuse, so that nothing but light and its cosine counts.
+VertexMaterial load_lit_material(uint path_index, HitData hit, uint capacity, uint depth) {
+    uint index = instances[hit.instance].material;
+    if (!is_catcher(hit, depth)) return load_vertex_material(index, capacity, path_index);
+    VertexMaterial white;
+    white.numbers = load_material_numbers(index);
+    white.numbers.emission = vec3(0.0);
+    white.numbers.ior = 1.0;
+    white.numbers.has_layers = white.numbers.has_glass = 0u;
+    white.table = make_layer_table(kGridTable);
+    white.tangent = vec3(0.0);
+    return white;
+}
+
 /// The BSDF for one outgoing direction, in a local frame: one of the three.
 struct Scattering {
     Basis basis;

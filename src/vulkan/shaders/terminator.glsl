@@ -8,7 +8,12 @@
 #include "vulkan/shaders/shading_normal.glsl"
 #include "formulas/terminator.h"
 
+// In the variant of the kernel for scenes that have them: others are much smaller without.
+#ifdef HAS_TERMINATORS
 layout(constant_id = kTerminatorsConstant) const uint kTerminators = 0;
+#else
+const uint kTerminators = 0;
+#endif
 const uint kAllTerminators = 2u; ///< those of displaced patches too
 
 /// Detail finer than the cells, which normals alone have, says nothing of how far away the surface is.
