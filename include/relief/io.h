@@ -52,9 +52,10 @@ struct SceneAssets {
 };
 
 /// Reads the text of a scene file. A name of a mesh or picture that is in `assets` stands for what is there;
-/// other names are files, relative to `folder`. The rest as load_scene.
+/// other names are files, relative to `folder`. `frame`: of values with keys and of files with `####`, as
+/// Shot::load takes it; unset: the first of `render.frames`, or 1. The rest as load_scene.
 Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets = {},
-                       const MeshReaderSettings& reader = {});
+                       std::optional<double> frame = {}, const MeshReaderSettings& reader = {});
 
 /// Convention of a displacement map. Unset values come from the preset, then from the file; docs/formats.md
 /// lists the names.

@@ -9,7 +9,7 @@
 Scene, Mesh, Displacement, Material, Camera, Light, Environment: what is rendered, with the keys of scene files.
 render, Session, Picture: pictures, at once or while maps are painted.
 Intersector, Hits: batches of rays. trees: structures and traversals to compare.
-inspect, convert: what maps and meshes are; maps in other conventions. Error: what all of these raise.
+parse_frames, name_frame: shots, frame by frame. inspect, convert: what maps and meshes are; maps in other conventions. Error: what all of these raise.
 
 Lengths are scene units, y is up, angles degrees, colours linear Rec.709."""
 from . import trees
@@ -22,7 +22,8 @@ from ._relief import Progress
 from ._relief import version as __version__
 from ._render import Session, render
 from ._scene import Scene
-from ._tools import convert, devices, inspect, isas
+from ._tools import convert, devices, inspect, isas, name_frame, parse_frames
 
 __all__ = ["Camera", "Displacement", "Environment", "Error", "Hits", "Intersector", "Light", "Material", "Mesh", "NOTHING",
-           "Picture", "Progress", "Scene", "Session", "__version__", "convert", "devices", "inspect", "isas", "render", "trees"]
+           "Picture", "Progress", "Scene", "Session", "__version__", "convert", "devices", "inspect", "isas",
+           "name_frame", "parse_frames", "render", "trees"]

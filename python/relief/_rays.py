@@ -84,11 +84,12 @@ class Intersector:
     """A scene prepared for rays, for any number of threads. scene: a Scene, or the file of a scene or mesh.
 
     settings: engine, device, threads, level, pixel_error, mode, lod, leaf, cache_mb, isa, structure, traversal, ... of
-    render(), and picture_height, 720: pixels of the camera's view, which automatic levels come from."""
+    render(), and picture_height, 720: pixels of the camera's view, which automatic levels come from. frame: of values with
+    keys."""
 
-    def __init__(self, scene: Union[Scene, Path], **settings: Any) -> None:
+    def __init__(self, scene: Union[Scene, Path], frame: Optional[float] = None, **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})
-        self._intersector = _relief.Intersector(parse_any(scene), keywords)
+        self._intersector = _relief.Intersector(parse_any(scene, frame), keywords)
 
     @property
     def warnings(self) -> list[str]:

@@ -81,8 +81,8 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
            noise: Optional[float] = None, time_limit: Optional[float] = None, clamp_indirect: Optional[float] = None,
            level: Union[int, str, None] = None, pixel_error: Optional[float] = None, mode: Optional[str] = None,
            denoise: Union[bool, Path] = False, first_sample: Optional[int] = None, cache_mb: Optional[int] = None,
-           progress: Union[bool, Callback, None] = None, on_picture: Optional[PictureCallback] = None,
-           picture_interval: float = 0.5, **more: Any) -> Picture:
+           frame: Optional[float] = None, progress: Union[bool, Callback, None] = None,
+           on_picture: Optional[PictureCallback] = None, picture_interval: float = 0.5, **more: Any) -> Picture:
     """Renders a Scene, or the file of a scene or mesh. Without the GIL: other threads of Python go on.
 
     size: width and height, pixels; (1280, 720) unless the scene says another. spp: samples a pixel, 64. bounces: path
@@ -91,7 +91,8 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     noise: no more samples where the error is below this share of the brightness. time_limit: seconds.
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
     mode: "direct" or "tessellated". denoise: True, or the library or folder of Open Image Denoise 2. first_sample: of a
-    range of samples. cache_mb: cap of the cache of patch trees. more: lod, bounce_levels, leaf, isa, structure, traversal,
+    range of samples. cache_mb: cap of the cache of patch trees. frame: of values with keys and of files with `####`, may
+    lie between two; the first of the scene's render.frames unless given. more: lod, bounce_levels, leaf, isa, structure, traversal,
     method, bottom, pipeline_cache, as the options of `relief render`.
 
     progress: True for a bar, or a function of a Progress. on_picture: a function of the Picture so far, called as soon as
@@ -108,7 +109,7 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     entries = make_entries(keywords)
     denoisers = [] if denoise is False else find_denoisers() if denoise is True else [os.fspath(denoise)]
     with open_progress(progress) as callback:
-        answer = _relief.render(parse_any(scene), keywords, callback, wrap_picture(on_picture, entries), picture_interval,
+        answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), picture_interval,
                                 denoise is not False, denoisers)
     return finish(answer, entries)
 
@@ -120,13 +121,13 @@ class Session:
     """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
     what changed.
 
-    settings: the keywords of render() but for denoise. Not for several threads at once."""
+    frame: of values with keys. settings: the other keywords of render() but for denoise. Not for several threads at once."""
 
-    def __init__(self, scene: Union[Scene, Path], **settings: Any) -> None:
+    def __init__(self, scene: Union[Scene, Path], frame: Optional[float] = None, **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})
         self._keywords = keywords
         self._entries = make_entries(keywords)
-        self._session = _relief.Session(parse_any(scene), keywords)
+        self._session = _relief.Session(parse_any(scene, frame), keywords)
 
     def change_view(self, camera: Optional[Camera] = None, **settings: Any) -> None:
         """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces, seed,

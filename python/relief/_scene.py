@@ -260,9 +260,9 @@ class Scene:
         root["lights"] = [collector.convert(light, f"lights[{k}]") for k, light in enumerate(self.lights)]
         return json.dumps(root), collector
 
-    def _parse(self) -> _relief.Scene:
+    def _parse(self, frame: Optional[float] = None) -> _relief.Scene:
         text, collector = self._collect()
-        return _relief.parse_scene(text, self.folder, collector.meshes, collector.textures)
+        return _relief.parse_scene(text, self.folder, collector.meshes, collector.textures, frame)
 
     def __repr__(self) -> str:
         return f"Scene({len(self.objects)} objects, {len(self.meshes)} meshes, {len(self.lights)} lights)"
@@ -288,9 +288,9 @@ def _make_name(wanted: str, taken: set[str]) -> str:
     return name
 
 
-def parse_any(scene: Union[Scene, Path]) -> _relief.Scene:
-    """Of a Scene, a scene file, or a mesh file."""
+def parse_any(scene: Union[Scene, Path], frame: Optional[float] = None) -> _relief.Scene:
+    """Of a Scene, a scene file, or a mesh file; at a frame, where values have keys. None: the first."""
     if isinstance(scene, Scene):
-        return scene._parse()
+        return scene._parse(frame)
     path = os.fspath(scene)
-    return Scene.from_mesh(path)._parse() if _relief.is_mesh_file(path) else _relief.load_scene(path)
+    return Scene.from_mesh(path)._parse(frame) if _relief.is_mesh_file(path) else _relief.load_scene(path, frame)

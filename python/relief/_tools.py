@@ -94,3 +94,13 @@ def devices() -> list[dict[str, Any]]:
 def isas() -> list[str]:
     """Instruction sets that this machine and this build have, the best first."""
     return _relief.isas()
+
+
+def parse_frames(text: str) -> list[int]:
+    """Numbers of frames: "1-100x2,150" is from 1 to 100 every second one, and 150."""
+    return _relief.parse_frames(text)
+
+
+def name_frame(pattern: Union[str, os.PathLike[str]], frame: int) -> str:
+    """The file of a frame: `####` becomes its number; without, ".0001" comes before the extension."""
+    return _relief.name_frame(os.fspath(pattern), frame)

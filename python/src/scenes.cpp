@@ -2,11 +2,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -15,6 +18,7 @@
 #include "parts.h"
 #include "relief/convert.h"
 #include "relief/io.h"
+#include "relief/shot.h"
 #include "scene_values.h"
 #include "textures.h"
 
@@ -27,7 +31,7 @@ namespace {
 using ScenePointer = std::unique_ptr<ParsedScene>;
 
 ScenePointer parse(const std::string& text, const std::string& folder, const nb::dict& meshes,
-                   const nb::dict& textures) {
+                   const nb::dict& textures, std::optional<double> frame) {
     SceneAssets assets;
     for (const auto& [name, arrays] : meshes)
         assets.meshes[nb::cast<std::string>(name)] = make_mesh(nb::cast<nb::dict>(arrays));
@@ -37,13 +41,14 @@ ScenePointer parse(const std::string& text, const std::string& folder, const nb:
     }
     const GateVisit visit;
     const nb::gil_scoped_release release;
-    return std::make_unique<ParsedScene>(ParsedScene{parse_scene_text(text, folder, std::move(assets))});
+    return std::make_unique<ParsedScene>(
+        ParsedScene{parse_scene_text(text, folder, std::move(assets), frame)});
 }
 
-ScenePointer load(const std::string& file) {
+ScenePointer load(const std::string& file, std::optional<double> frame) {
     const GateVisit visit;
     const nb::gil_scoped_release release;
-    return std::make_unique<ParsedScene>(ParsedScene{load_scene(file)});
+    return std::make_unique<ParsedScene>(ParsedScene{frame ? Shot(file).load(*frame) : load_scene(file)});
 }
 
 nb::dict describe_picture(const ParsedScene& parsed) {
@@ -136,8 +141,13 @@ void add_scenes(nb::module_& module) {
         .def_prop_ro("hash", [](const ParsedScene& p) { return p.scene.hash; })
         .def_prop_ro("warnings", [](const ParsedScene& p) { return p.scene.warnings; });
     module.def("parse_scene", &parse, nb::arg("text"), nb::arg("folder"), nb::arg("meshes"),
-               nb::arg("textures"));
-    module.def("load_scene", &load, nb::arg("file"));
+               nb::arg("textures"), nb::arg("frame").none());
+    module.def("load_scene", &load, nb::arg("file"), nb::arg("frame") = nb::none());
+    module.def("parse_frames", &parse_frames, nb::arg("text"));
+    module.def(
+        "name_frame",
+        [](const std::string& pattern, int frame) { return name_frame(pattern, frame).string(); },
+        nb::arg("pattern"), nb::arg("frame"));
     module.def("load_mesh", &load_mesh_arrays, nb::arg("file"), nb::arg("uv_set") = 0);
     module.def("write_mesh", &write_mesh_arrays, nb::arg("arrays"), nb::arg("file"));
     module.def(

@@ -1,4 +1,5 @@
 """Renders: settings, pictures, callbacks, interrupts, threads and the end of Python."""
+import json
 import os
 import pathlib
 import signal
@@ -48,6 +49,31 @@ class RenderTest(unittest.TestCase):
 
     def test_threads_do_not_change_a_picture(self):
         np.testing.assert_array_equal(relief.render(self.scene, threads=1).array, relief.render(self.scene, threads=3).array)
+
+    def test_frames_are_those_of_the_keys(self):
+        keys = {"keys": [[1, [0, 0, 4]], [3, [0, 0, 8]]]}
+        scene = scenes.make_scene()
+        scene.camera = relief.Camera(from_=keys, to=(0, 0, 0))
+        stills = []
+        for z in (4, 6, 8):
+            still = scenes.make_scene()
+            still.camera = relief.Camera(from_=(0, 0, z), to=(0, 0, 0))
+            stills.append(relief.render(still).array)
+        for frame, still in zip((None, 2, 3), stills):
+            np.testing.assert_array_equal(relief.render(scene, frame=frame).array, still)
+            np.testing.assert_array_equal(relief.Session(scene, frame=frame).render().array, still)
+        self.assertFalse(np.array_equal(stills[0], stills[1]))
+        with tempfile.TemporaryDirectory() as folder:
+            scene.save(folder)
+            file = pathlib.Path(folder) / "scene.json"
+            root = json.loads(file.read_text())
+            root["camera"]["from"] = keys
+            file.write_text(json.dumps(root))
+            np.testing.assert_array_equal(relief.render(file, frame=2).array, stills[1])
+        with self.assertRaisesRegex(relief.Error, "nan is no frame"):
+            relief.render(scene, frame=float("nan"))
+        self.assertEqual(relief.parse_frames("1-7x3,12"), [1, 4, 7, 12])
+        self.assertEqual(relief.name_frame("wave.####.exr", 12), "wave.0012.exr")
 
     def test_settings_that_are_wrong_are_named(self):
         for words, keys in (("'speed'.*'spp'|there is no keyword 'sppp'.*spp", dict(sppp=3)), ("spp.*whole number from 1", dict(spp=0)),

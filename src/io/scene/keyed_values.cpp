@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "io/scene/scene_keys.h"
+#include "relief/error.h"
+#include "relief/shot.h"
 
 namespace relief {
 
@@ -261,6 +263,12 @@ bool depends_on_frame(const Json& value, std::string_view key) {
 } // namespace
 
 bool is_animated(const Json& document) { return depends_on_frame(document, ""); }
+
+void check_frame(double frame) {
+    if (std::fabs(frame) > kMaxFrame || std::isnan(frame))
+        throw Error(ErrorKind::usage, {fmt::format("{} is no frame", frame), "frame",
+                                       fmt::format("from -{} to {}", kMaxFrame, kMaxFrame)});
+}
 
 Json evaluate_frame(const Json& document, double frame, const std::string& file) {
     return evaluate(document, "", "", frame, file);

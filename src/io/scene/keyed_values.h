@@ -12,6 +12,9 @@ namespace relief {
 /// Whether anything in the document depends on the frame.
 bool is_animated(const Json& document);
 
+/// Throws Error{usage} beyond kMaxFrame (relief/shot.h).
+void check_frame(double frame);
+
 /// The document as it is at a frame, which may lie between two. Numbers and arrays of them are interpolated
 /// linearly, "smooth" or not at all, "step"; all else has steps. Outside its keys a value stays that of the
 /// nearest. `rotate_degrees` of transforms turns about one axis where only one angle changes, full turns

@@ -211,13 +211,14 @@ std::vector<int> read_frames(const Json& document, const std::string& name) {
 
 namespace {
 
-/// At the first frame, or 1.
+/// Without a frame: at the first one, or 1.
 Scene read_text(std::string_view text, const std::string& name, AssetCache assets,
-                const MeshReaderSettings& reader) {
+                const MeshReaderSettings& reader, std::optional<double> frame = {}) {
+    if (frame) check_frame(*frame);
     const Json document = parse_json(text, name);
     const std::vector<int> frames = read_frames(document, name);
     if (!is_animated(document)) return read_scene(document, assets, name, reader).scene;
-    const Json at_frame = evaluate_frame(document, frames.empty() ? 1 : frames.front(), name);
+    const Json at_frame = evaluate_frame(document, frame.value_or(frames.empty() ? 1 : frames.front()), name);
     return read_scene(at_frame, assets, name, reader).scene;
 }
 
@@ -229,8 +230,8 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& folder, co
 }
 
 Scene parse_scene_text(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
-                       const MeshReaderSettings& reader) {
-    return read_text(text, "scene", AssetCache(folder, std::move(assets)), reader);
+                       std::optional<double> frame, const MeshReaderSettings& reader) {
+    return read_text(text, "scene", AssetCache(folder, std::move(assets)), reader, frame);
 }
 
 Scene load_scene(const std::filesystem::path& file, const MeshReaderSettings& reader) {

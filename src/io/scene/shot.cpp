@@ -1,6 +1,5 @@
 #include "relief/shot.h"
 
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,9 +27,7 @@ struct Shot::Implementation {
 
     /// Of a large scene a copy takes time and memory, so it is made only where frames differ.
     template <class Read> auto with_frame(double frame, const Read& read) const {
-        if (std::fabs(frame) > kMaxFrame || std::isnan(frame))
-            throw Error(ErrorKind::usage, {fmt::format("{} is no frame", frame), "Shot",
-                                           fmt::format("from -{} to {}", kMaxFrame, kMaxFrame)});
+        check_frame(frame);
         return is_animated ? read(evaluate_frame(document, frame, name)) : read(document);
     }
 };
