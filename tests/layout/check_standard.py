@@ -23,6 +23,7 @@ DECLARED = {
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot ilogb isfinite
         isinf isnan isnormal ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering",
+    "condition_variable": "condition_variable",
     "concepts": "floating_point integral same_as",
     "condition_variable": "condition_variable",
     "csignal": "signal",
@@ -35,6 +36,7 @@ DECLARED = {
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
     "functional": "function greater hash less",
+    "future": "async future future_status launch",
     "initializer_list": "initializer_list",
     "ios": "ios streamoff streamsize",
     "iosfwd": "istream ostream",
