@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@
 namespace relief::cli {
 
 namespace {
+
+/// Of an explanation.
+constexpr int kPathCount = 6;
 
 // The command uses the public value types only; this is all the arithmetic it needs.
 Vec3f add_scaled(const Vec3f& a, const Vec3f& b, float s) {
@@ -62,6 +66,51 @@ std::string describe_hit(const Scene& scene, const Ray& ray, const RayHit& hit, 
     return text;
 }
 
+/// What finding the pixel's light took, a sample.
+std::string describe_work(const Statistics& s, int spp) {
+    if (s.upper_nodes + s.patch_nodes + s.blocks == 0) return {}; // of other traversals nothing is counted
+    const auto per_sample = [&](uint64_t count) { return double(count) / spp; };
+    std::string levels;
+    for (size_t level = 0; level < s.bottom_levels.size(); ++level)
+        if (s.bottom_levels[level] > 0)
+            levels +=
+                fmt::format("{}{} at level {}", levels.empty() ? "" : ", ", s.bottom_levels[level], level);
+    return fmt::format(
+        "visited  {:.4g} nodes of scene trees, {:.4g} of patch trees, {:.4g} blocks of triangles "
+        "a sample\n"
+        "built    {}\n",
+        per_sample(s.upper_nodes), per_sample(s.patch_nodes), per_sample(s.blocks),
+        levels.empty() ? "no trees of patches" : "trees of patches: " + levels);
+}
+
+/// Cosine-weighted about a unit normal.
+Vec3f choose_direction(const Vec3f& normal, std::mt19937& random) {
+    std::uniform_real_distribution<float> number(0, 1);
+    const float z = 1 - 2 * number(random), turn = 6.2831853f * number(random);
+    const float radius = std::sqrt(std::max(0.0f, 1 - z * z));
+    const Vec3f sum = add_scaled(normal, {radius * std::cos(turn), radius * std::sin(turn), z}, 0.999f);
+    return normalize(sum);
+}
+
+/// Goes on from `hit`, from surface to surface, until it leaves the scene.
+std::vector<Vec3f> trace_path(const Intersector& intersector, Ray ray, RayHit hit, int bounces,
+                              std::mt19937& random) {
+    const float reach = hit.t; // of a line that leaves the scene
+    std::vector<Vec3f> corners = {ray.origin};
+    for (int bounce = 0; hit.object != kNoIndex; ++bounce) {
+        corners.push_back(add_scaled(ray.origin, ray.direction, hit.t));
+        if (bounce == bounces) return corners;
+        const Vec3f& n = hit.normal;
+        const bool is_behind = n.x * ray.direction.x + n.y * ray.direction.y + n.z * ray.direction.z > 0;
+        ray.direction = choose_direction(is_behind ? Vec3f{-n.x, -n.y, -n.z} : n, random);
+        ray.origin = corners.back();
+        ray.t_min = 1e-4f * reach;
+        hit = intersector.closest_hit(ray);
+    }
+    corners.push_back(add_scaled(ray.origin, ray.direction, 0.3f * reach));
+    return corners;
+}
+
 std::string describe_colour(const RenderResult& result, const RenderSettings& settings) {
     std::array<float, 4> color{};
     const std::array<const char*, 4> names = {"R", "G", "B", "A"};
@@ -93,22 +142,31 @@ Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
     return ray;
 }
 
-std::string explain_pixel(const Scene& scene, const RenderSettings& settings, int x, int y) {
+PixelExplanation explain_pixel(const Scene& scene, const RenderSettings& settings, int x, int y) {
     const Ray ray = make_pixel_ray(scene.camera, settings.image.width, settings.image.height, x, y);
     RayHit hit;
     HitAttributes attributes;
     RayQuery query;
     query.attributes = kTextureUv;
-    Intersector(scene, {settings.surface, settings.device, settings.experiment, settings.image.height})
-        .closest_hits(std::span(&ray, 1), std::span(&hit, 1), query, std::span(&attributes, 1));
+    const Intersector intersector(
+        scene, {settings.surface, settings.device, settings.experiment, settings.image.height});
+    intersector.closest_hits(std::span(&ray, 1), std::span(&hit, 1), query, std::span(&attributes, 1));
     RenderSettings one_pixel = settings;
     one_pixel.image.crop = {x, y, x + 1, y + 1};
     const RenderResult result = render(scene, one_pixel);
-    return fmt::format("pixel    ({}, {}) of {}x{}\n"
-                       "ray      from {} along {}\n",
-                       x, y, settings.image.width, settings.image.height, format_vector(ray.origin),
-                       format_vector(ray.direction)) +
-           describe_hit(scene, ray, hit, attributes.texture_uv) + describe_colour(result, settings);
+    PixelExplanation explanation;
+    explanation.text = fmt::format("pixel    ({}, {}) of {}x{}\n"
+                                   "ray      from {} along {}\n",
+                                   x, y, settings.image.width, settings.image.height,
+                                   format_vector(ray.origin), format_vector(ray.direction)) +
+                       describe_hit(scene, ray, hit, attributes.texture_uv) +
+                       describe_work(result.statistics, settings.image.spp) +
+                       describe_colour(result, settings);
+    explanation.object = hit.object;
+    std::mt19937 random(uint32_t(y) * 65536u + uint32_t(x));
+    for (int k = 0; k < kPathCount && hit.object != kNoIndex; ++k)
+        explanation.paths.push_back(trace_path(intersector, ray, hit, settings.image.bounces, random));
+    return explanation;
 }
 
 } // namespace relief::cli

@@ -30,6 +30,14 @@ void apply_preset(const std::string& preset, Displacement& map) {
     if (meaning.midlevel == Vec3f{} && holds_integers(map)) map.midlevel = {0.5f, 0.5f, 0.5f};
 }
 
+Displacement choose_convention(const std::string& preset, const Displacement& map) {
+    MapOptions options;
+    options.preset = preset;
+    Displacement to = make_map_meaning(options);
+    to.flip_v = map.flip_v;
+    return to;
+}
+
 void set_axis(AxisMap& axes, size_t channel, uint8_t axis, int8_t sign) {
     for (size_t other = 0; other < 3; ++other)
         if (other != channel && axes.axis[other] == axis) std::swap(axes.axis[other], axes.axis[channel]);

@@ -17,6 +17,10 @@ inline constexpr const char* kPresets[] = {"blender-brush", "genvdm", "3dcoat", 
 /// midlevel, that of the kind of file. Throws Error{bad_input} for an unknown name.
 void apply_preset(const std::string& preset, Displacement& map);
 
+/// The convention in which a program reads maps, to convert `map` to: its space, axes and midlevel, and a
+/// scale of 1. Throws likewise.
+Displacement choose_convention(const std::string& preset, const Displacement& map);
+
 /// Channel `channel` moves along `axis` with `sign`; the channel that did so before takes the axis that is
 /// free now.
 void set_axis(AxisMap& axes, size_t channel, uint8_t axis, int8_t sign);

@@ -39,14 +39,21 @@ std::string make_stem(std::string name) {
 
 } // namespace
 
-Scene load_input(const SceneInput& input) {
-    if (is_mesh_file(input.file)) return load_mesh_scene(input.file, input.mesh);
+int find_first_frame(const Shot& shot) {
+    return shot.frames().empty() ? 1 : *std::ranges::min_element(shot.frames());
+}
+
+LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot) {
+    if (is_mesh_file(input.file)) return {load_mesh_scene(input.file, input.mesh), nullptr};
     if (input.file.extension() != ".json") {
         refuse_foreign_file(input.file);
         throw Error(ErrorKind::usage, {"this is neither a scene nor a mesh", input.file.string(),
                                        "a map goes with its mesh: relief view MESH --vdm MAP"});
     }
-    return load_scene(input.file, input.mesh.reader);
+    if (!shot) shot = std::make_shared<Shot>(input.file, input.mesh.reader);
+    Scene scene = shot->load(input.frame.value_or(find_first_frame(*shot)));
+    if (!shot->is_animated()) shot.reset(); // it holds all textures
+    return {std::move(scene), std::move(shot)};
 }
 
 const Mesh* find_mesh(const Scene& scene, size_t displacement) {
@@ -172,6 +179,7 @@ std::vector<std::filesystem::path> Document::save(const std::filesystem::path& f
         written.push_back(changes_.maps[map.name]);
     }
     Scene scene = scene_;
+    if (input_.frame) changes_.frame = *input_.frame;
     scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
     save_scene_copy(scene, input_.file, input_.mesh, file, {}, changes_);
     written.push_back(file);

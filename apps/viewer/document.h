@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "relief/io.h"
 #include "relief/render.h"
 #include "relief/scene.h"
+#include "relief/shot.h"
 
 namespace relief::viewer {
 
@@ -21,10 +23,21 @@ namespace relief::viewer {
 struct SceneInput {
     std::filesystem::path file;
     MeshSceneOptions mesh;
+    std::optional<int> frame; ///< of a scene whose values have keys; nothing: its first one
 };
 
-/// Throws as load_scene and load_mesh_scene, and Error{usage} for a file that is neither.
-Scene load_input(const SceneInput& input);
+/// `shot`: of a scene that differs from frame to frame, else null.
+struct LoadedInput {
+    Scene scene;
+    std::shared_ptr<Shot> shot;
+};
+
+/// Without `shot`, which is that of an earlier call for the same file, all is read anew. Throws as Shot and
+/// load_mesh_scene, and Error{usage} for a file that is neither scene nor mesh.
+LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot = nullptr);
+
+/// The frame that a scene is opened at.
+int find_first_frame(const Shot& shot);
 
 class Document {
   public:
@@ -32,6 +45,8 @@ class Document {
     Document(SceneInput input, Scene scene);
 
     const SceneInput& input() const { return input_; }
+    /// The camera alone differs there.
+    void set_frame(int frame) { input_.frame = frame; }
     const Scene& scene() const { return scene_; }
     /// A copy, with all that was painted so far.
     std::shared_ptr<const Scene> snapshot();

@@ -107,8 +107,12 @@ ScriptStep read_key_step(const Value& line) {
 }
 
 ScriptStep read_file(const Value& line, const char* key, FileStep::Kind kind) {
-    check_keys(line, std::array<std::string_view, 2>{key, kind == FileStep::Kind::open ? "vdm" : key});
-    return FileStep{kind, line[key].get<std::string>(), line.text_or_empty("vdm")};
+    const char* const more = kind == FileStep::Kind::open       ? "vdm"
+                             : kind == FileStep::Kind::save_map ? "preset"
+                                                                : key;
+    check_keys(line, std::array<std::string_view, 2>{key, more});
+    return FileStep{kind, line[key].get<std::string>(), line.text_or_empty("vdm"),
+                    line.text_or_empty("preset")};
 }
 
 ScriptStep read_step(const Value& line) {

@@ -45,6 +45,7 @@ struct FileStep {
     Kind kind = Kind::open;
     std::filesystem::path file;
     std::filesystem::path map; ///< of an opened mesh
+    std::string preset;        ///< of a saved map: empty: its own convention
 };
 
 struct QuitStep {};

@@ -23,6 +23,9 @@ double read_seconds() {
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
 
+/// Of what is drawn over the picture.
+constexpr ImU32 kMarkColour = IM_COL32(255, 200, 60, 220), kPathColour = IM_COL32(90, 200, 255, 200);
+
 } // namespace
 
 Interface::Interface(Window& window, Workbench& workbench, std::optional<std::pair<int, int>> fixed_size)
@@ -69,7 +72,7 @@ void Interface::place_picture() {
 }
 
 void Interface::refresh_texture() {
-    const auto& picture = workbench_.picture();
+    const auto& picture = workbench_.shown_picture();
     if (!picture) return;
     const bool is_same_view =
         texture_view_.view == state_.view.view && texture_view_.exposure == state_.view.exposure;
@@ -86,19 +89,45 @@ void Interface::draw_picture() {
     ImDrawList* const list = ImGui::GetBackgroundDrawList();
     const ImVec2 corner{area_.x, area_.y}, end{area_.x + area_.width, area_.y + area_.height};
     list->AddImage(window_.texture(), corner, end);
-    const ImU32 line = IM_COL32(255, 200, 60, 220);
-    if (const auto& pixel = workbench_.explained_pixel()) {
-        const ImageSettings& image = workbench_.settings().image;
-        const ImVec2 at{area_.x + pixel->x / float(image.width) * area_.width,
-                        area_.y + pixel->y / float(image.height) * area_.height};
-        list->AddCircle(at, 6, line, 16, 1.5f);
-    }
+    list->PushClipRect(corner, end);
+    draw_paths(*list);
+    list->PopClipRect();
+    const ImU32 line = kMarkColour;
     if (workbench_.tool() != Tool::paint || ImGui::GetIO().WantCaptureMouse) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (mouse.x >= corner.x && mouse.x < end.x && mouse.y >= corner.y && mouse.y < end.y)
         list->AddCircle(mouse,
                         workbench_.brush().radius * area_.width / float(workbench_.settings().image.width),
                         line, 48, 1.5f);
+}
+
+/// Of the pixel that is explained, as the picture's camera sees them.
+void Interface::draw_paths(ImDrawList& list) {
+    const ImageSettings& image = workbench_.settings().image;
+    const auto place = [&](const Vec2f& pixel) {
+        return ImVec2{area_.x + pixel.x / float(image.width) * area_.width,
+                      area_.y + pixel.y / float(image.height) * area_.height};
+    };
+    const auto& paths = workbench_.explanation().paths;
+    if (paths.empty()) {
+        if (const auto& pixel = workbench_.explained_pixel(); pixel && workbench_.is_explaining())
+            list.AddCircle(place(*pixel), 6, kMarkColour, 16, 1.5f);
+        return;
+    }
+    const Camera& camera = texture_picture_->camera;
+    const auto project = [&](const Vec3f& a, const Vec3f& b) {
+        return project_line(camera, a, b, image.width, image.height);
+    };
+    for (const std::vector<Vec3f>& path : paths)
+        for (size_t k = 1; k < path.size(); ++k) {
+            const bool is_of_camera = k == 1;
+            if (is_of_camera && path[0] == camera.from) continue; // a point
+            if (const auto line = project(path[k - 1], path[k]))
+                list.AddLine(place(line->first), place(line->second),
+                             is_of_camera ? kMarkColour : kPathColour, 1.5f);
+        }
+    if (const auto hit = project(paths[0][1], paths[0][1]))
+        list.AddCircle(place(hit->first), 6, kMarkColour, 16, 1.5f);
 }
 
 void Interface::draw_panels() {
@@ -109,6 +138,8 @@ void Interface::draw_panels() {
         ImGui::PushItemWidth(width * 0.52f);
         draw_file_panel(workbench_, state_);
         draw_view_panel(state_);
+        draw_frame_panel(workbench_);
+        draw_object_panel(workbench_);
         draw_displacement_panel(workbench_, state_);
         draw_paint_panel(workbench_);
         draw_camera_panel(workbench_);
@@ -144,12 +175,12 @@ void Interface::draw_line() {
 }
 
 void Interface::draw_explanation() {
-    if (workbench_.explanation().empty()) return;
+    if (workbench_.explanation().text.empty()) return;
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_Always);
     ImGui::SetNextWindowBgAlpha(0.75f);
     if (ImGui::Begin("Pixel", nullptr,
                      kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs))
-        ImGui::TextUnformatted(workbench_.explanation().c_str());
+        ImGui::TextUnformatted(workbench_.explanation().text.c_str());
     ImGui::End();
 }
 

@@ -11,6 +11,8 @@
 #include "viewer/script_runner.h"
 #include "viewer/window.h"
 
+struct ImDrawList;
+
 namespace relief::viewer {
 
 class Interface {
@@ -31,6 +33,7 @@ class Interface {
     void refresh_texture();
     void draw();
     void draw_picture();
+    void draw_paths(ImDrawList& list);
     void draw_panels();
     void draw_line();
     void draw_explanation();

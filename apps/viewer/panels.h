@@ -16,6 +16,7 @@ struct PanelState {
     std::string display = kDisplayNames[0];
     bool is_display_changed = false;  ///< read and reset by whoever makes the table
     std::string scene_file, map_file; ///< names to save as
+    std::string map_preset;           ///< convention to save a map in; empty: its own
     size_t displacement = 0, material = 0, light = 0;
     /// Of the last renders, in a ring: millions of rays a second, and milliseconds.
     static constexpr size_t kHistory = 120;
@@ -28,6 +29,8 @@ struct PanelState {
 void note_statistics(const RenderState& render, const ShownPicture* picture, PanelState& state);
 
 void draw_file_panel(Workbench& workbench, PanelState& state);
+void draw_frame_panel(Workbench& workbench);
+void draw_object_panel(Workbench& workbench);
 void draw_displacement_panel(Workbench& workbench, PanelState& state);
 void draw_paint_panel(Workbench& workbench);
 void draw_camera_panel(Workbench& workbench);

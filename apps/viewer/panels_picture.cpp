@@ -83,7 +83,13 @@ void draw_render_panel(Workbench& workbench) {
             is_changed = true;
         }
     }
+    if (bool is_denoised = workbench.is_denoised();
+        workbench.has_denoiser() && ImGui::Checkbox("denoise", &is_denoised)) {
+        workbench.set_denoised(is_denoised);
+        return;
+    }
     is_changed |= ImGui::InputInt("samples", &changed.image.spp, 16, 64);
+    is_changed |= ImGui::SliderFloat("noise", &changed.image.noise, 0, 0.2f, "up to %.3f");
     is_changed |= ImGui::SliderInt("bounces", &changed.image.bounces, 0, 16);
     is_changed |= ImGui::SliderFloat("pixel error", &changed.surface.pixel_error, 0.25f, 8, "%.2f pixels",
                                      ImGuiSliderFlags_Logarithmic);
@@ -94,6 +100,7 @@ void draw_render_panel(Workbench& workbench) {
     }
     if (!is_automatic) is_changed |= ImGui::SliderInt("level", &changed.surface.level, 0, 8);
     changed.image.spp = std::clamp(changed.image.spp, 1, kMaxSamples);
+    changed.image.noise = std::clamp(changed.image.noise, 0.0f, 1.0f);
     changed.image.bounces = std::clamp(changed.image.bounces, 0, kMaxBounces);
     changed.surface.pixel_error = std::clamp(changed.surface.pixel_error, 0.05f, 100.0f);
     changed.surface.level = std::clamp(changed.surface.level, kAutoLevel, kMaxLevel);
@@ -135,14 +142,14 @@ void draw_statistics_panel(const Workbench& workbench, const PanelState& state) 
 
 void draw_help(Workbench& workbench) {
     constexpr const char* kLines[][2] = {
-        {"left button", "turns; a click explains the pixel; paints where that is chosen"},
+        {"left button", "turns; a click selects and explains; paints where that is chosen"},
         {"middle button", "turns; with shift moves, with control zooms (as Blender)"},
         {"alt + left, middle, right", "turns, moves, zooms (as Maya: panel Camera)"},
         {"right button", "looks around; with W A S D Q E flies, with shift faster"},
         {"control + click", "brings what is there into the middle, and into focus"},
         {"wheel, + and -", "nearer, farther"},
         {"arrows", "turn"},
-        {". or Home", "shows all objects"},
+        {". and Home", "show the object that was clicked on; all objects"},
         {"B", "paint or look"},
         {"[ and ]", "smaller and larger brush"},
         {"control + Z, control + Y", "undo, redo"},

@@ -3,6 +3,9 @@
 #include <array>
 #include <filesystem>
 #include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -79,6 +82,23 @@ bool edit_convention(Displacement& map) {
     return is_changed;
 }
 
+/// Saves the chosen map by itself, for this scene or another program.
+void draw_map_file(Workbench& workbench, PanelState& state) {
+    if (!ImGui::TreeNode("save the map")) return;
+    if (state.map_file.empty()) state.map_file = workbench.suggest_file("-map.exr").string();
+    ImGui::InputText("##map", &state.map_file);
+    constexpr const char* kSame = "convention as it is";
+    if (ImGui::BeginCombo("##convention", state.map_preset.empty() ? kSame : state.map_preset.c_str())) {
+        if (ImGui::Selectable(kSame)) state.map_preset.clear();
+        for (const char* preset : kPresets)
+            if (ImGui::Selectable(preset)) state.map_preset = preset;
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("save map")) workbench.save_map(state.displacement, state.map_file, state.map_preset);
+    ImGui::TreePop();
+}
+
 } // namespace
 
 void draw_file_panel(Workbench& workbench, PanelState& state) {
@@ -86,7 +106,7 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     if (ImGui::BeginCombo("##recent", "open again ...")) {
         for (const std::filesystem::path& file : workbench.list_recent())
             if (ImGui::Selectable(file.string().c_str())) {
-                workbench.open({file, {}});
+                workbench.open({file, {}, {}});
                 state.scene_file.clear();
             }
         ImGui::EndCombo();
@@ -101,6 +121,51 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     ImGui::SameLine();
     if (ImGui::Button("save (S)")) workbench.save(state.scene_file);
     if (ImGui::Button("write picture (F12)")) workbench.write_picture(workbench.suggest_file(".exr"));
+}
+
+void draw_frame_panel(Workbench& workbench) {
+    const std::optional<int> shown = workbench.frame();
+    if (!shown || !ImGui::CollapsingHeader("Frame", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    int frame = *shown;
+    const std::vector<int>& frames = workbench.frames();
+    bool is_changed = ImGui::InputInt("frame", &frame, 1, 10);
+    if (frames.size() > 1)
+        is_changed |= ImGui::SliderInt("##timeline", &frame, frames.front(), frames.back());
+    if (is_changed) workbench.show_frame(std::clamp(frame, -kMaxFrame, kMaxFrame));
+}
+
+void draw_object_panel(Workbench& workbench) {
+    if (!workbench.document() || !ImGui::CollapsingHeader("Objects")) return;
+    const Scene& scene = workbench.document()->scene();
+    const float row = ImGui::GetTextLineHeightWithSpacing();
+    const float rows = float(std::clamp(scene.objects.size(), size_t(1), size_t(8)));
+    if (ImGui::BeginChild("objects", {0, row * rows + 4})) {
+        ImGuiListClipper clipper;
+        clipper.Begin(int(scene.objects.size()));
+        while (clipper.Step())
+            for (int k = clipper.DisplayStart; k < clipper.DisplayEnd; ++k) {
+                const Object& object = scene.objects[size_t(k)];
+                const bool is_selected = workbench.selected_object() == uint32_t(k);
+                const std::string name = object.name.empty() ? fmt::format("object {}", k) : object.name;
+                ImGui::PushID(k);
+                if (ImGui::Selectable(name.c_str(), is_selected))
+                    workbench.select(is_selected ? std::nullopt : std::optional(uint32_t(k)));
+                ImGui::PopID();
+            }
+    }
+    ImGui::EndChild();
+    if (const auto& selected = workbench.selected_object(); selected && *selected < scene.objects.size()) {
+        const Object& object = scene.objects[*selected];
+        const auto tell = [](const char* what, const auto& items, uint32_t index) {
+            if (index != kNoIndex) ImGui::TextDisabled("%s %s", what, items[index].name.c_str());
+        };
+        tell("mesh", scene.meshes, object.mesh);
+        tell("displacement", scene.displacements, object.displacement);
+        tell("material", scene.materials, object.material);
+    }
+    if (ImGui::Button("frame selected (.)")) workbench.frame_selected();
+    ImGui::SameLine();
+    if (ImGui::Button("frame all (Home)")) workbench.frame_all();
 }
 
 void draw_displacement_panel(Workbench& workbench, PanelState& state) {
@@ -119,6 +184,7 @@ void draw_displacement_panel(Workbench& workbench, PanelState& state) {
     is_changed |= edit_convention(map);
     if (map.type == DisplacementType::vector)
         ImGui::TextDisabled("axes %s", format_map_axes(map.axes, map.space).c_str());
+    draw_map_file(workbench, state);
     if (!is_changed) return;
     workbench.change_document([&](Document& document) {
         document.change_displacement(state.displacement, [&](Displacement& changed) { changed = map; });
@@ -138,7 +204,6 @@ void draw_camera_panel(Workbench& workbench) {
     camera.aperture_radius = std::max(camera.aperture_radius, 0.0f);
     camera.focus_distance = std::max(camera.focus_distance, 1e-4f);
     if (is_changed) workbench.change_camera([&](OrbitCamera& orbit) { orbit.set(camera); });
-    if (ImGui::Button("frame all (.)")) workbench.frame();
     ImGui::SameLine();
     int preset = int(workbench.navigation());
     constexpr const char* kPresetNames[] = {"as Blender", "as Maya"};
@@ -161,11 +226,11 @@ void draw_light_panel(Workbench& workbench, PanelState& state) {
     if (scene.lights.empty()) return;
     state.light = std::min(state.light, scene.lights.size() - 1);
     int index = int(state.light);
-    if (scene.lights.size() > 1 && ImGui::SliderInt("lamp", &index, 0, int(scene.lights.size()) - 1))
+    if (scene.lights.size() > 1 && ImGui::SliderInt("light", &index, 0, int(scene.lights.size()) - 1))
         state.light = size_t(std::clamp(index, 0, int(scene.lights.size()) - 1));
     Light light = scene.lights[state.light];
-    bool is_changed = ImGui::DragFloat("lamp strength", &light.strength, 0.01f, 0, 1e9f, "%.3g");
-    is_changed |= ImGui::ColorEdit3("lamp colour", &light.color.x, ImGuiColorEditFlags_Float);
+    bool is_changed = ImGui::DragFloat("light strength", &light.strength, 0.01f, 0, 1e9f, "%.3g");
+    is_changed |= ImGui::ColorEdit3("light colour", &light.color.x, ImGuiColorEditFlags_Float);
     if (light.type != LightType::point)
         is_changed |= ImGui::DragFloat3("direction", &light.direction.x, 0.01f, 0, 0, "%.3g");
     if (light.type != LightType::sun)

@@ -85,11 +85,11 @@ std::vector<uint8_t> show_depth(const Image& image, const LayerPixels& depth) {
     });
 }
 
-std::vector<uint8_t> show_cost(const Image& image, const LayerPixels& cost) {
-    const auto [least, most] = cost.find_range();
+std::vector<uint8_t> show_heat(const Image& image, const LayerPixels& layer) {
+    const auto [least, most] = layer.find_range();
     const float from = least, reach = std::max(most - least, 1e-20f);
     return make_bytes(image, [&](size_t k, uint8_t* bytes) {
-        write_bytes(make_heat((cost.value(k) - from) / reach), bytes);
+        write_bytes(make_heat((layer.value(k) - from) / reach), bytes);
     });
 }
 
@@ -97,7 +97,7 @@ std::vector<uint8_t> show_cost(const Image& image, const LayerPixels& cost) {
 
 std::vector<uint8_t> make_view(const Image& image, const ViewSettings& settings,
                                const DisplayTable& display) {
-    constexpr const char* kFirst[] = {"R", "N.X", "depth.Z", "uv.X", "id.I", "cost.Y"};
+    constexpr const char* kFirst[] = {"R", "N.X", "depth.Z", "uv.X", "id.I", "cost.Y", "samples.Y"};
     const LayerPixels layer(image, kFirst[size_t(settings.view)]);
     const LayerPixels depth(image, "depth.Z");
     const auto has_surface = [&](size_t k) { return depth.is_there() && std::isfinite(depth.value(k)); };
@@ -108,7 +108,8 @@ std::vector<uint8_t> make_view(const Image& image, const ViewSettings& settings,
     case View::depth:
         return show_depth(image, layer);
     case View::cost:
-        return show_cost(image, layer);
+    case View::samples:
+        return show_heat(image, layer);
     case View::normal:
         return make_bytes(image, [&](size_t k, uint8_t* bytes) {
             const Vec3f n{layer.value(k, 0), layer.value(k, 1), layer.value(k, 2)};

@@ -10,8 +10,8 @@
 
 namespace relief::viewer {
 
-enum class View { colour, normal, depth, uv, object, cost };
-inline constexpr const char* kViewNames[] = {"colour", "normal", "depth", "uv", "object", "cost"};
+enum class View { colour, normal, depth, uv, object, cost, samples };
+inline constexpr const char* kViewNames[] = {"colour", "normal", "depth", "uv", "object", "cost", "samples"};
 
 struct ViewSettings {
     View view = View::colour;
@@ -20,7 +20,8 @@ struct ViewSettings {
 
 /// Red, green, blue and 255 of each pixel, row 0 at the top. Of the colour: the display transform of what was
 /// exposed, before black. Normals: 0.5 + 0.5 N. Depth: near white, far grey, nothing black. uv: red and
-/// green. Objects: a colour each. Cost: from blue, the least, to red, the most.
+/// green. Objects: a colour each. Cost and samples:
+/// from blue, the least, to red, the most.
 std::vector<uint8_t> make_view(const Image& image, const ViewSettings& settings, const DisplayTable& display);
 
 } // namespace relief::viewer

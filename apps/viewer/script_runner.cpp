@@ -124,7 +124,7 @@ bool ScriptRunner::run(const FileStep& step, double now) {
     };
     switch (step.kind) {
     case FileStep::Kind::open: {
-        SceneInput input{step.file, {}};
+        SceneInput input{step.file, {}, {}};
         input.mesh.displacement_map = step.map;
         change_ = now;
         workbench_.open(input);
@@ -139,14 +139,14 @@ bool ScriptRunner::run(const FileStep& step, double now) {
         return true;
     case FileStep::Kind::picture:
         if (!workbench_.picture()) throw Error(ErrorKind::failed, {"there is no picture yet", "", ""});
-        write_image(workbench_.picture()->image, step.file);
+        write_image(workbench_.shown_picture()->image, step.file);
         return true;
     case FileStep::Kind::save:
         require(workbench_.save(step.file));
         return true;
     case FileStep::Kind::save_map:
         require(workbench_.document() && !workbench_.document()->scene().displacements.empty() &&
-                workbench_.save_map(0, step.file));
+                workbench_.save_map(0, step.file, step.preset));
         return true;
     }
     return true;

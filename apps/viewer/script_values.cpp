@@ -108,9 +108,10 @@ void set_view(const Value& values, Workbench& workbench, ViewSettings& view) {
 } // namespace
 
 void apply_values(const Value& values, Workbench& workbench, ViewSettings& view) {
-    constexpr std::array<std::string_view, 16> kKeys = {
-        "displacement",   "preset",   "space",    "axes", "midlevel", "scale",  "wrap",           "flip_v",
-        "rotate_degrees", "strength", "exposure", "view", "tool",     "radius", "brush_strength", "spp"};
+    constexpr std::array<std::string_view, 18> kKeys = {
+        "displacement", "preset", "space",          "axes",     "midlevel", "scale",
+        "wrap",         "flip_v", "rotate_degrees", "strength", "exposure", "view",
+        "tool",         "radius", "brush_strength", "spp",      "frame",    "denoise"};
     for (const Member& member : values.members())
         if (std::ranges::find(kKeys, member.name) == kKeys.end())
             refuse_set(fmt::format("unknown key '{}'", member.name), suggest_word(member.name, kKeys));
@@ -120,6 +121,12 @@ void apply_values(const Value& values, Workbench& workbench, ViewSettings& view)
     if (has_any({"displacement", "preset", "space", "axes", "midlevel", "scale", "wrap", "flip_v"}))
         set_displacement(values, workbench);
     if (has_any({"rotate_degrees", "strength"})) set_environment(values, workbench);
+    if (values.contains("frame")) {
+        if (!workbench.frame()) refuse_set("nothing in the scene depends on the frame");
+        if (!workbench.show_frame(values["frame"].get<int>())) refuse_set(workbench.message());
+    }
+    if (values.contains("denoise") && !workbench.set_denoised(values["denoise"].get<bool>()))
+        throw Error(ErrorKind::device_missing, {workbench.message(), "set", ""});
     if (values.contains("spp")) {
         const int spp = values["spp"].get<int>();
         if (spp < 1 || spp > kMaxSamples) refuse_set("spp is out of range");

@@ -68,7 +68,7 @@ std::vector<uint8_t> encode_jpeg(const Image& image, const DisplayTable& display
 }
 
 std::string describe_state(const Workbench& workbench, const ShownPicture& picture) {
-    if (!workbench.explanation().empty()) return workbench.explanation();
+    if (!workbench.explanation().text.empty()) return workbench.explanation().text;
     const Progress progress = workbench.render_state().progress;
     if (picture.motion != Motion::still)
         return fmt::format("{} x {}", picture.image.width, picture.image.height);

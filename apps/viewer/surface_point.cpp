@@ -15,6 +15,8 @@ namespace {
 constexpr int kReach = 3;
 /// Two pixels of which uv differs by more lie on two sides of a seam.
 constexpr float kSeam = 0.25f;
+/// Lines begin there, in distances of the camera's target.
+constexpr float kNearPlane = 1e-3f;
 
 /// Channels of the layers, all of which are there.
 class Layers {
@@ -98,6 +100,29 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
     point.uv_right = find_derivative(layers, px, py, kReach, 0, scale_x);
     point.uv_down = find_derivative(layers, px, py, 0, kReach, scale_y);
     return point;
+}
+
+std::optional<std::pair<Vec2f, Vec2f>> project_line(const Camera& camera, const Vec3f& a, const Vec3f& b,
+                                                    int width, int height) {
+    const Vec3f axis = camera.to - camera.from, forward = normalize(axis);
+    const Vec3f right = normalize(cross(forward, camera.up)), up = cross(right, forward);
+    const float nearest = kNearPlane * length(axis);
+    Vec3f ends[2] = {a - camera.from, b - camera.from};
+    const float depths[2] = {dot(ends[0], forward), dot(ends[1], forward)};
+    if (std::max(depths[0], depths[1]) <= nearest) return std::nullopt;
+    for (size_t k = 0; k < 2; ++k) {
+        if (depths[k] >= nearest) continue;
+        const float share = (nearest - depths[k]) / (depths[1 - k] - depths[k]);
+        ends[k] = ends[k] + (ends[1 - k] - ends[k]) * share;
+    }
+    const float high = float(height);
+    const float pixels = 0.5f * high / std::tan(camera.fov_degrees * std::numbers::pi_v<float> / 360);
+    const auto project = [&](const Vec3f& end) -> Vec2f {
+        const float scale = pixels / dot(end, forward);
+        return {0.5f * float(width) - camera.shift.x * high + dot(end, right) * scale,
+                0.5f * high + camera.shift.y * high - dot(end, up) * scale};
+    };
+    return std::pair(project(ends[0]), project(ends[1]));
 }
 
 int find_udim(const Scene& scene, const SurfacePoint& point) {

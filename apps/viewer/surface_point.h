@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "relief/scene.h"
 #include "viewer/render_loop.h"
@@ -10,7 +11,7 @@
 namespace relief::viewer {
 
 /// Layers that pictures of the viewer have.
-inline constexpr const char* kViewerLayers[] = {"depth", "N", "P", "uv", "id", "cost"};
+inline constexpr const char* kViewerLayers[] = {"depth", "N", "P", "uv", "id", "cost", "samples"};
 
 struct SurfacePoint {
     uint32_t object = 0;
@@ -24,6 +25,11 @@ struct SurfacePoint {
 
 /// (x, y) in pixels of the whole picture. Nothing where the pixel shows no surface or lies outside.
 std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, float x, float y);
+
+/// Where a line of the world lies in a picture of so many pixels, as far as it is before the camera; nothing:
+/// it is behind.
+std::optional<std::pair<Vec2f, Vec2f>> project_line(const Camera& camera, const Vec3f& a, const Vec3f& b,
+                                                    int width, int height);
 
 /// The tile that a point's uv is of; 1001 of a map without tiles. Of several, that of the face around the uv
 /// which is nearest to the position.

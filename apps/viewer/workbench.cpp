@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "common/explain_pixel.h"
 #include "relief/aim.h"
 #include "relief/error.h"
 #include "viewer/surface_point.h"
@@ -27,7 +26,12 @@ constexpr float kFlySpeed = 0.8f;
 
 Workbench::Workbench(const RenderSettings& settings, const PictureDefaults& given,
                      std::function<void()> on_news, const std::filesystem::path& state_folder)
-    : settings_(settings), given_(given), on_news_(on_news), state_(state_folder), loop_(std::move(on_news)) {
+    : settings_(settings),
+      given_(given),
+      on_news_(on_news),
+      state_(state_folder),
+      preview_(on_news),
+      loop_(std::move(on_news)) {
     settings_.image.layers.assign(std::begin(kViewerLayers), std::end(kViewerLayers));
 }
 
@@ -59,15 +63,25 @@ void Workbench::set_motion(Motion motion) {
 
 void Workbench::change_camera(const std::function<void(OrbitCamera&)>& change) {
     change(camera_);
+    has_own_camera_ = true;
     if (document_) document_->set_camera(camera_.get());
-    explained_pixel_.reset();
     set_motion(Motion::moving);
 }
 
-void Workbench::frame() {
+void Workbench::frame_all() { frame(std::nullopt); }
+
+void Workbench::frame_selected() { frame(selected_object_); }
+
+void Workbench::select(std::optional<uint32_t> object) {
+    selected_object_ = object;
+    has_news_ = true;
+}
+
+void Workbench::frame(const std::optional<uint32_t>& object) {
     if (!document_) return;
     attempt([&] {
         Scene scene = document_->scene();
+        if (object) scene.objects = {scene.objects.at(*object)};
         AimOptions aim;
         aim.frame_all = true;
         aim_scene(scene, aim, float(settings_.image.width) / float(settings_.image.height));
@@ -111,21 +125,25 @@ void Workbench::explain(float x, float y) {
         y >= float(settings_.image.height))
         return;
     explained_pixel_ = Vec2f{x, y};
-    explanation_ = "...";
+    explanation_ = {"...", kNoIndex, {}};
     std::shared_ptr<const Scene> scene = document_->snapshot();
     RenderSettings settings = settings_;
     settings.image.layers.clear();
-    explaining_ =
-        std::async(std::launch::async, [scene, settings, x, y, on_news = on_news_]() -> std::string {
-            std::string text;
-            try {
-                text = cli::explain_pixel(*scene, settings, int(x), int(y));
-            } catch (const std::exception& error) {
-                text = error.what();
-            }
-            if (on_news) on_news();
-            return text;
-        });
+    explaining_ = std::async(std::launch::async, [scene, settings, x, y, on_news = on_news_]() {
+        cli::PixelExplanation explanation;
+        try {
+            explanation = cli::explain_pixel(*scene, settings, int(x), int(y));
+        } catch (const std::exception& error) {
+            explanation.text = error.what();
+        }
+        if (on_news) on_news();
+        return explanation;
+    });
+}
+
+void Workbench::forget_explanation() {
+    explanation_ = {};
+    explained_pixel_.reset();
 }
 
 /// Edits that were made while the request waits are in the snapshot as well; making them again changes
@@ -153,14 +171,50 @@ void Workbench::take_picture() {
     picture_ = std::move(picture);
     if (first_picture_time_ < 0) first_picture_time_ = now_;
     has_news_ = true;
+    if (denoised_ && denoised_->version != picture_->version) denoised_.reset();
+    if (is_denoised_ && picture_->motion == Motion::still)
+        preview_.show(picture_);
+    else
+        preview_.drop();
     finish_output();
+}
+
+void Workbench::take_denoised() {
+    try {
+        const std::shared_ptr<const ShownPicture> denoised = preview_.poll();
+        if (!denoised || !picture_ || denoised->version != picture_->version) return;
+        denoised_ = denoised;
+        has_news_ = true;
+        finish_output();
+    } catch (const std::exception& error) {
+        set_denoised(false);
+        message_ = error.what();
+    }
+}
+
+const std::shared_ptr<const ShownPicture>& Workbench::shown_picture() const {
+    return is_denoised_ && denoised_ ? denoised_ : picture_;
+}
+
+bool Workbench::set_denoised(bool is_denoised) {
+    if (is_denoised && !attempt([&] { preview_.load(settings_.device.threads); })) return false;
+    if (std::exchange(is_denoised_, is_denoised) == is_denoised) return true;
+    denoised_.reset();
+    preview_.drop();
+    change_settings([&](RenderSettings& settings) {
+        std::vector<std::string>& layers = settings.image.layers;
+        layers.assign(std::begin(kViewerLayers), std::end(kViewerLayers));
+        if (is_denoised) layers.insert(layers.end(), std::begin(kDenoiserLayers), std::end(kDenoiserLayers));
+    });
+    return true;
 }
 
 void Workbench::poll_jobs() {
     if (is_ready(loading_)) adopt(loading_.get());
     if (is_ready(rereading_)) adopt(rereading_.get());
     if (is_ready(explaining_)) {
-        explanation_ = explaining_.get();
+        cli::PixelExplanation explanation = explaining_.get();
+        if (explained_pixel_) explanation_ = std::move(explanation); // else it was closed meanwhile
         has_news_ = true;
     }
     if (now_ - last_poll_ < kWatchInterval) return;
@@ -186,6 +240,8 @@ bool Workbench::update(double now) {
     fly(now - std::exchange(now_, now));
     poll_jobs();
     take_picture();
+    take_denoised();
+    if (is_done()) preview_.look();
     if (const std::string error = loop_.state().error; error != last_error_) {
         last_error_ = error;
         if (!error.empty()) message_ = error;
@@ -206,6 +262,9 @@ bool Workbench::is_shown() const {
     return document_ && !is_loading() && !needs_request_ && picture_ && picture_->version >= wanted_version_;
 }
 
-bool Workbench::is_done() const { return is_shown() && motion_ == Motion::still && picture_->is_complete; }
+bool Workbench::is_done() const {
+    return is_shown() && motion_ == Motion::still && picture_->is_complete &&
+           (!is_denoised_ || (denoised_ && denoised_->is_complete));
+}
 
 } // namespace relief::viewer

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "common/explain_pixel.h"
+#include "viewer/denoised_preview.h"
 #include "viewer/display_table.h"
 #include "viewer/document.h"
 #include "viewer/file_watch.h"
@@ -47,7 +49,8 @@ class Workbench {
     /// A dropped file: a scene or mesh is opened; a map goes onto the mesh, an HDR becomes the environment.
     void drop(const std::filesystem::path& file);
     bool save(const std::filesystem::path& file);
-    bool save_map(size_t displacement, const std::filesystem::path& file);
+    /// In the convention of a preset (conventions.h); empty: in that which the map has.
+    bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
     std::vector<std::filesystem::path> list_recent() const { return state_.read_recent(); }
     /// Beside the scene or mesh, with `-view` in its name.
     std::filesystem::path suggest_file(const char* extension) const;
@@ -70,7 +73,24 @@ class Workbench {
     Document* document() { return document_.get(); }
     const OrbitCamera& camera() const { return camera_; }
     void change_camera(const std::function<void(OrbitCamera&)>& change);
-    void frame();
+    void frame_all();
+    /// The selected object alone; all where none is.
+    void frame_selected();
+    /// Index into the scene's objects; nothing: none.
+    const std::optional<uint32_t>& selected_object() const { return selected_object_; }
+    void select(std::optional<uint32_t> object);
+    /// Frames that the scene file names, in order; empty: none, or nothing in it has keys.
+    const std::vector<int>& frames() const { return frames_; }
+    /// Of a scene whose values have keys.
+    std::optional<int> frame() const;
+    /// Shows another one; the camera is that of the scene as long as nobody moved it. Refused with a message
+    /// while the scene has changes that are not saved: they would be lost.
+    bool show_frame(int frame);
+    /// Whether Open Image Denoise is there, as far as is known: it is looked for once a picture is done.
+    bool has_denoiser() const { return preview_.is_there(); }
+    bool is_denoised() const { return is_denoised_; }
+    /// False, with a message, where the library cannot be loaded.
+    bool set_denoised(bool is_denoised);
     const RenderSettings& settings() const { return settings_; }
     void change_settings(const std::function<void(RenderSettings&)>& change);
     /// Calls `change`, shows what came of it, and reports errors as messages.
@@ -87,20 +107,24 @@ class Workbench {
 
     // What there is to see.
     const std::shared_ptr<const ShownPicture>& picture() const { return picture_; }
+    /// The same; without noise where that is wanted and done.
+    const std::shared_ptr<const ShownPicture>& shown_picture() const;
     RenderState render_state() const { return loop_.state(); }
-    /// A picture of the newest state is shown; and one with all its samples.
+    /// A picture of the newest state is shown; and one with all its samples, denoised if that is wanted.
     bool is_shown() const;
     bool is_done() const;
     const std::string& message() const { return message_; }
-    const std::string& explanation() const { return explanation_; }
+    /// Of the pixel that was clicked on; without text: none.
+    const cli::PixelExplanation& explanation() const { return explanation_; }
     /// Of the pixel that was explained, pixels of the whole picture; nothing: none.
     const std::optional<Vec2f>& explained_pixel() const { return explained_pixel_; }
+    bool is_explaining() const { return explaining_.valid(); }
     double time_of_first_picture() const { return first_picture_time_; } ///< of update(); below 0: not yet
 
   private:
     struct Loaded {
         SceneInput input;
-        std::optional<Scene> scene;
+        std::optional<LoadedInput> loaded;
         bool keeps_camera = false;
         std::string error;
     };
@@ -120,7 +144,9 @@ class Workbench {
         bool has_moved = false;
     };
 
-    void load(SceneInput input, bool keeps_camera);
+    void frame(const std::optional<uint32_t>& object);
+    void forget_explanation();
+    void load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot = nullptr);
     void adopt(Loaded loaded);
     void adopt(Reread reread);
     void watch_files();
@@ -128,6 +154,7 @@ class Workbench {
     void reread(const std::vector<std::filesystem::path>& maps);
     void poll_jobs();
     void take_picture();
+    void take_denoised();
     void request();
     void set_motion(Motion motion);
     void send(std::vector<MapEdit> edits);
@@ -160,6 +187,10 @@ class Workbench {
     std::set<int> held_keys_;
     Modifiers modifiers_;
 
+    std::shared_ptr<Shot> shot_; ///< null: the scene is the same at all frames; used by a job while it loads
+    std::vector<int> frames_;
+    bool has_own_camera_ = false; ///< somebody moved it
+
     std::shared_ptr<const Scene> snapshot_;
     uint64_t snapshot_version_ = 0;
     uint64_t scene_count_ = 0; ///< documents opened: versions of different ones differ
@@ -168,16 +199,21 @@ class Workbench {
     double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1;
     uint64_t wanted_version_ = 0;
     std::shared_ptr<const ShownPicture> picture_;
+    std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
+    bool is_denoised_ = false;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
-    std::string message_, last_error_, explanation_;
+    std::string message_, last_error_;
+    cli::PixelExplanation explanation_;
     std::optional<Vec2f> explained_pixel_;
+    std::optional<uint32_t> selected_object_;
     bool wants_to_end_ = false, is_help_shown_ = false, has_news_ = true;
 
     FileWatch watch_;
     UserState state_;
     std::future<Loaded> loading_;
     std::future<Reread> rereading_;
-    std::future<std::string> explaining_;
+    std::future<cli::PixelExplanation> explaining_;
+    DenoisedPreview preview_;
     RenderLoop loop_; ///< last: its thread calls on_news_
 };
 

@@ -11,6 +11,7 @@
 #include "common/values.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "viewer/conventions.h"
 #include "viewer/workbench.h"
 
 namespace relief::viewer {
@@ -32,36 +33,69 @@ bool is_environment(const std::filesystem::path& file) { return cli::get_lower_e
 
 void Workbench::open(const SceneInput& input) { load(input, false); }
 
-void Workbench::load(SceneInput input, bool keeps_camera) {
+std::optional<int> Workbench::frame() const { return document_ ? document_->input().frame : std::nullopt; }
+
+bool Workbench::show_frame(int frame) {
+    if (!shot_ || is_loading()) return false;
+    if (frame == this->frame()) return true;
+    has_news_ = true;
+    if (document_->has_changes()) {
+        message_ = "another frame would drop what was changed: save the scene (S) first, or open it again";
+        return false;
+    }
+    return attempt([&] {
+        if (const std::optional<Shot::View> view = shot_->find_view(frame)) {
+            document_->set_frame(frame);
+            if (has_own_camera_) return;
+            change_camera([&](OrbitCamera& camera) { camera.set(view->camera); });
+            has_own_camera_ = false;
+            return;
+        }
+        SceneInput input = document_->input();
+        input.frame = frame;
+        load(std::move(input), has_own_camera_, shot_);
+    });
+}
+
+void Workbench::load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot) {
     if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
     message_ = fmt::format("loading {}", input.file.filename().string());
     has_news_ = true;
-    loading_ = std::async(std::launch::async, [input, keeps_camera, on_news = on_news_] {
-        Loaded loaded{input, std::nullopt, keeps_camera, {}};
-        try {
-            loaded.scene = load_input(input);
-        } catch (const std::exception& error) {
-            loaded.error = error.what();
-        }
-        if (on_news) on_news();
-        return loaded;
-    });
+    loading_ = std::async(
+        std::launch::async, [input, keeps_camera, shot = std::move(shot), on_news = on_news_]() mutable {
+            Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
+            try {
+                loaded.loaded = load_input(loaded.input, std::move(shot));
+                if (const auto& animated = loaded.loaded->shot; animated && !loaded.input.frame)
+                    loaded.input.frame = find_first_frame(*animated);
+            } catch (const std::exception& error) {
+                loaded.error = error.what();
+            }
+            if (on_news) on_news();
+            return loaded;
+        });
 }
 
 void Workbench::adopt(Loaded loaded) {
     has_news_ = true;
     message_ = loaded.error;
-    if (!loaded.scene) {
+    if (!loaded.loaded) {
         watch_files();
         return;
     }
     const bool is_first = !document_;
     painter_.reset();
-    document_ = std::make_unique<Document>(loaded.input, std::move(*loaded.scene));
+    document_ = std::make_unique<Document>(loaded.input, std::move(loaded.loaded->scene));
+    shot_ = std::move(loaded.loaded->shot);
+    frames_ = shot_ ? shot_->frames() : std::vector<int>();
+    std::ranges::sort(frames_);
     painter_ = std::make_unique<Painter>(*document_);
     ++scene_count_;
     const Scene& scene = document_->scene();
-    if (is_first || !loaded.keeps_camera) camera_.set(scene.camera);
+    if (is_first || !loaded.keeps_camera) {
+        camera_.set(scene.camera);
+        has_own_camera_ = false;
+    }
     document_->set_camera(camera_.get());
     ImageSettings& image = settings_.image;
     const PictureDefaults& picture = scene.picture;
@@ -72,8 +106,8 @@ void Workbench::adopt(Loaded loaded) {
     if (const auto painted = state_.find_painted(loaded.input.file); !painted.empty())
         message_ = fmt::format("painted in an earlier run and not saved: {}", painted.front().string());
     state_.add_recent(loaded.input.file);
-    explanation_.clear();
-    explained_pixel_.reset();
+    forget_explanation();
+    selected_object_.reset();
     needs_snapshot_ = true;
     watch_files();
     set_motion(Motion::still);
@@ -89,7 +123,7 @@ void Workbench::watch_files() {
 
 void Workbench::drop(const std::filesystem::path& file) {
     const cli::FileKind kind = cli::get_kind(file);
-    if (kind != cli::FileKind::map) return open({file, {}});
+    if (kind != cli::FileKind::map) return open({file, {}, {}});
     if (!document_) {
         message_ = "drop a mesh first, then its map";
         has_news_ = true;
@@ -189,10 +223,12 @@ bool Workbench::save(const std::filesystem::path& file) {
     });
 }
 
-bool Workbench::save_map(size_t displacement, const std::filesystem::path& file) {
+bool Workbench::save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset) {
     if (!document_) return false;
     return attempt([&] {
-        document_->save_map(displacement, file, document_->scene().displacements.at(displacement));
+        Displacement to = document_->scene().displacements.at(displacement);
+        if (!preset.empty()) to = choose_convention(preset, to);
+        document_->save_map(displacement, file, to);
         message_ = fmt::format("wrote {}", file.string());
         has_news_ = true;
     });
@@ -210,7 +246,7 @@ void Workbench::finish_output() {
     if (output_.empty() || !is_done()) return;
     const std::filesystem::path file = std::exchange(output_, {});
     attempt([&] {
-        write_image(picture_->image, file);
+        write_image(shown_picture()->image, file);
         message_ = fmt::format("wrote {}", file.string());
     });
 }

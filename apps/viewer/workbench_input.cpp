@@ -116,6 +116,10 @@ void Workbench::release(const InputEvent& event) {
     }
     if (drag.action != DragAction::tool || tool_ != Tool::look || drag.has_moved) return;
     const Vec2f at = to_picture(event.x, event.y);
+    if (picture_) {
+        const auto point = find_surface_point(*picture_, at.x, at.y);
+        select(point ? std::optional(point->object) : std::nullopt);
+    }
     explain(at.x, at.y);
 }
 
@@ -163,8 +167,10 @@ bool Workbench::press_command(int key) {
         set_tool(tool_ == Tool::look ? Tool::paint : Tool::look);
         return true;
     case '.':
+        frame_selected();
+        return true;
     case kHome:
-        frame();
+        frame_all();
         return true;
     case '[':
         brush_.radius = std::max(1.0f, brush_.radius * 0.8f);
@@ -180,8 +186,8 @@ bool Workbench::press_command(int key) {
         return true;
     case kEscape:
         is_help_shown_ = false;
-        explained_pixel_.reset();
-        explanation_.clear();
+        forget_explanation();
+        selected_object_.reset();
         return true;
     default:
         return false;

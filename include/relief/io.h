@@ -151,6 +151,7 @@ struct SceneChanges {
     std::set<std::string> materials;     ///< names: base_color, roughness and metallic are written
     std::map<std::string, std::filesystem::path> maps; ///< files that hold the texels of displacements now
     std::filesystem::path environment;                 ///< its picture; empty: as it was
+    std::optional<double> frame; ///< of a scene with keys: it is written as it is there, without them
 };
 
 /// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "common/explain_pixel.h"
 #include "viewer/navigation.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/resolution_governor.h"
+#include "viewer/surface_point.h"
 #include "viewer/vectors.h"
 
 namespace relief::viewer {
@@ -14,7 +16,9 @@ namespace relief::viewer {
 namespace {
 
 void expect_near(const Vec3f& a, const Vec3f& b) {
-    EXPECT_NEAR(a.x, b.x, 1e-4f), EXPECT_NEAR(a.y, b.y, 1e-4f), EXPECT_NEAR(a.z, b.z, 1e-4f);
+    EXPECT_NEAR(a.x, b.x, 1e-4f);
+    EXPECT_NEAR(a.y, b.y, 1e-4f);
+    EXPECT_NEAR(a.z, b.z, 1e-4f);
 }
 
 OrbitCamera make_camera() {
@@ -91,6 +95,32 @@ TEST(Navigation, drags_mean_what_they_mean_in_other_programs) {
         EXPECT_EQ(choose_action(preset, MouseButton::right, {}), DragAction::look);
         EXPECT_EQ(choose_action(preset, MouseButton::left, {.control = true}), DragAction::focus);
     }
+}
+
+TEST(ProjectLine, is_where_the_rays_of_pixels_go) {
+    Camera camera;
+    camera.from = {1, 2, 5}, camera.to = {0.5f, 0, -1}, camera.shift = {0.1f, -0.2f};
+    for (const auto& [x, y] : {std::pair(0, 0), std::pair(31, 7), std::pair(63, 35)}) {
+        const Ray ray = cli::make_pixel_ray(camera, 64, 36, x, y);
+        const auto line =
+            project_line(camera, ray.origin + ray.direction * 2, ray.origin + ray.direction * 9, 64, 36);
+        ASSERT_TRUE(line);
+        for (const Vec2f& end : {line->first, line->second}) {
+            EXPECT_NEAR(end.x, float(x) + 0.5f, 1e-3f);
+            EXPECT_NEAR(end.y, float(y) + 0.5f, 1e-3f);
+        }
+    }
+}
+
+TEST(ProjectLine, ends_before_the_camera) {
+    Camera camera;
+    camera.from = {0, 0, 5};
+    EXPECT_FALSE(project_line(camera, {0, 0, 6}, {1, 0, 8}, 64, 36));
+    const auto line = project_line(camera, {1, 0, 0}, {1, 0, 10}, 64, 36);
+    ASSERT_TRUE(line);
+    EXPECT_NEAR(line->first.y, 18, 1e-3f);
+    EXPECT_GT(line->second.x, 1000);
+    EXPECT_TRUE(std::isfinite(line->second.x));
 }
 
 TEST(ResolutionGovernor, finds_the_size_that_takes_the_time_it_is_given) {

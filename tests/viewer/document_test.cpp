@@ -19,7 +19,7 @@ namespace relief::viewer {
 
 namespace {
 
-Document open_document(const SceneInput& input) { return Document(input, load_input(input)); }
+Document open_document(const SceneInput& input) { return Document(input, load_input(input).scene); }
 
 std::vector<float> render_colours(const Scene& scene) {
     return render(scene, make_small_settings()).image.pixels;
@@ -37,7 +37,7 @@ class DocumentTest : public FolderTest {
 };
 
 TEST_F(DocumentTest, a_changed_scene_is_read_again_as_it_was_seen) {
-    Document document = open_document({folder_ / "scene.json", {}});
+    Document document = open_document({folder_ / "scene.json", {}, {}});
     EXPECT_FALSE(document.has_changes());
     document.change_displacement(0, [](Displacement& map) {
         map.scale = {2, 2, 2};
@@ -62,7 +62,7 @@ TEST_F(DocumentTest, a_changed_scene_is_read_again_as_it_was_seen) {
 }
 
 TEST_F(DocumentTest, a_mesh_and_its_map_are_saved_with_their_convention) {
-    SceneInput input{folder_ / "meshes" / "plane.obj", {}};
+    SceneInput input{folder_ / "meshes" / "plane.obj", {}, {}};
     input.mesh.displacement_map = folder_ / "maps" / "bumps.exr";
     input.mesh.map.preset = "mudbox";
     Document document = open_document(input);
@@ -74,7 +74,7 @@ TEST_F(DocumentTest, a_mesh_and_its_map_are_saved_with_their_convention) {
 }
 
 TEST_F(DocumentTest, painted_maps_are_written_beside_the_scene) {
-    Document document = open_document({folder_ / "scene.json", {}});
+    Document document = open_document({folder_ / "scene.json", {}, {}});
     const std::string before = document.scene().displacements[0].tiles[0].texture->file;
     for (uint32_t k = 10; k < 30; ++k) write_texel(document.paint_tile(0, 1001), k, 20, {0, 0, 0.37f});
     EXPECT_TRUE(document.has_painted());
@@ -91,7 +91,7 @@ TEST_F(DocumentTest, painted_maps_are_written_beside_the_scene) {
 }
 
 TEST_F(DocumentTest, what_was_opened_is_never_written_over) {
-    Document document = open_document({folder_ / "scene.json", {}});
+    Document document = open_document({folder_ / "scene.json", {}, {}});
     EXPECT_THROW(document.save(folder_ / "scene.json", image_), Error);
     const std::string map = document.scene().displacements[0].tiles[0].texture->file;
     EXPECT_THROW(document.save_map(0, map, document.scene().displacements[0]), Error);
@@ -103,7 +103,7 @@ TEST_F(DocumentTest, what_was_opened_is_never_written_over) {
 }
 
 TEST_F(DocumentTest, painting_asks_for_a_tile_that_is_there) {
-    Document document = open_document({folder_ / "scene.json", {}});
+    Document document = open_document({folder_ / "scene.json", {}, {}});
     EXPECT_THROW(document.paint_tile(0, 1002), Error);
     document.change_displacement(0, [](Displacement& map) { map.dequantize = true; });
     EXPECT_THROW(document.paint_tile(0, 1001), Error);
@@ -112,7 +112,7 @@ TEST_F(DocumentTest, painting_asks_for_a_tile_that_is_there) {
 
 TEST_F(DocumentTest, a_picture_is_no_scene) {
     try {
-        load_input({folder_ / "maps" / "bumps.exr", {}});
+        load_input({folder_ / "maps" / "bumps.exr", {}, {}});
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);

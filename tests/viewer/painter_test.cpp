@@ -17,7 +17,7 @@ namespace {
 /// A document, and a picture of it.
 struct Easel {
     explicit Easel(Scene scene)
-        : document({"plane.obj", {}}, std::move(scene)),
+        : document({"plane.obj", {}, {}}, std::move(scene)),
           painter(document),
           picture(make_picture(document.scene(), make_small_settings())) {}
 

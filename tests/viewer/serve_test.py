@@ -101,14 +101,19 @@ def check_viewers(url):
     assert second.last_picture("4 of 4") != turned
 
 
+def start_server(relief, folder, size, samples):
+    """The viewer, and the address that it prints."""
+    subprocess.run([relief, "scene", "ear", "-o", "ear", "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    viewer = subprocess.Popen([relief, "view", "ear/scene.json", "--size", size, "--spp", str(samples), "--serve", "0"],
+                              cwd=folder, text=True, stdout=subprocess.PIPE)
+    return viewer, viewer.stdout.readline().strip()
+
+
 def main():
     relief = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([relief, "scene", "ear", "-o", "ear", "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-        viewer = subprocess.Popen([relief, "view", "ear/scene.json", "--size", "160x90", "--spp", "4", "--serve", "0"],
-                                  cwd=folder, text=True, stdout=subprocess.PIPE)
+        viewer, url = start_server(relief, folder, "160x90", 4)
         try:
-            url = viewer.stdout.readline().strip()
             check_viewers(url)
             port = urllib.parse.urlsplit(url).port
             taken = subprocess.run([relief, "view", "ear/scene.json", "--serve", str(port)], cwd=folder, text=True,
@@ -122,4 +127,5 @@ def main():
             viewer.wait()
 
 
-main()
+if __name__ == "__main__":
+    main()

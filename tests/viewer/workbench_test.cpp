@@ -1,8 +1,6 @@
 // The viewer as a user drives it, without a window.
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <ios>
 #include <iterator>
 #include <memory>
@@ -15,80 +13,9 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/event_script.h"
-#include "viewer/fixture.h"
-#include "viewer/workbench.h"
+#include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
-
-namespace {
-
-using Kind = InputEvent::Kind;
-
-double read_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-} // namespace
-
-class WorkbenchTest : public FolderTest {
-  protected:
-    void SetUp() override {
-        FolderTest::SetUp();
-        write_scene_files();
-        settings_ = make_small_settings();
-        given_.spp = settings_.image.spp;
-        bench_ = std::make_unique<Workbench>(settings_, given_);
-        bench_->set_area({0, 0, 48, 32});
-    }
-    void TearDown() override {
-        bench_.reset();
-        FolderTest::TearDown();
-    }
-    bool reach(const std::function<bool()>& is_true) {
-        return wait_until([&] {
-            bench_->update(read_now());
-            return is_true();
-        });
-    }
-    bool reach_done() {
-        return reach([&] { return bench_->is_done(); });
-    }
-    void open_scene() {
-        bench_->open({folder_ / "scene.json", {}});
-        ASSERT_TRUE(reach_done()) << bench_->message();
-    }
-    void send(Kind kind, float x, float y, MouseButton button = MouseButton::left, Modifiers modifiers = {}) {
-        InputEvent event;
-        event.kind = kind, event.x = x, event.y = y, event.button = button, event.modifiers = modifiers;
-        bench_->handle(event);
-    }
-    void press_key(int key, Modifiers modifiers = {}) {
-        InputEvent event;
-        event.kind = Kind::key_down, event.key = key, event.modifiers = modifiers;
-        bench_->handle(event);
-        event.kind = Kind::key_up;
-        bench_->handle(event);
-    }
-    void drag(float x0, float y0, float x1, float y1, MouseButton button = MouseButton::left) {
-        send(Kind::press, x0, y0, button);
-        for (int k = 1; k <= 8; ++k)
-            send(Kind::move, x0 + (x1 - x0) * float(k) / 8, y0 + (y1 - y0) * float(k) / 8, button);
-        send(Kind::release, x1, y1, button);
-    }
-    /// What the command makes of a saved scene.
-    std::vector<float> render_file(const std::string& name) {
-        const Scene scene = load_scene(folder_ / name);
-        RenderSettings settings = settings_;
-        settings.image.width = scene.picture.width.value(),
-        settings.image.height = scene.picture.height.value();
-        settings.image.spp = scene.picture.spp.value();
-        return render(scene, settings).image.pixels;
-    }
-
-    RenderSettings settings_;
-    PictureDefaults given_;
-    std::unique_ptr<Workbench> bench_;
-};
 
 TEST_F(WorkbenchTest, turned_changed_and_saved_it_renders_to_what_was_seen) {
     open_scene();
@@ -191,9 +118,9 @@ TEST_F(WorkbenchTest, a_map_dropped_on_a_mesh_displaces_it) {
 TEST_F(WorkbenchTest, a_click_explains_a_pixel_and_a_picture_is_written_when_it_is_done) {
     open_scene();
     send(Kind::press, 24, 16), send(Kind::release, 24, 16);
-    ASSERT_TRUE(reach([&] { return bench_->explanation().size() > 10; }));
+    ASSERT_TRUE(reach([&] { return bench_->explanation().text.size() > 10; }));
     for (const char* word : {"object   0 'plane'", "patch ", "texel (", "moved ", "colour "})
-        EXPECT_NE(bench_->explanation().find(word), std::string::npos) << bench_->explanation();
+        EXPECT_NE(bench_->explanation().text.find(word), std::string::npos) << bench_->explanation().text;
     bench_->write_picture(folder_ / "out.exr");
     ASSERT_TRUE(reach([&] { return std::filesystem::exists(folder_ / "out.exr"); }));
     EXPECT_EQ(read_image(folder_ / "out.exr").pixels.size(), bench_->picture()->image.pixels.size());
@@ -221,6 +148,61 @@ TEST_F(WorkbenchTest, focus_brings_the_place_of_a_click_into_the_middle) {
     EXPECT_GT(bench_->camera().get().to.x, 0.3f);
     EXPECT_GT(bench_->camera().get().to.y, 0.2f);
     EXPECT_NEAR(bench_->camera().distance(), 4, 0.3f);
+}
+
+TEST_F(WorkbenchTest, the_object_that_was_clicked_on_is_framed) {
+    Scene scene = make_bumpy_scene();
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects[1].name = "far";
+    scene.objects[1].world_from_object.translation = {6, 0, 0};
+    scene.camera.from = {3, 0, 9}, scene.camera.to = {3, 0, 0};
+    save_scene(scene, folder_ / "two");
+    bench_->open({folder_ / "two" / "scene.json", {}, {}});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    press_key(kHome);
+    EXPECT_NEAR(bench_->camera().get().to.x, 3, 0.2f);
+    ASSERT_TRUE(reach_done());
+    send(Kind::press, 40, 16), send(Kind::release, 40, 16);
+    EXPECT_EQ(bench_->selected_object(), 1u);
+    ASSERT_TRUE(reach([&] { return !bench_->is_explaining(); }));
+    EXPECT_EQ(bench_->explanation().object, 1u);
+    ASSERT_FALSE(bench_->explanation().paths.empty());
+    for (const auto& path : bench_->explanation().paths) {
+        EXPECT_GE(path.size(), 2u);
+        EXPECT_EQ(path[0], bench_->camera().get().from);
+        EXPECT_EQ(path[1], bench_->explanation().paths[0][1]);
+    }
+    press_key('.');
+    EXPECT_NEAR(bench_->camera().get().to.x, 6, 0.2f);
+    press_key(kEscape);
+    EXPECT_FALSE(bench_->selected_object());
+    EXPECT_EQ(bench_->explanation().text, "");
+    press_key('.');
+    EXPECT_NEAR(bench_->camera().get().to.x, 3, 0.2f);
+}
+
+TEST_F(WorkbenchTest, a_map_is_saved_in_the_convention_of_another_program) {
+    open_scene();
+    ASSERT_TRUE(bench_->save_map(0, folder_ / "mudbox.exr", "mudbox")) << bench_->message();
+    const Vec3f there = read_texel(read_texture(folder_ / "mudbox.exr"), 12, 20);
+    EXPECT_EQ(there.y, read_texel(*make_bumps(false), 12, 20).z);
+    EXPECT_FALSE(bench_->save_map(0, folder_ / "other.exr", "nobody"));
+    EXPECT_NE(bench_->message().find("nobody"), std::string::npos) << bench_->message();
+}
+
+TEST_F(WorkbenchTest, a_denoised_picture_is_shown_in_place_of_the_noisy_one) {
+    open_scene();
+    if (!bench_->set_denoised(true)) GTEST_SKIP() << bench_->message();
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_TRUE(bench_->has_denoiser());
+    const Image& noisy = bench_->picture()->image;
+    const Image& shown = bench_->shown_picture()->image;
+    EXPECT_NE(get_channel(shown, "R"), get_channel(noisy, "R"));
+    EXPECT_EQ(get_channel(shown, "noisy.R"), get_channel(noisy, "R"));
+    const std::vector<float> colour = get_channel(noisy, "R");
+    ASSERT_TRUE(bench_->set_denoised(false));
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(get_channel(bench_->shown_picture()->image, "R"), colour);
 }
 
 TEST_F(WorkbenchTest, values_that_mean_nothing_are_refused) {

@@ -9,6 +9,7 @@
 
 #include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
+#include "io/scene/keyed_values.h"
 #include "io/scene/scene_values.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -260,6 +261,7 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
         root = write_mesh_scene(scene, options, folder);
     } else {
         root = parse_json(read_file_bytes(input), input.string());
+        if (changes.frame) root = evaluate_frame(root, *changes.frame, input.string());
         for (const char* section :
              {"environment", "materials", "displacements", "meshes", "objects", "lights"})
             if (root.contains(section))
