@@ -11,8 +11,9 @@ namespace relief::viewer {
 
 namespace {
 
-/// Pixels between those that derivatives are taken from: samples lie anywhere within their pixels.
-constexpr int kReach = 3;
+/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small pictures
+/// the second, as far as the first lies beyond a seam.
+constexpr int kReaches[] = {3, 1};
 /// Two pixels of which uv differs by more lie on two sides of a seam.
 constexpr float kSeam = 0.25f;
 /// Lines begin there, in distances of the camera's target.
@@ -56,7 +57,8 @@ class Layers {
     size_t depth_, normal_, position_, uv_, id_;
 };
 
-std::optional<Vec2f> find_derivative(const Layers& layers, int x, int y, int dx, int dy, float scale) {
+/// Between pixels (dx, dy) before and behind, of which one is not 0.
+std::optional<Vec2f> find_change(const Layers& layers, int x, int y, int dx, int dy, float scale) {
     const auto is_same = [&](int px, int py) {
         return layers.has_surface(px, py) && layers.id(px, py) == layers.id(x, y);
     };
@@ -66,8 +68,17 @@ std::optional<Vec2f> find_derivative(const Layers& layers, int x, int y, int dx,
     const Vec2f b = has_next ? layers.uv(x + dx, y + dy) : layers.uv(x, y);
     const Vec2f change{b.x - a.x, b.y - a.y};
     if (std::fabs(change.x) > kSeam || std::fabs(change.y) > kSeam) return std::nullopt;
-    const float pixels = float(kReach * (int(has_next) + int(has_last))) * scale;
+    const float pixels = float((dx + dy) * (int(has_next) + int(has_last))) * scale;
     return Vec2f{change.x / pixels, change.y / pixels};
+}
+
+/// Along one of (1, 0) and (0, 1).
+std::optional<Vec2f> find_derivative(const Layers& layers, int x, int y, std::pair<int, int> along,
+                                     float scale) {
+    for (const int reach : kReaches)
+        if (const auto change = find_change(layers, x, y, reach * along.first, reach * along.second, scale))
+            return change;
+    return std::nullopt;
 }
 
 /// Whether a triangle of the uv plane holds a point.
@@ -87,9 +98,9 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
     const float scale_x = float(picture.full_width) / float(picture.image.width);
     const float scale_y = float(picture.full_height) / float(picture.image.height);
     const int px = int(std::floor(x / scale_x)), py = int(std::floor(y / scale_y));
-    if (!layers.has_surface(px, py)) return std::nullopt;
+    if (!layers.has_surface(px, py) || layers.id(px, py) < 1) return std::nullopt; // 0 is no object
     SurfacePoint point;
-    point.object = uint32_t(layers.id(px, py));
+    point.object = uint32_t(layers.id(px, py)) - 1;
     point.position = layers.position(px, py);
     point.normal = normalize(layers.normal(px, py));
     point.uv = layers.uv(px, py);
@@ -97,8 +108,8 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
     const float distance = dot(point.position - picture.camera.from, forward);
     point.pixel_size = 2 * distance * std::tan(picture.camera.fov_degrees * std::numbers::pi_v<float> / 360) /
                        float(picture.full_height);
-    point.uv_right = find_derivative(layers, px, py, kReach, 0, scale_x);
-    point.uv_down = find_derivative(layers, px, py, 0, kReach, scale_y);
+    point.uv_right = find_derivative(layers, px, py, {1, 0}, scale_x);
+    point.uv_down = find_derivative(layers, px, py, {0, 1}, scale_y);
     return point;
 }
 

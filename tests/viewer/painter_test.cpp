@@ -154,9 +154,9 @@ TEST(Painter, erasing_leads_to_the_midlevel_and_smoothing_to_the_mean) {
     Scene scene = make_bumpy_scene();
     scene.displacements[0].midlevel = {0.25f, 0, 0.5f};
     Easel easel(scene);
+    const auto point = find_surface_point(easel.picture, 24, 16);
     easel.painter.begin(make_brush(BrushKind::erase, 1), easel.picture, 24, 16);
     easel.painter.end();
-    const auto point = find_surface_point(easel.picture, 24, 16);
     const Vec3f erased = easel.texel(uint32_t(point->uv.x * 64), uint32_t((1 - point->uv.y) * 64));
     EXPECT_NEAR(erased.x, 0.25f, 0.03f);
     EXPECT_NEAR(erased.z, 0.5f, 0.05f);

@@ -162,7 +162,7 @@ TEST_F(WorkbenchTest, the_object_that_was_clicked_on_is_framed) {
     press_key(kHome);
     EXPECT_NEAR(bench_->camera().get().to.x, 3, 0.2f);
     ASSERT_TRUE(reach_done());
-    send(Kind::press, 40, 16), send(Kind::release, 40, 16);
+    send(Kind::press, 33, 16), send(Kind::release, 33, 16);
     EXPECT_EQ(bench_->selected_object(), 1u);
     ASSERT_TRUE(reach([&] { return !bench_->is_explaining(); }));
     EXPECT_EQ(bench_->explanation().object, 1u);
