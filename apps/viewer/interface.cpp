@@ -212,7 +212,8 @@ void Interface::run(ScriptRunner* script, double start) {
         note_statistics(workbench_.render_state(), workbench_.picture().get(), state_);
         poll_display();
         const ImGuiIO& io = ImGui::GetIO();
-        if (frames == 0 && !needs_texture_ && !io.WantCaptureMouse && !io.WantTextInput) continue;
+        const bool is_at_rest = frames == 0 && !needs_texture_ && !io.WantCaptureMouse && !io.WantTextInput;
+        if (is_at_rest && !window_.has_screenshot_to_take()) continue;
         draw();
         frames = std::max(frames - 1, 0);
     }

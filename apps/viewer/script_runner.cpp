@@ -79,6 +79,11 @@ bool ScriptRunner::run(const WaitStep& wait, double now) {
 bool ScriptRunner::run(const EventStep& step, double now) {
     change_ = now;
     host_.send(step.event);
+    if (step.event.kind == InputEvent::Kind::key_down) {
+        InputEvent released = step.event;
+        released.kind = InputEvent::Kind::key_up;
+        host_.send(released);
+    }
     return true;
 }
 

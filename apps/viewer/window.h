@@ -41,6 +41,7 @@ class Window {
     void end_frame();
     /// Keeps what end_frame() draws next as a PNG.
     void take_screenshot(const std::filesystem::path& file) { screenshot_ = file; }
+    bool has_screenshot_to_take() const { return !screenshot_.empty(); }
 
     int width() const; ///< in units of the mouse
     int height() const;

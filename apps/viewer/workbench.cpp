@@ -233,7 +233,7 @@ void Workbench::fly(double seconds) {
 }
 
 bool Workbench::is_moving() const {
-    return motion_ != Motion::still || drag_.action != DragAction::none || !held_keys_.empty();
+    return motion_ != Motion::still || drag_.action != DragAction::none;
 }
 
 bool Workbench::update(double now) {

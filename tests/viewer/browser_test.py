@@ -19,7 +19,7 @@ from serve_test import Page, start_server
 
 SKIPPED = 77
 PATIENCE = 120
-SAMPLES = 64
+SAMPLES = 24
 PIXELS = """(() => {
   const picture = document.getElementById("picture"), canvas = document.createElement("canvas");
   canvas.width = picture.naturalWidth, canvas.height = picture.naturalHeight;
@@ -36,7 +36,7 @@ class Browser:
         high = [os.dup2(file, number) for file, number in ((commands, 93), (answers, 94))]
         move = f"exec 3<&{high[0]} 4>&{high[1]}; exec \"$@\""
         self.process = subprocess.Popen(
-            ["sh", "-c", move, "sh", program, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
+            ["bash", "-c", move, "bash", program, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
              "--disable-dev-shm-usage", f"--user-data-dir={folder}", "--window-size=700,500", "--remote-debugging-pipe"],
             pass_fds=high, stderr=subprocess.DEVNULL, start_new_session=True)
         for file in (commands, answers, *high):
@@ -97,6 +97,7 @@ class Tab:
         raise AssertionError(f"no picture with all samples: {text}")
 
     def drag(self, x0, y0, x1, y1, steps=6):
+        self.call("Page.bringToFront")  # hidden pages get events late
         def send(kind, x, y, buttons):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
         send("mousePressed", x0, y0, 1)
@@ -109,13 +110,13 @@ def check_pages(browser, url, folder):
     page = browser.open(url)
     seen = page.await_samples()
     assert len(seen) > 1, f"the picture came at once: {seen}"
-    assert page.get('document.getElementById("picture").naturalWidth') == 480
+    assert page.get('document.getElementById("picture").naturalWidth') == 320
     whole = page.get(PIXELS)
     second = browser.open(url)
     second.await_samples()
     time.sleep(0.3)  # the text comes a moment before the picture
     assert second.get(PIXELS) == page.get(PIXELS)
-    page.drag(200, 120, 320, 140)
+    page.drag(100, 80, 220, 100)
     end = time.monotonic() + PATIENCE
     while page.text() == f"{SAMPLES} of {SAMPLES} samples  " and time.monotonic() < end and page.get(PIXELS) == whole:
         time.sleep(0.02)
@@ -129,7 +130,8 @@ def check_pages(browser, url, folder):
     token = url.rpartition("=")[2]
     for wrong in (url.replace(token, "0" * len(token)), url.partition("?")[0]):
         stranger = browser.open(wrong)
-        time.sleep(0.3)
+        time.sleep(0.5)
+        assert stranger.get('performance.getEntriesByType("navigation")[0].responseStatus') == 403
         assert stranger.get('document.getElementById("picture")') is None
     assert page.get('fetch("/picture?token=0&after=0").then(answer => answer.status)') == 403
     assert page.get(f'fetch("/picture?token={token}&after=0").then(answer => answer.status)') == 200
@@ -143,7 +145,7 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
         folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        viewer, url = start_server(os.path.abspath(sys.argv[1]), temporary, "480x270", SAMPLES)
+        viewer, url = start_server(os.path.abspath(sys.argv[1]), temporary, "320x180", SAMPLES)
         browser = Browser(program, pathlib.Path(temporary, "profile"))
         try:
             check_pages(browser, url, folder)

@@ -17,6 +17,8 @@ import tempfile
 import time
 import urllib.parse
 
+from small_scene import write_small_scene
+
 PATIENCE = 120
 
 
@@ -103,8 +105,8 @@ def check_viewers(url):
 
 def start_server(relief, folder, size, samples):
     """The viewer, and the address that it prints."""
-    subprocess.run([relief, "scene", "ear", "-o", "ear", "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    viewer = subprocess.Popen([relief, "view", "ear/scene.json", "--size", size, "--spp", str(samples), "--serve", "0"],
+    write_small_scene(folder)
+    viewer = subprocess.Popen([relief, "view", "scene.json", "--size", size, "--spp", str(samples), "--serve", "0"],
                               cwd=folder, text=True, stdout=subprocess.PIPE)
     return viewer, viewer.stdout.readline().strip()
 
@@ -116,12 +118,12 @@ def main():
         try:
             check_viewers(url)
             port = urllib.parse.urlsplit(url).port
-            taken = subprocess.run([relief, "view", "ear/scene.json", "--serve", str(port)], cwd=folder, text=True,
+            taken = subprocess.run([relief, "view", "scene.json", "--serve", str(port)], cwd=folder, text=True,
                                    capture_output=True, timeout=PATIENCE)
             assert taken.returncode == 1 and str(port) in taken.stderr, taken.stderr
             viewer.send_signal(signal.SIGTERM)
             assert viewer.wait(PATIENCE) == 128 + signal.SIGTERM
-            assert not pathlib.Path(folder, "ear/scene-view.json").exists()  # pages change no files
+            assert not pathlib.Path(folder, "scene-view.json").exists()  # pages change no files
         finally:
             viewer.kill()
             viewer.wait()

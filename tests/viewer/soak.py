@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 
+from small_scene import write_small_scene
 from window_test import SKIPPED, start_display
 
 PATIENCE = 10
@@ -59,11 +60,11 @@ def read_resident(process):
 
 
 def soak(relief, seconds, seed, display, folder):
-    subprocess.run([relief, "scene", "ear", "-o", "ear", "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    write_small_scene(folder)
     lines = [{"wait": "done"}, *make_lines(random.Random(seed), int(seconds * 4)), {"wait": "done"}, {"quit": True}]
     pathlib.Path(folder, "soak.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     with open(pathlib.Path(folder, "times.jsonl"), "w+") as times:
-        viewer = subprocess.Popen([relief, "view", "ear/scene.json", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", "16",
+        viewer = subprocess.Popen([relief, "view", "scene.json", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", "16",
                                    "--script", "soak.jsonl"], cwd=folder, stdout=times,
                                   env={**os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"})
         start, resident = time.monotonic(), []
