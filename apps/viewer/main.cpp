@@ -31,13 +31,14 @@ int run_viewer(const ViewerOptions& options, double start) {
     }
     std::optional<std::pair<int, int>> size;
     if (options.given.width) size.emplace(*options.given.width, *options.given.height);
-    Window window(size ? size->first + Interface::kPanelWidth : kWindowWidth,
-                  size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
     // A script leaves no traces.
     Workbench workbench(options.settings, options.given, Window::wake,
                         options.script.empty() ? find_state_folder() : std::filesystem::path());
-    Interface interface(window, workbench, size);
+    // Files are read while the window opens.
     if (!options.input.file.empty()) workbench.open(options.input);
+    Window window(size ? size->first + Interface::kPanelWidth : kWindowWidth,
+                  size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
+    Interface interface(window, workbench, size);
     if (options.script.empty()) {
         interface.run(nullptr, start);
         return 0;

@@ -47,6 +47,9 @@ ImageSettings make_single_sample(ImageSettings image) {
     return image;
 }
 
+/// Of pictures under a brush: what remains of 100 ms for the stroke itself.
+constexpr ResolutionGovernor::Config kPainting{.target_s = 0.06, .least_scale = 0.125, .first_scale = 0.5};
+
 } // namespace
 
 /// Passes pictures on, and tells the render when nobody waits for it any more.
@@ -75,7 +78,7 @@ class RenderLoop::Observer : public RenderObserver {
 };
 
 RenderLoop::RenderLoop(std::function<void()> on_news)
-    : on_news_(std::move(on_news)), thread_([this] { run(); }) {}
+    : on_news_(std::move(on_news)), painting_governor_(kPainting), thread_([this] { run(); }) {}
 
 RenderLoop::~RenderLoop() {
     {
@@ -92,26 +95,15 @@ bool RenderLoop::may_cancel(const RenderRequest& next) const {
     return rendered_motion_ && (*rendered_motion_ == Motion::still || next.scene_version != rendered_scene_);
 }
 
-uint64_t RenderLoop::show(const RenderRequest& request) {
+uint64_t RenderLoop::show(const RenderRequest& request, std::vector<MapEdit> edits) {
     uint64_t version = 0;
     {
         const std::lock_guard lock(mutex_);
         if (request.scene_version != wanted_.scene_version) edits_.clear();
         wanted_ = request;
-        version = ++version_;
-        if (may_cancel(request)) is_stale_ = true;
-    }
-    has_work_.notify_all();
-    return version;
-}
-
-uint64_t RenderLoop::edit(std::vector<MapEdit> edits) {
-    uint64_t version = 0;
-    {
-        const std::lock_guard lock(mutex_);
         std::move(edits.begin(), edits.end(), std::back_inserter(edits_));
         version = ++version_;
-        if (may_cancel(wanted_)) is_stale_ = true;
+        if (may_cancel(request)) is_stale_ = true;
     }
     has_work_.notify_all();
     return version;
@@ -176,8 +168,9 @@ void RenderLoop::start_session(const RenderRequest& request) {
         governor_.choose_size(request.settings.image.width, request.settings.image.height);
     Scene scene = *request.scene;
     scene.camera = request.camera;
-    session_ = std::make_unique<Session>(std::move(scene), settings);
+    session_ = std::make_unique<Session>(std::move(scene), settings, request.use);
     session_scene_ = request.scene_version;
+    session_use_ = request.use;
     session_settings_ = settings;
     session_camera_ = request.camera;
     has_shown_session_ = false;
@@ -186,15 +179,26 @@ void RenderLoop::start_session(const RenderRequest& request) {
 void RenderLoop::render(const Work& work) {
     const RenderRequest& request = work.request;
     const bool is_fresh = !session_ || session_scene_ != request.scene_version ||
-                          !share_session(session_settings_, request.settings);
+                          !share_session(session_settings_, request.settings) ||
+                          (request.use == SessionUse::edits && session_use_ != SessionUse::edits);
     if (is_fresh) start_session(request);
     for (const MapEdit& edit : work.edits) session_->edit(edit);
+    if (request.motion == Motion::painting) return render_painting(work);
+    painting_size_ = {};
     if (request.motion == Motion::moving) return render_preview(work, Motion::moving);
     if (!has_shown_session_) render_preview(work, request.motion);
-    if (is_stale_) return;
-    const ImageSettings& image = request.settings.image;
-    const bool is_painting = request.motion == Motion::painting;
-    render_pass(work, is_painting ? make_single_sample(image) : image, request.motion);
+    if (!is_stale_) render_pass(work, request.settings.image, request.motion);
+}
+
+/// Of direct light: what other surfaces reflect changes everywhere with each dab.
+void RenderLoop::render_painting(const Work& work) {
+    ImageSettings image = make_single_sample(work.request.settings.image);
+    if (painting_size_.first == 0) painting_size_ = painting_governor_.choose_size(image.width, image.height);
+    std::tie(image.width, image.height) = painting_size_;
+    image.bounces = 0;
+    const double start = read_clock();
+    render_pass(work, image, Motion::painting);
+    painting_governor_.learn(read_clock() - start);
 }
 
 void RenderLoop::render_preview(const Work& work, Motion motion) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "relief/render.h"
@@ -20,8 +21,8 @@
 
 namespace relief::viewer {
 
-/// `moving`: one sample at a size that comes fast; `painting`: one sample of each pixel, kept under edits;
-/// `still`: all samples.
+/// `moving`: one sample at a size that comes fast; `painting`: one sample of direct light, smaller too, of which
+/// edits renew a part; `still`: all samples.
 enum class Motion { still, moving, painting };
 
 /// What is to be seen.
@@ -31,6 +32,7 @@ struct RenderRequest {
     RenderSettings settings;
     Camera camera;
     Motion motion = Motion::still;
+    SessionUse use = SessionUse::views; ///< `edits` where some are to come
 };
 
 struct ShownPicture {
@@ -63,10 +65,8 @@ class RenderLoop {
     RenderLoop& operator=(const RenderLoop&) = delete;
 
     /// Replaces what is wanted; edits that were not made yet are dropped with the scene that they were for.
-    /// Returns the version of the pictures that show it.
-    uint64_t show(const RenderRequest& request);
-    /// Changes the maps of the scene that is shown, after all earlier edits. Returns the version likewise.
-    uint64_t edit(std::vector<MapEdit> edits);
+    /// `edits`: of its maps, after all earlier ones. Returns the version of the pictures that show it.
+    uint64_t show(const RenderRequest& request, std::vector<MapEdit> edits = {});
 
     /// The newest picture, if there is one since the last call.
     std::shared_ptr<const ShownPicture> take_picture();
@@ -86,6 +86,7 @@ class RenderLoop {
     void render(const Work& work);
     void start_session(const RenderRequest& request);
     void render_pass(const Work& work, const ImageSettings& image, Motion motion);
+    void render_painting(const Work& work);
     void render_preview(const Work& work, Motion motion);
     void publish(Image image, const Work& work, Motion motion, bool is_complete, double seconds);
     void tell();
@@ -107,10 +108,12 @@ class RenderLoop {
     // Of the render thread alone.
     std::unique_ptr<Session> session_;
     uint64_t session_scene_ = 0;
+    SessionUse session_use_ = SessionUse::views;
     RenderSettings session_settings_; ///< with those of the last picture
     Camera session_camera_;
     bool has_shown_session_ = false;
-    ResolutionGovernor governor_;
+    ResolutionGovernor governor_, painting_governor_;
+    std::pair<int, int> painting_size_{}; ///< kept until the next stroke; (0, 0): there is none
 
     std::thread thread_; ///< last: it uses all of the above
 };

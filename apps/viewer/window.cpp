@@ -1,6 +1,7 @@
 #include "viewer/window.h"
 
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -28,6 +29,23 @@ std::string& get_last_error() {
                 {fmt::format("no window can be opened: {}", get_last_error()), "",
                  "a display with OpenGL 3.3 is needed; without one `relief view SCENE --serve 0` shows "
                  "the scene in a browser, through a tunnel too, and `relief render` makes pictures"});
+}
+
+/// Whether there is a window that can be woken: threads that load and render begin before it and end after it.
+struct WakeGate {
+    std::mutex mutex;
+    bool is_open = false;
+};
+
+WakeGate& get_wake_gate() {
+    static WakeGate gate;
+    return gate;
+}
+
+void set_wake_gate(bool is_open) {
+    WakeGate& gate = get_wake_gate();
+    const std::lock_guard lock(gate.mutex);
+    gate.is_open = is_open;
 }
 
 Modifiers make_modifiers(int bits) {
@@ -129,9 +147,11 @@ Window::Window(int width, int height, const std::string& title) {
     glfwSetDropCallback(window_, Callbacks::drop);
     ImGui_ImplOpenGL3_Init("#version 330 core");
     glGenTextures(1, &texture_);
+    set_wake_gate(true);
 }
 
 Window::~Window() {
+    set_wake_gate(false);
     glDeleteTextures(1, &texture_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
@@ -177,7 +197,11 @@ void Window::wait_events(double seconds) {
         glfwPollEvents();
 }
 
-void Window::wake() { glfwPostEmptyEvent(); }
+void Window::wake() {
+    WakeGate& gate = get_wake_gate();
+    const std::lock_guard lock(gate.mutex);
+    if (gate.is_open) glfwPostEmptyEvent();
+}
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_) != 0; }
 

@@ -24,7 +24,7 @@ class Window {
 
     /// Waits for events, at most so many seconds.
     void wait_events(double seconds);
-    /// Ends the waiting; by any thread.
+    /// Ends the waiting; by any thread. Without a window nothing.
     static void wake();
     bool should_close() const;
 

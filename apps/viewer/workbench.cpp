@@ -104,12 +104,15 @@ void Workbench::change_document(const std::function<void(Document&)>& change) {
 void Workbench::set_tool(Tool tool) {
     tool_ = tool;
     has_news_ = true;
+    if (tool == Tool::paint) { // its session is ready when the first stroke begins
+        needs_snapshot_ = true;
+        needs_request_ = true;
+    }
 }
 
 void Workbench::send(std::vector<MapEdit> edits) {
     set_motion(Motion::painting);
-    request();
-    if (!edits.empty()) wanted_version_ = loop_.edit(std::move(edits));
+    request(std::move(edits));
 }
 
 void Workbench::undo() {
@@ -148,7 +151,7 @@ void Workbench::forget_explanation() {
 
 /// Edits that were made while the request waits are in the snapshot as well; making them again changes
 /// nothing.
-void Workbench::request() {
+void Workbench::request(std::vector<MapEdit> edits) {
     needs_request_ = false;
     if (!document_) return;
     if (needs_snapshot_ || snapshot_version_ != document_->version() || !snapshot_) {
@@ -162,7 +165,8 @@ void Workbench::request() {
     request.settings = settings_;
     request.camera = camera_.get();
     request.motion = motion_;
-    wanted_version_ = loop_.show(request);
+    if (tool_ == Tool::paint || can_undo() || can_redo()) request.use = SessionUse::edits;
+    wanted_version_ = loop_.show(request, std::move(edits));
 }
 
 void Workbench::take_picture() {

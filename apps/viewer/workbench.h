@@ -155,7 +155,7 @@ class Workbench {
     void poll_jobs();
     void take_picture();
     void take_denoised();
-    void request();
+    void request(std::vector<MapEdit> edits = {});
     void set_motion(Motion motion);
     void send(std::vector<MapEdit> edits);
     void fly(double seconds);

@@ -101,15 +101,15 @@ TEST(RenderLoop, edits_are_seen_and_lead_to_the_picture_of_a_fresh_load) {
     Scene scene = make_bumpy_scene();
     RenderLoop loop;
     ASSERT_TRUE(await_complete(loop, loop.show(make_request(scene))));
-    loop.show(make_request(scene, Motion::painting));
-    const uint64_t version = loop.edit({make_edit()});
+    const uint64_t version = loop.show(make_request(scene, Motion::painting), {make_edit()});
     std::shared_ptr<const ShownPicture> picture;
     ASSERT_TRUE(wait_until([&] {
         if (auto next = loop.take_picture()) picture = next;
         return picture && picture->version == version;
     }));
     EXPECT_EQ(picture->motion, Motion::painting);
-    EXPECT_EQ(picture->image.width, 48);
+    EXPECT_EQ(picture->image.width, 24);
+    EXPECT_EQ(picture->full_width, 48);
     const auto whole = await_complete(loop, loop.show(make_request(scene)));
     ASSERT_TRUE(whole);
     auto texture = std::make_shared<Texture>(*scene.displacements[0].tiles[0].texture);
