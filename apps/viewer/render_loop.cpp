@@ -173,7 +173,7 @@ void RenderLoop::start_session(const RenderRequest& request) {
     session_use_ = request.use;
     session_settings_ = settings;
     session_camera_ = request.camera;
-    has_shown_session_ = false;
+    has_shown_session_ = is_seen_ = false;
 }
 
 void RenderLoop::render(const Work& work) {
@@ -182,11 +182,13 @@ void RenderLoop::render(const Work& work) {
                           !share_session(session_settings_, request.settings) ||
                           (request.use == SessionUse::edits && session_use_ != SessionUse::edits);
     if (is_fresh) start_session(request);
+    is_seen_ &= work.edits.empty() && are_same(request.camera, seen_camera_);
     for (const MapEdit& edit : work.edits) session_->edit(edit);
     if (request.motion == Motion::painting) return render_painting(work);
     painting_size_ = {};
-    if (request.motion == Motion::moving) return render_preview(work, Motion::moving);
-    if (!has_shown_session_) render_preview(work, request.motion);
+    if (request.motion == Motion::moving) return render_preview(work);
+    // Also of a camera that came to rest before there was a picture of it.
+    if (!is_seen_) render_preview(work);
     if (!is_stale_) render_pass(work, request.settings.image, request.motion);
 }
 
@@ -201,11 +203,11 @@ void RenderLoop::render_painting(const Work& work) {
     painting_governor_.learn(read_clock() - start);
 }
 
-void RenderLoop::render_preview(const Work& work, Motion motion) {
+void RenderLoop::render_preview(const Work& work) {
     ImageSettings image = make_single_sample(work.request.settings.image);
     std::tie(image.width, image.height) = governor_.choose_size(image.width, image.height);
     const double start = read_clock();
-    render_pass(work, image, motion == Motion::still ? Motion::moving : motion);
+    render_pass(work, image, Motion::moving);
     // The first one of a session builds trees that later ones find.
     if (has_shown_session_) governor_.learn(read_clock() - start);
     has_shown_session_ = true;
@@ -231,6 +233,8 @@ void RenderLoop::render_pass(const Work& work, const ImageSettings& image, Motio
 }
 
 void RenderLoop::publish(Image image, const Work& work, Motion motion, bool is_complete, double seconds) {
+    is_seen_ = true;
+    seen_camera_ = work.request.camera;
     auto picture = std::make_shared<ShownPicture>();
     picture->image = std::move(image);
     picture->camera = work.request.camera;

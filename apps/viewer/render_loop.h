@@ -87,7 +87,7 @@ class RenderLoop {
     void start_session(const RenderRequest& request);
     void render_pass(const Work& work, const ImageSettings& image, Motion motion);
     void render_painting(const Work& work);
-    void render_preview(const Work& work, Motion motion);
+    void render_preview(const Work& work);
     void publish(Image image, const Work& work, Motion motion, bool is_complete, double seconds);
     void tell();
     bool may_cancel(const RenderRequest& next) const;
@@ -112,6 +112,8 @@ class RenderLoop {
     RenderSettings session_settings_; ///< with those of the last picture
     Camera session_camera_;
     bool has_shown_session_ = false;
+    bool is_seen_ = false; ///< there is a picture of what is to be seen, by that camera
+    Camera seen_camera_;
     ResolutionGovernor governor_, painting_governor_;
     std::pair<int, int> painting_size_{}; ///< kept until the next stroke; (0, 0): there is none
 

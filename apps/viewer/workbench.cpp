@@ -58,7 +58,7 @@ void Workbench::set_picture_size(int width, int height) {
 void Workbench::set_motion(Motion motion) {
     motion_ = motion;
     last_motion_ = now_;
-    needs_request_ = true;
+    needs_request_ = has_changed_ = true;
 }
 
 void Workbench::change_camera(const std::function<void(OrbitCamera&)>& change) {
@@ -166,7 +166,8 @@ void Workbench::request(std::vector<MapEdit> edits) {
     request.camera = camera_.get();
     request.motion = motion_;
     if (tool_ == Tool::paint || can_undo() || can_redo()) request.use = SessionUse::edits;
-    wanted_version_ = loop_.show(request, std::move(edits));
+    const uint64_t version = loop_.show(request, std::move(edits));
+    if (std::exchange(has_changed_, false)) wanted_version_ = version;
 }
 
 void Workbench::take_picture() {
@@ -256,7 +257,10 @@ bool Workbench::update(double now) {
                         : drag_.action != DragAction::none ? kHeldRest
                                                            : kRest;
     const bool is_painted_on = painter_ && painter_->is_active();
-    if (motion_ != Motion::still && !is_painted_on && now_ - last_motion_ > rest) set_motion(Motion::still);
+    if (motion_ != Motion::still && !is_painted_on && now_ - last_motion_ > rest) {
+        motion_ = Motion::still; // what is to be seen stays the same
+        needs_request_ = true;
+    }
     if (needs_request_) request();
     if (document_ && !is_painted_on) state_.keep_painted(now_, *document_);
     return std::exchange(has_news_, false);

@@ -195,6 +195,7 @@ class Workbench {
     uint64_t snapshot_version_ = 0;
     uint64_t scene_count_ = 0; ///< documents opened: versions of different ones differ
     bool needs_snapshot_ = true, needs_request_ = false;
+    bool has_changed_ = false; ///< something that is seen, since the last request
     Motion motion_ = Motion::still;
     double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1;
     uint64_t wanted_version_ = 0;
