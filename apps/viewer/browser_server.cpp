@@ -36,8 +36,7 @@ std::string make_token() {
 std::string get_variable(const mg_request_info& request, const char* name) {
     const char* const query = request.query_string ? request.query_string : "";
     std::array<char, 128> value{};
-    const int length =
-        mg_get_var(query, std::char_traits<char>::length(query), name, value.data(), value.size());
+    const int length = mg_get_var(query, std::string_view(query).size(), name, value.data(), value.size());
     return length > 0 ? std::string(value.data(), size_t(length)) : std::string();
 }
 
@@ -122,7 +121,7 @@ struct BrowserServer::Implementation {
 
     int answer_page(mg_connection* connection) {
         if (!is_allowed(connection)) return mg_send_http_error(connection, 403, "%s", "wrong token"), 403;
-        const size_t bytes = std::char_traits<char>::length(kBrowserPage);
+        const size_t bytes = std::string_view(kBrowserPage).size();
         mg_printf(connection,
                   "HTTP/1.1 200 OK\r\nContent-Type: text/html\r\nContent-Length: %zu\r\nCache-Control: "
                   "no-store\r\nReferrer-Policy: no-referrer\r\n\r\n",

@@ -21,8 +21,8 @@
 
 namespace relief::viewer {
 
-/// `moving`: one sample at a size that comes fast; `painting`: one sample of direct light, smaller too, of which
-/// edits renew a part; `still`: all samples.
+/// `moving`: one sample at a size that comes fast; `painting`: one sample of direct light, smaller too, of
+/// which edits renew a part; `still`: all samples.
 enum class Motion { still, moving, painting };
 
 /// What is to be seen.

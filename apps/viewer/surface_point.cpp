@@ -11,8 +11,8 @@ namespace relief::viewer {
 
 namespace {
 
-/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small pictures
-/// the second, as far as the first lies beyond a seam.
+/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small
+/// pictures the second, as far as the first lies beyond a seam.
 constexpr int kReaches[] = {3, 1};
 /// Two pixels of which uv differs by more lie on two sides of a seam.
 constexpr float kSeam = 0.25f;

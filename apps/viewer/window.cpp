@@ -31,7 +31,8 @@ std::string& get_last_error() {
                  "the scene in a browser, through a tunnel too, and `relief render` makes pictures"});
 }
 
-/// Whether there is a window that can be woken: threads that load and render begin before it and end after it.
+/// Whether there is a window that can be woken: threads that load and render begin before it and end after
+/// it.
 struct WakeGate {
     std::mutex mutex;
     bool is_open = false;

@@ -237,9 +237,7 @@ void Workbench::fly(double seconds) {
     change_camera([&](OrbitCamera& camera) { camera.fly(right * way, up * way, forward * way); });
 }
 
-bool Workbench::is_moving() const {
-    return motion_ != Motion::still || drag_.action != DragAction::none;
-}
+bool Workbench::is_moving() const { return motion_ != Motion::still || drag_.action != DragAction::none; }
 
 bool Workbench::update(double now) {
     fly(now - std::exchange(now_, now));

@@ -23,10 +23,9 @@ DECLARED = {
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot ilogb isfinite
         isinf isnan isnormal ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering",
-    "condition_variable": "condition_variable",
     "concepts": "floating_point integral same_as",
     "condition_variable": "condition_variable",
-    "csignal": "signal",
+    "csignal": "sig_atomic_t signal",
     "cstddef": "byte ptrdiff_t",
     "cstdio": "fclose fflush fgetc fopen fprintf fputs fread fseek ftell fwrite printf snprintf",
     "cstdlib": "abort abs aligned_alloc atoi exit free getenv malloc strtol strtoull",

@@ -79,7 +79,7 @@ TEST_F(ReloadTest, a_hundred_rewrites_also_half_written_ones_never_show_a_torn_p
     for (int k = 0; k < 100; ++k) {
         const std::string& bytes = files_[dice() % files_.size()];
         const bool is_seen = k % 20 == 0; // long enough to be read
-        if (k % 4 == 0) { // half of it first, also while that is read
+        if (k % 4 == 0) {                 // half of it first, also while that is read
             write_bytes(find_map(), bytes.substr(0, 1 + dice() % bytes.size()));
             look(is_seen ? 0.5 : 0.004);
         }

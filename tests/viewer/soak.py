@@ -61,7 +61,7 @@ def read_resident(process):
 
 def soak(relief, seconds, seed, display, folder):
     write_small_scene(folder)
-    lines = [{"wait": "done"}, *make_lines(random.Random(seed), int(seconds * 4)), {"wait": "done"}, {"quit": True}]
+    lines = [{"wait": "done"}, *make_lines(random.Random(seed), int(seconds * 15)), {"wait": "done"}, {"quit": True}]
     pathlib.Path(folder, "soak.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     with open(pathlib.Path(folder, "times.jsonl"), "w+") as times:
         viewer = subprocess.Popen([relief, "view", "scene.json", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", "16",
