@@ -40,10 +40,12 @@ find_library() {
 
 rm -rf "$bundle"
 mkdir -p "$bundle/lib" "$bundle/fallback" "$bundle/layers"
+# Programs are packed: each holds the kernels of all instruction sets and all shaders.
 for program in relief-gpu vulkan_tests; do
     cp "$build/bin/$program" "$bundle/"
     strip "$bundle/$program"
     copy_closure "$bundle/$program" "$bundle/lib"
+    gzip -9 -n "$bundle/$program"
 done
 
 # The loader, and what drivers want beside it, for machines that have a driver alone.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and nothing else.
+# Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and gzip, nothing else.
 #   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick] [--parity WORDS] [--bench WORDS]
 # WORDS are more options of `relief-gpu parity` or `relief-gpu bench`, e.g. --bench "--scenes bark,party --runs 7".
 # RESULT.json (default relief-gpu.json here) tells each part's outcome; logs lie in a folder beside it.
@@ -37,7 +37,12 @@ done
 case $result in /*) ;; *) result=$PWD/$result ;; esac
 logs=${result%.json}-files
 rm -rf "$logs"
-mkdir -p "$logs/lib" || exit 1
+mkdir -p "$logs/lib" "$logs/bin" || exit 1
+
+for packed in "$here"/*.gz; do
+    program=$logs/bin/$(basename "$packed" .gz)
+    gzip -dc "$packed" >"$program" && chmod +x "$program"
+done
 
 # System libraries come first: the driver was built against them.
 known=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null)
@@ -80,18 +85,18 @@ $(if [ -s "$file" ]; then cat "$file"; else echo null; fi)}"
 }
 
 cd "$logs" || exit 1
-"$here/relief-gpu" devices >devices.json 2>devices.log
+"$logs/bin/relief-gpu" devices >devices.json 2>devices.log
 for part in $(echo "$parts" | tr , ' '); do
     # $device, $quick and the further words are split into words, or nothing.
     case $part in
-    tests) run_part tests tests.json "$here/vulkan_tests" --gtest_output=json:tests.json ;;
-    parity) run_part parity parity.json "$here/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
+    tests) run_part tests tests.json "$logs/bin/vulkan_tests" --gtest_output=json:tests.json ;;
+    parity) run_part parity parity.json "$logs/bin/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
         $device $quick $parity_words ;;
-    bench) run_part bench paper1/paper1.json "$here/relief-gpu" bench -o paper1 --pipeline-cache pipelines \
+    bench) run_part bench paper1/paper1.json "$logs/bin/relief-gpu" bench -o paper1 --pipeline-cache pipelines \
         $device $quick $bench_words ;;
     esac
 done
-rm -rf "$logs/lib"
+rm -rf "$logs/lib" "$logs/bin"
 
 {
     echo "{\"commit\": \"$(cat "$here/commit")\", \"all_passed\": $all_passed, \"date\": \"$(date -u +%Y-%m-%dT%H:%MZ)\","

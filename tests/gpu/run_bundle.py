@@ -34,7 +34,7 @@ with tempfile.TemporaryDirectory() as name:
     assert run(bundle, folder, "--nonsense").returncode == 2
 
     # What fails is told, not hidden: the programs are gone, the result is still written.
-    (bundle / "vulkan_tests").unlink()
+    (bundle / "vulkan_tests.gz").unlink()
     assert run(bundle, folder, "--parts", "tests").returncode == 1
     result = json.loads((folder / "relief-gpu.json").read_text())
     assert result["all_passed"] is False and result["parts"]["tests"]["outcome"] == "failed", result
