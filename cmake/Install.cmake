@@ -71,7 +71,7 @@ if(TARGET relief)
   set(script ${PROJECT_SOURCE_DIR}/cmake/make_completions.py)
   add_custom_command(OUTPUT ${completions}/relief ${completions}/_relief ${completions}/relief.fish
     COMMAND Python3::Interpreter ${script} $<TARGET_FILE:relief> ${completions}
-    DEPENDS relief $<TARGET_NAME_IF_EXISTS:relief-bench> ${script} VERBATIM)
+    DEPENDS relief $<TARGET_NAME_IF_EXISTS:relief-bench> $<TARGET_NAME_IF_EXISTS:relief-view> ${script} VERBATIM)
   add_custom_target(relief_completions ALL DEPENDS ${completions}/relief)
   install(FILES ${completions}/relief DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT command)
   install(FILES ${completions}/_relief DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT command)
@@ -84,4 +84,8 @@ if(TARGET relief-bench)
   install(TARGETS relief-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
   install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/plot_bench.py DESTINATION ${CMAKE_INSTALL_BINDIR}
           RENAME relief-plot-bench COMPONENT command)
+endif()
+if(TARGET relief-view)
+  set_target_properties(relief-view PROPERTIES INSTALL_RPATH $ORIGIN/${module_from_command})
+  install(TARGETS relief-view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
 endif()

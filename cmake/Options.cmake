@@ -5,6 +5,7 @@ option(RELIEF_PICTURE_MODULE "Build the module that reads what neither OpenEXR n
 option(RELIEF_PYTHON "Build the Python module" OFF)
 option(RELIEF_VULKAN "Build the Vulkan engine" ON)
 option(RELIEF_APPS "Build the programs; the relief command needs RELIEF_IO" ${PROJECT_IS_TOP_LEVEL})
+option(RELIEF_VIEWER "Build the window of relief view; needs RELIEF_APPS, RELIEF_IO, GLFW and Dear ImGui" ON)
 cmake_dependent_option(RELIEF_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL} RELIEF_APPS OFF)
 option(RELIEF_FUZZ "Build the fuzz targets (clang)" OFF)
 option(RELIEF_INSTALL "Make rules that install the library and the command" ${PROJECT_IS_TOP_LEVEL})

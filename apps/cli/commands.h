@@ -14,5 +14,7 @@ Command add_merge(CLI::App& verb);
 Command add_devices(CLI::App& verb);
 /// All arguments after `bench` go to the program relief-bench, which replaces this process.
 Command add_bench(CLI::App& verb);
+/// Likewise relief-view.
+Command add_view(CLI::App& verb);
 
 } // namespace relief::cli

@@ -13,11 +13,11 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/inputs.h"
+#include "common/map_options.h"
 #include "common/mesh_reader.h"
 #include "common/progress.h"
 #include "common/values.h"
-#include "inputs.h"
-#include "map_options.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/io.h"

@@ -33,6 +33,9 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     add("scene", "Write a sample scene", add_scene);
     add("compare", "Difference of two pictures; exit 7 where it is above the threshold", add_compare);
     add("merge", "Join tiles and sample ranges of one picture", add_merge);
+#ifdef RELIEF_VIEWER
+    add("view", "Look at a scene or mesh in a window, change and paint its maps", add_view);
+#endif
     add("bench", "Measure, and compare with the figures of a paper", add_bench);
     add("devices", "List what can render on this machine", add_devices);
     return verbs;

@@ -12,11 +12,11 @@
 
 #include "aim_options.h"
 #include "commands.h"
+#include "common/denoiser_search.h"
 #include "common/exit_codes.h"
+#include "common/inputs.h"
 #include "common/report.h"
 #include "common/values.h"
-#include "denoiser_search.h"
-#include "inputs.h"
 #include "relief/error.h"
 #include "relief/image.h"
 #include "relief/io.h"

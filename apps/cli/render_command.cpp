@@ -13,14 +13,14 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "common/denoiser_search.h"
 #include "common/exit_codes.h"
+#include "common/explain_pixel.h"
+#include "common/inputs.h"
 #include "common/mesh_reader.h"
 #include "common/values.h"
-#include "denoiser_search.h"
 #include "finish_picture.h"
-#include "inputs.h"
 #include "interrupt.h"
-#include "pixel.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -129,7 +129,7 @@ int render_scene(const RenderOptions& options, Scene scene, double start) {
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
     if (options.aim.turntable > 0) return render_turns(options, settings, std::move(scene), waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
-    explain_pixel(scene, settings, options.pixel->first, options.pixel->second);
+    fmt::print("{}", explain_pixel(scene, settings, options.pixel->first, options.pixel->second).text);
     if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }

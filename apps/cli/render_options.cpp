@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "common/command_line.h"
+#include "common/inputs.h"
+#include "common/map_options.h"
+#include "common/mesh_options.h"
 #include "common/values.h"
-#include "inputs.h"
-#include "map_options.h"
-#include "mesh_options.h"
 #include "relief/denoise.h"
 #include "relief/error.h"
 #include "relief/shot.h"

@@ -13,9 +13,9 @@
 
 #include "aim_options.h"
 #include "common/exit_codes.h"
+#include "common/inputs.h"
 #include "common/report.h"
 #include "edit_stream.h"
-#include "inputs.h"
 #include "interrupt.h"
 #include "relief/aim.h"
 #include "relief/error.h"

@@ -14,9 +14,9 @@
 
 #include "commands.h"
 #include "common/exit_codes.h"
+#include "common/inputs.h"
 #include "common/progress.h"
 #include "common/report.h"
-#include "inputs.h"
 #include "lab/scenes/peer_scenes.h"
 #include "relief/devices.h"
 #include "relief/error.h"

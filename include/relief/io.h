@@ -11,8 +11,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "relief/image.h"
 #include "relief/progress.h"
@@ -144,14 +146,25 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 void save_scene(const Scene& scene, const std::filesystem::path& folder,
                 const ProgressFunction& on_progress = {});
 
+/// What of a scene differs from the file that it was read from, beside what aim_scene changes.
+struct SceneChanges {
+    std::set<std::string> displacements; ///< names: all of their conventions are written, presets resolved
+    std::set<std::string> materials;     ///< names: base_color, roughness and metallic are written
+    std::map<std::string, std::filesystem::path> maps; ///< files that hold the texels of displacements now
+    std::filesystem::path environment;                 ///< its picture; empty: as it was
+    std::optional<double> frame; ///< of a scene with keys: it is written as it is there, without them
+};
+
 /// Writes `scene`, which was read from `input` (a scene file, or a mesh with these options) and changed by
-/// aim_scene, as a scene file that names the files of `input`; load_scene restores the same scene. Comments
+/// aim_scene and as `changes` says, as a scene file that names the files of `input`; load_scene restores the
+/// same scene. Comments
 /// say what each section means, and `picture_options`: what its picture had beside. A mesh of the scene that
 /// came from no file is written beside it; what `file` held before is kept as FILE.bak, or
 /// FILE.bak2 and so on where others are. Throws as
 /// write_text_file.
 void save_scene_copy(const Scene& scene, const std::filesystem::path& input, const MeshSceneOptions& options,
-                     const std::filesystem::path& file, const std::vector<std::string>& picture_options = {});
+                     const std::filesystem::path& file, const std::vector<std::string>& picture_options = {},
+                     const SceneChanges& changes = {});
 
 /// Reads all channels of the first part as floats, with data window and metadata. Throws Error{bad_input} for
 /// a file that is missing, damaged, too large or of an unknown format, Error{failed} where the module

@@ -99,7 +99,7 @@ constexpr Slip kCommandSlips[] = {
     {"redner plane.obj", "'render'"},
     {"Render plane.obj", "'render'"},
     {"rend plane.obj", "'render'"},
-    {"view plane.obj", "'render'|"},
+    {"show plane.obj", "'render'|"},
     {"trace plane.obj", "'render'"},
     {"info plane.obj", "'inspect'"},
     {"inspct a.exr", "'inspect'"},

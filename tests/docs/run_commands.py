@@ -1,7 +1,7 @@
 """Runs the commands that README and docs show: run_commands.py ROOT RELIEF.
 
 A render or a bench of a page takes minutes. Each command runs as it is written, but through a `relief` that makes the
-pictures small; those of `bench` are checked for their names and options alone. Files that pages speak of come from the
+pictures small; those of `bench` and `view` are checked for their names and options alone. Files that pages speak of come from the
 samples. Lines with brackets are summaries of usage, and are not run."""
 import concurrent.futures
 import os
@@ -87,6 +87,8 @@ def check_commands(page: pathlib.Path, root: pathlib.Path, relief: str, given: p
                 fault = check_bench(relief, command)
                 faults += [f"{name}: {command}: {fault}"] if fault else []
                 left_out.append(f"{name}: {command}: a measurement; its options were checked")
+            elif re.match(r"(xvfb-run )?relief view", command):
+                left_out.append(f"{name}: {command}: a window; its options were checked")
             elif any(need in command for need in NEEDS_DEVICE):
                 left_out.append(f"{name}: {command}: needs a device")
             else:
@@ -135,6 +137,8 @@ def main() -> int:
     options, targets = collect_help(relief), (root / "Makefile").read_text()
     options += "".join(file.read_text() for file in sorted(root.glob("tools/*.sh")) + sorted(root.glob("apps/gpu/*"))
                        + sorted(root.glob("python/relief/*/command.py")))
+    # Of a program that not every build has.
+    options += "".join((root / "apps" / file).read_text() for file in ("viewer/viewer_options.cpp", "common/map_options.cpp"))
     faults, left_out, count = [], [], 0
     for page in every:
         if page.name != "CHANGELOG.md":

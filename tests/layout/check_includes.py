@@ -31,7 +31,7 @@ ALLOWED = {
 
 # What an application may include of src/ besides include/relief.
 PYTHON = ["base", "math"]  # the same for python/src, which has the reports of apps as well
-APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"]}
+APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"], "viewer": ["base"]}
 
 # Libraries that only these folders may see; a folder stands for all below it. Tests may see all of them.
 LIBRARIES = {
@@ -45,6 +45,7 @@ LIBRARIES = {
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],
     r"embree3/": ["apps/bench"],
+    r"GLFW/|imgui|civetweb|stb_": ["apps/viewer"],
     r"fmt/": ["src", "apps", "python/src"],
     r"vulkan/vulkan": ["src/vulkan", "src/lab/vulkan"],
     r"nanobind/": ["python/src"],

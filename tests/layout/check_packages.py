@@ -28,12 +28,21 @@ PACKAGES = {
     "Python": ["python3-dev", "python3-venv"],
     # From the Python package index, as a part of the build of the Python module.
     "nanobind": [],
+    # The window of the viewer.
+    "glfw3": ["libglfw3-dev"],
+    "OpenGL": ["libgl-dev"],
+    "IMGUI_FOLDER": ["libimgui-dev"],
+    "IMGUI_LIBRARY": ["libimgui-dev"],
+    "STB_LIBRARY": ["libstb-dev"],
+    "STB_FOLDER": ["libstb-dev"],
+    "CIVETWEB_FOLDER": ["libcivetweb-dev"],
+    "CIVETWEB_LIBRARY": ["libcivetweb-dev"],
     # What the tests of an installed Relief look for.
     "relief": ["pkgconf"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.
     "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],
 }
-TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "doxygen", "python3-matplotlib"]
+TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "doxygen", "python3-matplotlib", "xvfb"]
 
 root = pathlib.Path(sys.argv[1])
 listed = set((root / "tools/packages.txt").read_text().splitlines())

@@ -9,6 +9,7 @@
 
 #include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
+#include "io/scene/keyed_values.h"
 #include "io/scene/scene_values.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -140,6 +141,51 @@ void update_values(const Scene& scene, Json& root) {
     }
 }
 
+/// The displacements of a mesh that came alone are called "map", whatever the scene calls them.
+Json* find_entry(Json& root, const char* section, const std::string& name) {
+    if (!root.contains(section)) return nullptr;
+    Json& entries = root[section];
+    if (entries.contains(name)) return &entries[name];
+    return entries.size() == 1 ? &entries.front() : nullptr;
+}
+
+/// A number or colour, which is the factor of a texture where the key has one.
+void set_input(Json& node, const char* name, const char* alias, Json value) {
+    const char* key = node.contains(name) ? name : alias;
+    if (node.contains(key) && node[key].is_object())
+        node[key]["factor"] = std::move(value);
+    else
+        node[key] = std::move(value);
+}
+
+void write_convention(const Displacement& map, Json& node) {
+    node.erase("preset"), node.erase("encoding");
+    write_map_convention(map, node);
+}
+
+void apply_changes(const Scene& scene, const SceneChanges& changes, const fs::path& folder, Json& root) {
+    if (!changes.environment.empty())
+        root["environment"]["file"] = move_path(changes.environment.string(), ".", folder);
+    for (const Displacement& map : scene.displacements) {
+        Json* const node = find_entry(root, "displacements", map.name);
+        if (!node) continue;
+        const auto painted = changes.maps.find(map.name);
+        if (painted != changes.maps.end()) (*node)["file"] = move_path(painted->second.string(), ".", folder);
+        // Texels that were integers become floats, whose zero is another.
+        if (painted != changes.maps.end() || changes.displacements.contains(map.name))
+            write_convention(map, *node);
+    }
+    for (const Material& material : scene.materials) {
+        Json* const node = changes.materials.contains(material.name)
+                               ? find_entry(root, "materials", material.name)
+                               : nullptr;
+        if (!node) continue;
+        set_input(*node, "base_color", "base_color", to_json(material.base_color));
+        set_input(*node, "roughness", "specular_roughness", to_json(material.roughness));
+        set_input(*node, "metallic", "base_metalness", to_json(material.metallic));
+    }
+}
+
 /// Vectors on one line.
 std::string join_numbers(const std::string& text) {
     std::string result;
@@ -206,7 +252,8 @@ void keep_backup(const fs::path& file, const std::string& text) {
 } // namespace
 
 void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneOptions& options,
-                     const fs::path& file, const std::vector<std::string>& picture_options) {
+                     const fs::path& file, const std::vector<std::string>& picture_options,
+                     const SceneChanges& changes) {
     validate_scene(scene);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     Json root;
@@ -214,12 +261,14 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
         root = write_mesh_scene(scene, options, folder);
     } else {
         root = parse_json(read_file_bytes(input), input.string());
+        if (changes.frame) root = evaluate_frame(root, *changes.frame, input.string());
         for (const char* section :
              {"environment", "materials", "displacements", "meshes", "objects", "lights"})
             if (root.contains(section))
                 move_paths(root[section], input.has_parent_path() ? input.parent_path() : ".", folder);
     }
     update_values(scene, root);
+    apply_changes(scene, changes, folder, root);
     if (!scene.objects.empty()) add_ground(scene, file, root);
     const std::string text = format_commented(root, picture_options);
     keep_backup(file, text);

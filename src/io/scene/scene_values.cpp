@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/displacement_conventions.h"
 #include "scene/words.h"
 
 namespace relief {
@@ -102,6 +103,22 @@ void write_normal_options(const Material& material, Json& node) {
     if (texture.is_string()) texture = Json{{"file", texture}};
     if (material.normal_scale != plain.normal_scale) texture["scale"] = to_json(material.normal_scale);
     if (material.normal_flip_y) texture["flip_y"] = true;
+}
+
+void write_map_convention(const Displacement& map, Json& node) {
+    node["type"] = get_word(map.type);
+    node["space"] = get_word(map.space);
+    node["axes"] = format_axes(map.axes, map.space);
+    node["frame"] = get_word(map.frame);
+    node["lengths"] = get_word(map.lengths);
+    // Unsaid it is 0 of the floats that are written.
+    if (map.has_midlevel || map.midlevel != Vec3f{}) node["midlevel"] = to_json(map.midlevel);
+    node["scale"] = to_json(map.scale);
+    node["flip_v"] = map.flip_v;
+    node["dilate"] = map.dilate;
+    node["filter"] = get_word(map.filter);
+    node["autobump"] = map.autobump;
+    node["wrap"] = get_word(map.wrap);
 }
 
 void write_environment(const Environment& environment, Json& node) {

@@ -23,6 +23,8 @@ Json write_placement(const InputTexture& texture);
 void write_emission(const Material& material, Json& node);
 /// Adds what the entry of the normal map, which is there already, says beside file and filter.
 void write_normal_options(const Material& material, Json& node);
+/// What the texels of a map of floats mean: all but its file, and what smooths texels of integers.
+void write_map_convention(const Displacement& map, Json& node);
 /// All but its picture.
 void write_environment(const Environment& environment, Json& node);
 

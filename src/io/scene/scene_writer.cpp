@@ -203,20 +203,8 @@ class SceneWriter {
         for (const Displacement& map : scene_.displacements) {
             displacement_names_.push_back(namer.make_unique(map.name));
             Json& node = root_["displacements"][displacement_names_.back()];
-            node["type"] = get_word(map.type);
             node["file"] = add_tiles(map.tiles, map.is_udim, displacement_names_.back());
-            node["space"] = get_word(map.space);
-            node["axes"] = format_axes(map.axes, map.space);
-            node["frame"] = get_word(map.frame);
-            node["lengths"] = get_word(map.lengths);
-            // Unsaid it is 0 of the floats that are written.
-            if (map.has_midlevel || map.midlevel != Vec3f{}) node["midlevel"] = to_json(map.midlevel);
-            node["scale"] = to_json(map.scale);
-            node["flip_v"] = map.flip_v;
-            node["dilate"] = map.dilate;
-            node["filter"] = get_word(map.filter);
-            node["autobump"] = map.autobump;
-            node["wrap"] = get_word(map.wrap);
+            write_map_convention(map, node);
         }
     }
 

@@ -1,4 +1,4 @@
-#include "denoiser_search.h"
+#include "common/denoiser_search.h"
 
 #include <algorithm>
 #include <cstdio>

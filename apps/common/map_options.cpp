@@ -1,4 +1,4 @@
-#include "map_options.h"
+#include "common/map_options.h"
 
 #include <functional>
 

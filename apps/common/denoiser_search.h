@@ -1,4 +1,4 @@
-// Where the command looks for Open Image Denoise.
+// Where the programs look for Open Image Denoise.
 #pragma once
 
 #include "relief/denoise.h"

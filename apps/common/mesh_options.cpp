@@ -1,4 +1,4 @@
-#include "mesh_options.h"
+#include "common/mesh_options.h"
 
 #include <functional>
 #include <utility>

@@ -1,0 +1,203 @@
+#include "viewer/document.h"
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "relief/convert.h"
+#include "relief/error.h"
+
+namespace relief::viewer {
+
+namespace {
+
+MapTile& find_map_tile(Displacement& map, int udim) {
+    for (MapTile& tile : map.tiles)
+        if (tile.udim == udim) return tile;
+    throw Error(ErrorKind::usage,
+                {fmt::format("there is no tile {}", udim), fmt::format("displacement '{}'", map.name),
+                 "paint where the map has one"});
+}
+
+/// Names tell maps apart in edits and in files.
+void make_names_distinct(std::vector<Displacement>& maps) {
+    std::set<std::string> taken;
+    for (Displacement& map : maps) {
+        const std::string base = map.name.empty() ? "map" : map.name;
+        map.name = base;
+        for (int k = 2; !taken.insert(map.name).second; ++k) map.name = fmt::format("{}_{}", base, k);
+    }
+}
+
+std::string make_stem(std::string name) {
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    return name;
+}
+
+} // namespace
+
+int find_first_frame(const Shot& shot) {
+    return shot.frames().empty() ? 1 : *std::ranges::min_element(shot.frames());
+}
+
+LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot) {
+    if (is_mesh_file(input.file)) return {load_mesh_scene(input.file, input.mesh), nullptr};
+    if (input.file.extension() != ".json") {
+        refuse_foreign_file(input.file);
+        throw Error(ErrorKind::usage, {"this is neither a scene nor a mesh", input.file.string(),
+                                       "a map goes with its mesh: relief view MESH --vdm MAP"});
+    }
+    if (!shot) shot = std::make_shared<Shot>(input.file, input.mesh.reader);
+    Scene scene = shot->load(input.frame.value_or(find_first_frame(*shot)));
+    if (!shot->is_animated()) shot.reset(); // it holds all textures
+    return {std::move(scene), std::move(shot)};
+}
+
+const Mesh* find_mesh(const Scene& scene, size_t displacement) {
+    for (const Object& object : scene.objects)
+        if (object.displacement == displacement) return &scene.meshes[object.mesh];
+    return nullptr;
+}
+
+Document::Document(SceneInput input, Scene scene) : input_(std::move(input)), scene_(std::move(scene)) {
+    make_names_distinct(scene_.displacements);
+}
+
+void Document::touch() {
+    ++version_;
+    has_changes_ = true;
+}
+
+std::shared_ptr<const Scene> Document::snapshot() {
+    commit();
+    return std::make_shared<const Scene>(scene_);
+}
+
+void Document::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
+    Displacement& map = scene_.displacements.at(index);
+    change(map);
+    map.assumed = {};
+    changes_.displacements.insert(map.name);
+    touch();
+}
+
+void Document::change_material(size_t index, const std::function<void(Material&)>& change) {
+    Material& material = scene_.materials.at(index);
+    change(material);
+    changes_.materials.insert(material.name);
+    touch();
+}
+
+void Document::change_environment(const std::function<void(Environment&)>& change) {
+    if (!scene_.environment) return;
+    change(*scene_.environment);
+    touch();
+}
+
+void Document::change_light(size_t index, const std::function<void(Light&)>& change) {
+    change(scene_.lights.at(index));
+    touch();
+}
+
+void Document::load_environment(const std::filesystem::path& file) {
+    auto texture = std::make_shared<const Texture>(read_texture(file));
+    if (!scene_.environment) scene_.environment.emplace();
+    scene_.environment->texture = std::move(texture);
+    changes_.environment = file;
+    touch();
+}
+
+Texture& Document::paint_tile(size_t displacement, int udim) {
+    Displacement& map = scene_.displacements.at(displacement);
+    if (map.dequantize)
+        throw Error(ErrorKind::usage,
+                    {"a map that is dequantised cannot be painted on",
+                     fmt::format("displacement '{}'", map.name), "convert it with dequantize first"});
+    const Texture* const held = find_map_tile(map, udim).texture.get();
+    std::unique_ptr<Texture>& texels = painted_[held];
+    if (!texels) texels = std::make_unique<Texture>(*held);
+    uncommitted_.insert(held);
+    for (const Displacement& other : scene_.displacements)
+        for (const MapTile& tile : other.tiles)
+            if (tile.texture.get() == held) painted_maps_.insert(other.name), unsaved_.insert(other.name);
+    has_changes_ = true;
+    return *texels;
+}
+
+void Document::commit() {
+    for (const TileKey held : std::exchange(uncommitted_, {})) {
+        auto node = painted_.extract(held);
+        const auto texture = std::make_shared<const Texture>(*node.mapped());
+        for (Displacement& map : scene_.displacements)
+            for (MapTile& tile : map.tiles)
+                if (tile.texture.get() == held) tile.texture = texture;
+        node.key() = texture.get();
+        painted_.insert(std::move(node));
+    }
+}
+
+bool Document::replace_tile(size_t displacement, int udim, Texture texels) {
+    const std::shared_ptr<const Texture> held =
+        find_map_tile(scene_.displacements.at(displacement), udim).texture;
+    if (texels.width != held->width || texels.height != held->height ||
+        texels.channel_count != held->channel_count || texels.halves.empty() != held->halves.empty())
+        return false;
+    painted_.erase(held.get());
+    uncommitted_.erase(held.get());
+    const auto texture = std::make_shared<const Texture>(std::move(texels));
+    for (Displacement& map : scene_.displacements)
+        for (MapTile& tile : map.tiles)
+            if (tile.texture == held) tile.texture = texture;
+    return true;
+}
+
+std::filesystem::path Document::save_painted(const Displacement& map,
+                                             const std::filesystem::path& scene_file) {
+    std::filesystem::path file = scene_file;
+    const std::string token = map.is_udim ? ".<UDIM>" : "";
+    file.replace_filename(fmt::format("{}_{}{}.exr", scene_file.stem().string(), make_stem(map.name), token));
+    const bool has_halves =
+        std::ranges::all_of(map.tiles, [](const MapTile& t) { return !t.texture->halves.empty(); });
+    write_map(map, file, has_halves ? MapSamples::float16 : MapSamples::float32);
+    return file;
+}
+
+std::vector<std::filesystem::path> Document::save(const std::filesystem::path& file,
+                                                  const ImageSettings& image) {
+    commit();
+    std::vector<std::filesystem::path> written;
+    std::error_code ignored;
+    if (std::filesystem::equivalent(file, input_.file, ignored))
+        throw Error(ErrorKind::usage, {"the file that was opened would be written over", file.string(),
+                                       "name another one to write"});
+    for (const Displacement& map : scene_.displacements) {
+        if (!painted_maps_.contains(map.name)) continue;
+        changes_.maps[map.name] = save_painted(map, file);
+        written.push_back(changes_.maps[map.name]);
+    }
+    Scene scene = scene_;
+    if (input_.frame) changes_.frame = *input_.frame;
+    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
+    save_scene_copy(scene, input_.file, input_.mesh, file, {}, changes_);
+    written.push_back(file);
+    has_changes_ = false;
+    unsaved_.clear();
+    return written;
+}
+
+void Document::save_map(size_t displacement, const std::filesystem::path& file, const Displacement& to) {
+    commit();
+    const Displacement& map = scene_.displacements.at(displacement);
+    std::error_code ignored;
+    for (const MapTile& tile : map.tiles)
+        if (std::filesystem::equivalent(file, tile.texture->file, ignored))
+            throw Error(ErrorKind::usage, {"the map that was opened would be written over", file.string(),
+                                           "name another file to write"});
+    write_map(convert_map(map, to, find_mesh(scene_, displacement)), file, MapSamples::float32);
+    unsaved_.erase(map.name);
+}
+
+} // namespace relief::viewer

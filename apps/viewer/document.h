@@ -1,0 +1,105 @@
+// A scene that is looked at and changed: what of it differs from its files, and how it is saved.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "relief/io.h"
+#include "relief/render.h"
+#include "relief/scene.h"
+#include "relief/shot.h"
+
+namespace relief::viewer {
+
+/// A scene file, or a mesh with its map and environment.
+struct SceneInput {
+    std::filesystem::path file;
+    MeshSceneOptions mesh;
+    std::optional<int> frame; ///< of a scene whose values have keys; nothing: its first one
+};
+
+/// `shot`: of a scene that differs from frame to frame, else null.
+struct LoadedInput {
+    Scene scene;
+    std::shared_ptr<Shot> shot;
+};
+
+/// Without `shot`, which is that of an earlier call for the same file, all is read anew. Throws as Shot and
+/// load_mesh_scene, and Error{usage} for a file that is neither scene nor mesh.
+LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot = nullptr);
+
+/// The frame that a scene is opened at.
+int find_first_frame(const Shot& shot);
+
+class Document {
+  public:
+    /// `scene` as load_input read it. Maps whose names are not distinct get distinct ones.
+    Document(SceneInput input, Scene scene);
+
+    const SceneInput& input() const { return input_; }
+    /// The camera alone differs there.
+    void set_frame(int frame) { input_.frame = frame; }
+    const Scene& scene() const { return scene_; }
+    /// A copy, with all that was painted so far.
+    std::shared_ptr<const Scene> snapshot();
+    /// Grows with each change that a session does not follow.
+    uint64_t version() const { return version_; }
+    bool has_changes() const { return has_changes_; }
+    /// Something was painted since the maps were saved last.
+    bool has_painted() const { return !unsaved_.empty(); }
+    bool has_painted(const std::string& map) const { return unsaved_.contains(map); }
+
+    void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
+    void change_material(size_t index, const std::function<void(Material&)>& change);
+    void change_environment(const std::function<void(Environment&)>& change);
+    void change_light(size_t index, const std::function<void(Light&)>& change);
+    /// Throws as read_texture.
+    void load_environment(const std::filesystem::path& file);
+    /// The camera is no change that needs another session.
+    void set_camera(const Camera& camera) { scene_.camera = camera; }
+
+    /// Texels of a map's tile to paint on: of the place in memory that displacements share. Marks it as
+    /// painted. Throws Error{usage} for a missing tile, and for a map that is dequantised.
+    Texture& paint_tile(size_t displacement, int udim);
+    /// New texels from its file, of the same size: no change that needs another session, if it is told of the
+    /// edit. False where the size is another one.
+    bool replace_tile(size_t displacement, int udim, Texture texels);
+
+    /// Writes a scene file with the picture of these settings, and painted maps beside it, `STEM_NAME.exr`.
+    /// Returns all files written. Throws as save_scene_copy and write_map.
+    std::vector<std::filesystem::path> save(const std::filesystem::path& file, const ImageSettings& image);
+    /// Writes a map in the convention of `to`, whose tiles are ignored. Throws as convert_map and write_map.
+    void save_map(size_t displacement, const std::filesystem::path& file, const Displacement& to);
+
+  private:
+    using TileKey = const Texture*;
+
+    void touch();
+    /// Puts what was painted into the scene.
+    void commit();
+    std::filesystem::path save_painted(const Displacement& map, const std::filesystem::path& scene_file);
+
+    SceneInput input_;
+    Scene scene_;
+    uint64_t version_ = 1;
+    bool has_changes_ = false;
+    SceneChanges changes_;
+    /// Texels being painted, by the texture that the scene holds in their place.
+    std::map<TileKey, std::unique_ptr<Texture>> painted_;
+    std::set<TileKey> uncommitted_;
+    std::set<std::string> painted_maps_; ///< names of displacements, since they were read
+    std::set<std::string> unsaved_;      ///< of these, since they were saved
+};
+
+/// Finds an object with that displacement; its mesh gives the frames. Null: none.
+const Mesh* find_mesh(const Scene& scene, size_t displacement);
+
+} // namespace relief::viewer

@@ -1,0 +1,36 @@
+// Notices when files change on the disk.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+namespace relief::viewer {
+
+class FileWatch {
+  public:
+    /// Watches these files instead of others, as they are now. Names that are no files are never reported.
+    void watch(const std::vector<std::filesystem::path>& files);
+    /// What the program itself wrote is no change.
+    void accept(const std::filesystem::path& file);
+
+    /// Files that changed since they were reported last, and stayed as they are between two calls: who writes
+    /// one needs longer than a moment. A file that is not there is reported once it is back.
+    std::vector<std::filesystem::path> poll();
+
+  private:
+    struct Stamp {
+        std::filesystem::file_time_type time{};
+        uint64_t bytes = 0;
+        friend bool operator==(const Stamp&, const Stamp&) = default;
+    };
+    struct Watched {
+        Stamp known, last;
+    };
+    static Stamp read_stamp(const std::filesystem::path& file);
+
+    std::map<std::filesystem::path, Watched> files_;
+};
+
+} // namespace relief::viewer

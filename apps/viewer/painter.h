@@ -1,0 +1,73 @@
+// Strokes of a brush on the displacement maps of a document.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "relief/session.h"
+#include "viewer/brush.h"
+#include "viewer/document.h"
+#include "viewer/stroke_history.h"
+#include "viewer/surface_point.h"
+#include "viewer/texel_frames.h"
+
+namespace relief::viewer {
+
+class Painter {
+  public:
+    /// The document must outlive this object.
+    explicit Painter(Document& document) : document_(document) {}
+
+    /// Begins a stroke where a picture shows a displaced surface; (x, y) in pixels of the whole picture. The
+    /// edits are for the session that shows the document. Throws as Document::paint_tile and convert_map.
+    std::vector<MapEdit> begin(const Brush& brush, const ShownPicture& picture, float x, float y);
+    /// The stroke goes on to (x, y): along the object that it began on.
+    std::vector<MapEdit> move(const ShownPicture& picture, float x, float y);
+    void end();
+    bool is_active() const { return object_ != kNoIndex; }
+
+    bool can_undo() const { return history_.can_undo(); }
+    bool can_redo() const { return history_.can_redo(); }
+    std::vector<MapEdit> undo();
+    std::vector<MapEdit> redo();
+    /// Of maps that were replaced nothing can be taken back.
+    void forget() { history_.clear(), frames_.clear(); }
+
+  private:
+    /// A rectangle of the tile, the dab there, and its texels before a grab.
+    struct Piece {
+        TexelBox box;
+        Dab dab;
+        Texture before;
+    };
+
+    const Object& object() const { return document_.scene().objects[object_]; }
+    const Displacement& map() const { return document_.scene().displacements[object().displacement]; }
+    void dab_at(const ShownPicture& picture, float x, float y);
+    std::optional<Dab> make_dab(const Texture& texture, const SurfacePoint& point);
+    std::vector<Piece> find_pieces(const Texture& texture, const Dab& dab) const;
+    /// What a shift of the surface in the world adds to values of the map.
+    Vec3f find_step(const Vec3f& shift_world, const SurfacePoint& point, int udim);
+    void apply(const Piece& piece, const SurfacePoint& point, int udim, Texture& texture);
+    void smooth(const Piece& piece, Texture& texture) const;
+    std::vector<MapEdit> grab(const ShownPicture& picture, float x, float y);
+    void note_change(const TilePlace& place, const TexelBox& box);
+    std::vector<MapEdit> take_edits();
+
+    Document& document_;
+    StrokeHistory history_;
+    std::map<size_t, std::unique_ptr<TexelFrames>> frames_; ///< by displacement
+    Brush brush_;
+    uint32_t object_ = kNoIndex; ///< that a stroke is on; none: no stroke
+    Vec2f last_{};               ///< pixels of the whole picture
+    std::optional<SurfacePoint> start_;
+    int start_udim_ = 1001;
+    std::vector<Piece> grabbed_;
+    std::optional<Dab> last_dab_;
+    std::vector<std::pair<TilePlace, TexelBox>> changed_; ///< since the last edits
+};
+
+} // namespace relief::viewer

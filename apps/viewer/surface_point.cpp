@@ -1,0 +1,169 @@
+#include "viewer/surface_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "viewer/vectors.h"
+
+namespace relief::viewer {
+
+namespace {
+
+/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small
+/// pictures the second, as far as the first lies beyond a seam.
+constexpr int kReaches[] = {3, 1};
+/// Two pixels of which uv differs by more lie on two sides of a seam.
+constexpr float kSeam = 0.25f;
+/// Lines begin there, in distances of the camera's target.
+constexpr float kNearPlane = 1e-3f;
+
+/// Channels of the layers, all of which are there.
+class Layers {
+  public:
+    explicit Layers(const Image& image)
+        : image_(image),
+          depth_(find("depth.Z")),
+          normal_(find("N.X")),
+          position_(find("P.X")),
+          uv_(find("uv.X")),
+          id_(find("id.I")) {}
+
+    bool is_complete() const { return is_complete_; }
+    bool is_inside(int x, int y) const { return x >= 0 && y >= 0 && x < image_.width && y < image_.height; }
+    bool has_surface(int x, int y) const { return is_inside(x, y) && std::isfinite(at(x, y, depth_)); }
+    float id(int x, int y) const { return at(x, y, id_); }
+    Vec3f position(int x, int y) const { return vector(x, y, position_); }
+    Vec3f normal(int x, int y) const { return vector(x, y, normal_); }
+    Vec2f uv(int x, int y) const { return {at(x, y, uv_), at(x, y, uv_ + 1)}; }
+
+  private:
+    size_t find(const char* name) {
+        const auto channel = image_.find_channel(name);
+        is_complete_ &= channel.has_value();
+        return channel.value_or(0);
+    }
+    float at(int x, int y, size_t channel) const {
+        return image_
+            .pixels[(size_t(y) * size_t(image_.width) + size_t(x)) * image_.channels.size() + channel];
+    }
+    Vec3f vector(int x, int y, size_t channel) const {
+        return {at(x, y, channel), at(x, y, channel + 1), at(x, y, channel + 2)};
+    }
+
+    const Image& image_;
+    bool is_complete_ = true;
+    size_t depth_, normal_, position_, uv_, id_;
+};
+
+/// Between pixels (dx, dy) before and behind, of which one is not 0.
+std::optional<Vec2f> find_change(const Layers& layers, int x, int y, int dx, int dy, float scale) {
+    const auto is_same = [&](int px, int py) {
+        return layers.has_surface(px, py) && layers.id(px, py) == layers.id(x, y);
+    };
+    const bool has_next = is_same(x + dx, y + dy), has_last = is_same(x - dx, y - dy);
+    if (!has_next && !has_last) return std::nullopt;
+    const Vec2f a = has_last ? layers.uv(x - dx, y - dy) : layers.uv(x, y);
+    const Vec2f b = has_next ? layers.uv(x + dx, y + dy) : layers.uv(x, y);
+    const Vec2f change{b.x - a.x, b.y - a.y};
+    if (std::fabs(change.x) > kSeam || std::fabs(change.y) > kSeam) return std::nullopt;
+    const float pixels = float((dx + dy) * (int(has_next) + int(has_last))) * scale;
+    return Vec2f{change.x / pixels, change.y / pixels};
+}
+
+/// Along one of (1, 0) and (0, 1).
+std::optional<Vec2f> find_derivative(const Layers& layers, int x, int y, std::pair<int, int> along,
+                                     float scale) {
+    for (const int reach : kReaches)
+        if (const auto change = find_change(layers, x, y, reach * along.first, reach * along.second, scale))
+            return change;
+    return std::nullopt;
+}
+
+/// Whether a triangle of the uv plane holds a point.
+bool holds(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& p) {
+    const auto side = [&](const Vec2f& s, const Vec2f& e) {
+        return (e.x - s.x) * (p.y - s.y) - (e.y - s.y) * (p.x - s.x);
+    };
+    const float ab = side(a, b), bc = side(b, c), ca = side(c, a);
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
+
+} // namespace
+
+std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, float x, float y) {
+    const Layers layers(picture.image);
+    if (!layers.is_complete() || picture.full_width < 1 || picture.full_height < 1) return std::nullopt;
+    const float scale_x = float(picture.full_width) / float(picture.image.width);
+    const float scale_y = float(picture.full_height) / float(picture.image.height);
+    const int px = int(std::floor(x / scale_x)), py = int(std::floor(y / scale_y));
+    if (!layers.has_surface(px, py) || layers.id(px, py) < 1) return std::nullopt; // 0 is no object
+    SurfacePoint point;
+    point.object = uint32_t(layers.id(px, py)) - 1;
+    point.position = layers.position(px, py);
+    point.normal = normalize(layers.normal(px, py));
+    point.uv = layers.uv(px, py);
+    const Vec3f forward = normalize(picture.camera.to - picture.camera.from);
+    const float distance = dot(point.position - picture.camera.from, forward);
+    point.pixel_size = 2 * distance * std::tan(picture.camera.fov_degrees * std::numbers::pi_v<float> / 360) /
+                       float(picture.full_height);
+    point.uv_right = find_derivative(layers, px, py, {1, 0}, scale_x);
+    point.uv_down = find_derivative(layers, px, py, {0, 1}, scale_y);
+    return point;
+}
+
+std::optional<std::pair<Vec2f, Vec2f>> project_line(const Camera& camera, const Vec3f& a, const Vec3f& b,
+                                                    int width, int height) {
+    const Vec3f axis = camera.to - camera.from, forward = normalize(axis);
+    const Vec3f right = normalize(cross(forward, camera.up)), up = cross(right, forward);
+    const float nearest = kNearPlane * length(axis);
+    Vec3f ends[2] = {a - camera.from, b - camera.from};
+    const float depths[2] = {dot(ends[0], forward), dot(ends[1], forward)};
+    if (std::max(depths[0], depths[1]) <= nearest) return std::nullopt;
+    for (size_t k = 0; k < 2; ++k) {
+        if (depths[k] >= nearest) continue;
+        const float share = (nearest - depths[k]) / (depths[1 - k] - depths[k]);
+        ends[k] = ends[k] + (ends[1 - k] - ends[k]) * share;
+    }
+    const float high = float(height);
+    const float pixels = 0.5f * high / std::tan(camera.fov_degrees * std::numbers::pi_v<float> / 360);
+    const auto project = [&](const Vec3f& end) -> Vec2f {
+        const float scale = pixels / dot(end, forward);
+        return {0.5f * float(width) - camera.shift.x * high + dot(end, right) * scale,
+                0.5f * high + camera.shift.y * high - dot(end, up) * scale};
+    };
+    return std::pair(project(ends[0]), project(ends[1]));
+}
+
+int find_udim(const Scene& scene, const SurfacePoint& point) {
+    const Object& object = scene.objects[point.object];
+    const Displacement& map = scene.displacements[object.displacement];
+    if (!map.is_udim) return map.tiles.front().udim;
+    const Mesh& mesh = scene.meshes[object.mesh];
+    int udim = map.tiles.front().udim;
+    float nearest = std::numeric_limits<float>::infinity();
+    for (size_t face = 0, first = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face++]) {
+        const size_t corners = mesh.face_sizes[face];
+        if (mesh.uv_indices.empty() || mesh.uv_indices[first] == kNoIndex) continue;
+        const auto uv = [&](size_t k) { return mesh.uvs[mesh.uv_indices[first + k]]; };
+        Vec2f middle{};
+        for (size_t k = 0; k < corners; ++k)
+            middle.x += uv(k).x / float(corners), middle.y += uv(k).y / float(corners);
+        const float column = std::floor(middle.x), row = std::floor(middle.y);
+        const Vec2f p{point.uv.x + column, point.uv.y + row};
+        bool is_inside = false;
+        for (size_t k = 2; k < corners; ++k) is_inside |= holds(uv(0), uv(k - 1), uv(k), p);
+        if (!is_inside) continue;
+        const Vec3f corner = mesh.positions[mesh.position_indices[first]];
+        const Vec3f place =
+            transform_vector(object.world_from_object, corner) + object.world_from_object.translation;
+        if (const float distance = length(place - point.position); distance < nearest) {
+            nearest = distance;
+            udim = 1001 + int(column) + 10 * int(row);
+        }
+    }
+    return udim;
+}
+
+} // namespace relief::viewer

@@ -1,0 +1,110 @@
+#include "viewer/user_state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "relief/io.h"
+
+namespace relief::viewer {
+
+namespace {
+
+/// Seconds of work that a crash may cost.
+constexpr double kKeepInterval = 30;
+
+} // namespace
+
+std::filesystem::path find_state_folder() {
+    const char *state = std::getenv("XDG_STATE_HOME"), *home = std::getenv("HOME");
+    if (state && std::filesystem::path(state).is_absolute()) return std::filesystem::path(state) / "relief";
+    if (home && *home) return std::filesystem::path(home) / ".local/state/relief";
+    return {};
+}
+
+UserState::~UserState() = default;
+
+std::vector<std::filesystem::path> UserState::read_recent() const {
+    std::vector<std::filesystem::path> files;
+    std::ifstream stream(folder_ / "recent.txt");
+    std::error_code ignored;
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty() && std::filesystem::exists(line, ignored)) files.emplace_back(line);
+    return files;
+}
+
+void UserState::add_recent(const std::filesystem::path& file) {
+    if (folder_.empty()) return;
+    std::error_code ignored;
+    const std::filesystem::path whole = std::filesystem::absolute(file, ignored);
+    std::vector<std::filesystem::path> files = read_recent();
+    std::erase(files, whole);
+    files.insert(files.begin(), whole);
+    std::string text;
+    for (size_t k = 0; k < std::min(files.size(), kMostRecent); ++k) text += files[k].string() + "\n";
+    std::filesystem::create_directories(folder_, ignored);
+    try {
+        write_text_file(folder_ / "recent.txt", text);
+    } catch (const std::exception&) { // a full disk is no reason to end
+    }
+}
+
+std::filesystem::path UserState::name_painted(const std::filesystem::path& input,
+                                              const std::string& map) const {
+    std::error_code ignored;
+    const std::string place = std::filesystem::weakly_canonical(input, ignored).string();
+    return folder_ / fmt::format("painted-{}-{:016x}-{}.exr", input.stem().string(),
+                                 std::hash<std::string>()(place), map);
+}
+
+void UserState::keep_painted(double now, Document& document) {
+    if (folder_.empty() || !document.has_painted() || now - last_write_ < kKeepInterval) return;
+    if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    last_write_ = now;
+    const std::shared_ptr<const Scene> scene = document.snapshot();
+    std::vector<std::pair<const Displacement*, std::filesystem::path>> maps;
+    for (const Displacement& map : scene->displacements)
+        if (document.has_painted(map.name)) {
+            std::string name = map.name;
+            std::ranges::replace(name, '/', '_');
+            maps.emplace_back(&map,
+                              name_painted(document.input().file, map.is_udim ? name + ".<UDIM>" : name));
+        }
+    writing_ = std::async(std::launch::async, [scene, maps, folder = folder_] {
+        std::error_code ignored;
+        std::filesystem::create_directories(folder, ignored);
+        for (const auto& [map, file] : maps) {
+            try {
+                write_map(*map, file, MapSamples::float32);
+            } catch (const std::exception&) { // the next time may do better
+            }
+        }
+    });
+}
+
+std::vector<std::filesystem::path> UserState::find_painted(const std::filesystem::path& input) const {
+    std::vector<std::filesystem::path> found;
+    if (folder_.empty()) return found;
+    const std::string start = name_painted(input, "").stem().string();
+    std::error_code code;
+    for (auto file = std::filesystem::directory_iterator(folder_, code);
+         !code && file != std::filesystem::directory_iterator(); file.increment(code))
+        if (file->path().filename().string().starts_with(start)) found.push_back(file->path());
+    return found;
+}
+
+void UserState::forget_painted(const Document& document) {
+    if (writing_.valid()) writing_.wait();
+    std::error_code ignored;
+    for (const std::filesystem::path& file : find_painted(document.input().file))
+        std::filesystem::remove(file, ignored);
+}
+
+} // namespace relief::viewer

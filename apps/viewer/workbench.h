@@ -1,0 +1,221 @@
+// The viewer without its window: what is open, seen and painted, and what each input does.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/explain_pixel.h"
+#include "viewer/denoised_preview.h"
+#include "viewer/display_table.h"
+#include "viewer/document.h"
+#include "viewer/file_watch.h"
+#include "viewer/input_event.h"
+#include "viewer/navigation.h"
+#include "viewer/orbit_camera.h"
+#include "viewer/painter.h"
+#include "viewer/picture_view.h"
+#include "viewer/render_loop.h"
+#include "viewer/user_state.h"
+
+namespace relief::viewer {
+
+enum class Tool { look, paint };
+
+/// Where the picture lies in the window, pixels.
+struct ViewArea {
+    float x = 0, y = 0, width = 1, height = 1;
+};
+
+class Workbench {
+  public:
+    /// `settings`: of the pictures; their layers are those of the viewer. `given`: what of the picture a
+    /// scene file must not change. `on_news` is called by other threads when update() has something to do.
+    /// `state_folder`: of what is kept between two runs; empty: nothing is.
+    Workbench(const RenderSettings& settings, const PictureDefaults& given,
+              std::function<void()> on_news = {}, const std::filesystem::path& state_folder = {});
+    ~Workbench();
+
+    // Files. Errors become messages.
+    void open(const SceneInput& input);
+    bool is_loading() const { return loading_.valid(); }
+    /// A dropped file: a scene or mesh is opened; a map goes onto the mesh, an HDR becomes the environment.
+    void drop(const std::filesystem::path& file);
+    bool save(const std::filesystem::path& file);
+    /// In the convention of a preset (conventions.h); empty: in that which the map has.
+    bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
+    std::vector<std::filesystem::path> list_recent() const { return state_.read_recent(); }
+    /// Beside the scene or mesh, with `-view` in its name.
+    std::filesystem::path suggest_file(const char* extension) const;
+    /// Writes the picture, with its layers where it is an .exr, once it has all samples.
+    void write_picture(const std::filesystem::path& file);
+
+    // Input and time.
+    void set_area(const ViewArea& area) { area_ = area; }
+    void set_picture_size(int width, int height);
+    void handle(const InputEvent& event);
+    /// `now`: seconds of any clock that goes on. True where there is something new to draw.
+    bool update(double now);
+    bool wants_to_end() const { return wants_to_end_; }
+    bool is_help_shown() const { return is_help_shown_; }
+    void show_help(bool is_shown) { is_help_shown_ = is_shown; }
+    /// Something moves by itself: update() is to be called soon again.
+    bool is_moving() const;
+
+    // What is open and how it is seen.
+    Document* document() { return document_.get(); }
+    const OrbitCamera& camera() const { return camera_; }
+    void change_camera(const std::function<void(OrbitCamera&)>& change);
+    void frame_all();
+    /// The selected object alone; all where none is.
+    void frame_selected();
+    /// Index into the scene's objects; nothing: none.
+    const std::optional<uint32_t>& selected_object() const { return selected_object_; }
+    void select(std::optional<uint32_t> object);
+    /// Frames that the scene file names, in order; empty: none, or nothing in it has keys.
+    const std::vector<int>& frames() const { return frames_; }
+    /// Of a scene whose values have keys.
+    std::optional<int> frame() const;
+    /// Shows another one; the camera is that of the scene as long as nobody moved it. Refused with a message
+    /// while the scene has changes that are not saved: they would be lost.
+    bool show_frame(int frame);
+    /// Whether Open Image Denoise is there, as far as is known: it is looked for once a picture is done.
+    bool has_denoiser() const { return preview_.is_there(); }
+    bool is_denoised() const { return is_denoised_; }
+    /// False, with a message, where the library cannot be loaded.
+    bool set_denoised(bool is_denoised);
+    const RenderSettings& settings() const { return settings_; }
+    void change_settings(const std::function<void(RenderSettings&)>& change);
+    /// Calls `change`, shows what came of it, and reports errors as messages.
+    void change_document(const std::function<void(Document&)>& change);
+    Brush& brush() { return brush_; }
+    Tool tool() const { return tool_; }
+    void set_tool(Tool tool);
+    NavigationPreset& navigation() { return navigation_; }
+    bool can_undo() const { return painter_ && painter_->can_undo(); }
+    bool can_redo() const { return painter_ && painter_->can_redo(); }
+    void undo();
+    void redo();
+    void explain(float x, float y); ///< pixel of the whole picture
+
+    // What there is to see.
+    const std::shared_ptr<const ShownPicture>& picture() const { return picture_; }
+    /// The same; without noise where that is wanted and done.
+    const std::shared_ptr<const ShownPicture>& shown_picture() const;
+    RenderState render_state() const { return loop_.state(); }
+    /// A picture of the newest state is shown; and one with all its samples, denoised if that is wanted.
+    bool is_shown() const;
+    bool is_done() const;
+    const std::string& message() const { return message_; }
+    /// Of the pixel that was clicked on; without text: none.
+    const cli::PixelExplanation& explanation() const { return explanation_; }
+    /// Of the pixel that was explained, pixels of the whole picture; nothing: none.
+    const std::optional<Vec2f>& explained_pixel() const { return explained_pixel_; }
+    bool is_explaining() const { return explaining_.valid(); }
+    double time_of_first_picture() const { return first_picture_time_; } ///< of update(); below 0: not yet
+
+  private:
+    struct Loaded {
+        SceneInput input;
+        std::optional<LoadedInput> loaded;
+        bool keeps_camera = false;
+        std::string error;
+    };
+    struct RereadMap {
+        size_t displacement = 0;
+        int udim = 1001;
+        Texture texels;
+    };
+    struct Reread {
+        std::vector<RereadMap> maps;
+        std::string error;
+    };
+    struct Drag {
+        DragAction action = DragAction::none;
+        MouseButton button = MouseButton::left;
+        float start_x = 0, start_y = 0, x = 0, y = 0;
+        bool has_moved = false;
+    };
+
+    void frame(const std::optional<uint32_t>& object);
+    void forget_explanation();
+    void load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot = nullptr);
+    void adopt(Loaded loaded);
+    void adopt(Reread reread);
+    void watch_files();
+    void reload(const std::vector<std::filesystem::path>& files);
+    void reread(const std::vector<std::filesystem::path>& maps);
+    void poll_jobs();
+    void take_picture();
+    void take_denoised();
+    void request(std::vector<MapEdit> edits = {});
+    void set_motion(Motion motion);
+    void send(std::vector<MapEdit> edits);
+    void fly(double seconds);
+    void press(const InputEvent& event);
+    void move(const InputEvent& event);
+    void drag_to(const InputEvent& event);
+    void release(const InputEvent& event);
+    void press_key(const InputEvent& event);
+    bool press_command(int key);
+    void finish_output();
+    Vec2f to_picture(float x, float y) const; ///< pixels of the whole picture
+    /// Runs `body`; an exception becomes a message. Returns whether there was none.
+    bool attempt(const std::function<void()>& body);
+    template <class Result> static bool is_ready(const std::future<Result>& job) {
+        return job.valid() && job.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    }
+
+    RenderSettings settings_;
+    PictureDefaults given_;
+    std::function<void()> on_news_;
+    std::unique_ptr<Document> document_;
+    std::unique_ptr<Painter> painter_;
+    OrbitCamera camera_{Camera()};
+    Brush brush_;
+    Tool tool_ = Tool::look;
+    NavigationPreset navigation_ = NavigationPreset::blender;
+    ViewArea area_;
+    Drag drag_;
+    std::set<int> held_keys_;
+    Modifiers modifiers_;
+
+    std::shared_ptr<Shot> shot_; ///< null: the scene is the same at all frames; used by a job while it loads
+    std::vector<int> frames_;
+    bool has_own_camera_ = false; ///< somebody moved it
+
+    std::shared_ptr<const Scene> snapshot_;
+    uint64_t snapshot_version_ = 0;
+    uint64_t scene_count_ = 0; ///< documents opened: versions of different ones differ
+    bool needs_snapshot_ = true, needs_request_ = false;
+    bool has_changed_ = false; ///< something that is seen, since the last request
+    Motion motion_ = Motion::still;
+    double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1;
+    uint64_t wanted_version_ = 0;
+    std::shared_ptr<const ShownPicture> picture_;
+    std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
+    bool is_denoised_ = false;
+    std::filesystem::path output_; ///< a picture to write when it is done; empty: none
+    std::string message_, last_error_;
+    cli::PixelExplanation explanation_;
+    std::optional<Vec2f> explained_pixel_;
+    std::optional<uint32_t> selected_object_;
+    bool wants_to_end_ = false, is_help_shown_ = false, has_news_ = true;
+
+    FileWatch watch_;
+    UserState state_;
+    std::future<Loaded> loading_;
+    std::future<Reread> rereading_;
+    std::future<cli::PixelExplanation> explaining_;
+    DenoisedPreview preview_;
+    RenderLoop loop_; ///< last: its thread calls on_news_
+};
+
+} // namespace relief::viewer

@@ -1,0 +1,254 @@
+// Workbench: files that are opened, dropped, watched and written.
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/inputs.h"
+#include "common/mesh_reader.h"
+#include "common/values.h"
+#include "relief/error.h"
+#include "relief/io.h"
+#include "viewer/conventions.h"
+#include "viewer/workbench.h"
+
+namespace relief::viewer {
+
+namespace {
+
+/// Stays within one tile, and keeps the sizes of maps.
+MapEdit make_whole_edit(const Displacement& map, int udim, const Texture& texels) {
+    MapEdit edit;
+    edit.displacement = map.name;
+    edit.udim = udim;
+    edit.texels = texels;
+    return edit;
+}
+
+bool is_environment(const std::filesystem::path& file) { return cli::get_lower_extension(file) == ".hdr"; }
+
+} // namespace
+
+void Workbench::open(const SceneInput& input) { load(input, false); }
+
+std::optional<int> Workbench::frame() const { return document_ ? document_->input().frame : std::nullopt; }
+
+bool Workbench::show_frame(int frame) {
+    if (!shot_ || is_loading()) return false;
+    if (frame == this->frame()) return true;
+    has_news_ = true;
+    if (document_->has_changes()) {
+        message_ = "another frame would drop what was changed: save the scene (S) first, or open it again";
+        return false;
+    }
+    return attempt([&] {
+        if (const std::optional<Shot::View> view = shot_->find_view(frame)) {
+            document_->set_frame(frame);
+            if (has_own_camera_) return;
+            change_camera([&](OrbitCamera& camera) { camera.set(view->camera); });
+            has_own_camera_ = false;
+            return;
+        }
+        SceneInput input = document_->input();
+        input.frame = frame;
+        load(std::move(input), has_own_camera_, shot_);
+    });
+}
+
+void Workbench::load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot) {
+    if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
+    message_ = fmt::format("loading {}", input.file.filename().string());
+    has_news_ = true;
+    loading_ = std::async(
+        std::launch::async, [input, keeps_camera, shot = std::move(shot), on_news = on_news_]() mutable {
+            Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
+            try {
+                loaded.loaded = load_input(loaded.input, std::move(shot));
+                if (const auto& animated = loaded.loaded->shot; animated && !loaded.input.frame)
+                    loaded.input.frame = find_first_frame(*animated);
+            } catch (const std::exception& error) {
+                loaded.error = error.what();
+            }
+            if (on_news) on_news();
+            return loaded;
+        });
+}
+
+void Workbench::adopt(Loaded loaded) {
+    has_news_ = true;
+    message_ = loaded.error;
+    if (!loaded.loaded) {
+        watch_files();
+        return;
+    }
+    const bool is_first = !document_;
+    painter_.reset();
+    document_ = std::make_unique<Document>(loaded.input, std::move(loaded.loaded->scene));
+    shot_ = std::move(loaded.loaded->shot);
+    frames_ = shot_ ? shot_->frames() : std::vector<int>();
+    std::ranges::sort(frames_);
+    painter_ = std::make_unique<Painter>(*document_);
+    ++scene_count_;
+    const Scene& scene = document_->scene();
+    if (is_first || !loaded.keeps_camera) {
+        camera_.set(scene.camera);
+        has_own_camera_ = false;
+    }
+    document_->set_camera(camera_.get());
+    ImageSettings& image = settings_.image;
+    const PictureDefaults& picture = scene.picture;
+    if (!given_.spp) image.spp = picture.spp.value_or(ImageSettings().spp);
+    if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
+    if (!given_.seed) image.seed = picture.seed.value_or(0);
+    if (!scene.warnings.empty()) message_ = scene.warnings.front();
+    if (const auto painted = state_.find_painted(loaded.input.file); !painted.empty())
+        message_ = fmt::format("painted in an earlier run and not saved: {}", painted.front().string());
+    state_.add_recent(loaded.input.file);
+    forget_explanation();
+    selected_object_.reset();
+    needs_snapshot_ = true;
+    watch_files();
+    set_motion(Motion::still);
+}
+
+void Workbench::watch_files() {
+    if (!document_) return;
+    std::vector<std::filesystem::path> files = {document_->input().file};
+    for (const std::string& file : cli::list_files(document_->scene()))
+        if (!file.empty()) files.emplace_back(file);
+    watch_.watch(files);
+}
+
+void Workbench::drop(const std::filesystem::path& file) {
+    const cli::FileKind kind = cli::get_kind(file);
+    if (kind != cli::FileKind::map) return open({file, {}, {}});
+    if (!document_) {
+        message_ = "drop a mesh first, then its map";
+        has_news_ = true;
+        return;
+    }
+    if (is_environment(file)) {
+        change_document([&](Document& document) { document.load_environment(file); });
+        watch_files();
+        return;
+    }
+    SceneInput input = document_->input();
+    if (!is_mesh_file(input.file)) {
+        message_ = "a map goes onto a mesh alone; a scene names its maps itself";
+        has_news_ = true;
+        return;
+    }
+    input.mesh.displacement_map = find_tile_pattern(file);
+    if (input.mesh.displacement_map.empty()) input.mesh.displacement_map = file;
+    load(input, true);
+}
+
+/// Maps come as edits; of anything else the whole scene is read again.
+void Workbench::reload(const std::vector<std::filesystem::path>& files) {
+    std::vector<std::filesystem::path> maps;
+    for (const std::filesystem::path& file : files) {
+        bool is_map = false;
+        for (const Displacement& map : document_->scene().displacements)
+            for (const MapTile& tile : map.tiles) is_map |= tile.texture->file == file;
+        if (is_map) maps.push_back(file);
+    }
+    if (maps.size() != files.size()) return load(document_->input(), true);
+    reread(maps);
+}
+
+void Workbench::reread(const std::vector<std::filesystem::path>& maps) {
+    std::vector<std::pair<RereadMap, std::filesystem::path>> places;
+    const Scene& scene = document_->scene();
+    for (size_t k = 0; k < scene.displacements.size(); ++k)
+        for (const MapTile& tile : scene.displacements[k].tiles)
+            if (std::ranges::find(maps, std::filesystem::path(tile.texture->file)) != maps.end())
+                places.push_back({{k, tile.udim, {}}, tile.texture->file});
+    rereading_ = std::async(std::launch::async, [places = std::move(places), on_news = on_news_]() mutable {
+        Reread result;
+        try {
+            for (auto& [map, file] : places) {
+                map.texels = read_texture(file);
+                result.maps.push_back(std::move(map));
+            }
+        } catch (const std::exception& error) {
+            result.error = error.what();
+        }
+        if (on_news) on_news();
+        return result;
+    });
+}
+
+void Workbench::adopt(Reread reread) {
+    has_news_ = true;
+    if (!reread.error.empty()) { // what was read last stays
+        message_ = reread.error;
+        return;
+    }
+    std::vector<MapEdit> edits;
+    for (RereadMap& map : reread.maps) {
+        const Displacement& displacement = document_->scene().displacements[map.displacement];
+        edits.push_back(make_whole_edit(displacement, map.udim, map.texels));
+        if (!document_->replace_tile(map.displacement, map.udim, std::move(map.texels)))
+            return load(document_->input(), true);
+    }
+    painter_->end();
+    painter_->forget();
+    message_ = "read again: the map changed";
+    needs_snapshot_ = true;
+    send(std::move(edits));
+}
+
+std::filesystem::path Workbench::suggest_file(const char* extension) const {
+    std::filesystem::path file = document_ ? document_->input().file : std::filesystem::path("scene.json");
+    std::string stem = file.stem().string();
+    if (!stem.ends_with("-view")) stem += "-view";
+    for (int k = 2;
+         extension == std::string(".json") && document_ && file.parent_path() / (stem + extension) == file;
+         ++k)
+        stem = fmt::format("{}-{}", stem, k);
+    return file.replace_filename(stem + extension);
+}
+
+bool Workbench::save(const std::filesystem::path& file) {
+    if (!document_) return false;
+    return attempt([&] {
+        document_->set_camera(camera_.get());
+        const std::vector<std::filesystem::path> written = document_->save(file, settings_.image);
+        for (const std::filesystem::path& path : written) watch_.accept(path);
+        state_.forget_painted(*document_);
+        message_ = fmt::format("wrote {}", file.string());
+        has_news_ = true;
+    });
+}
+
+bool Workbench::save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset) {
+    if (!document_) return false;
+    return attempt([&] {
+        Displacement to = document_->scene().displacements.at(displacement);
+        if (!preset.empty()) to = choose_convention(preset, to);
+        document_->save_map(displacement, file, to);
+        message_ = fmt::format("wrote {}", file.string());
+        has_news_ = true;
+    });
+}
+
+void Workbench::write_picture(const std::filesystem::path& file) {
+    output_ = file;
+    message_ = fmt::format("{} is written when all samples are there", file.filename().string());
+    has_news_ = true;
+    if (motion_ != Motion::still) set_motion(Motion::still);
+    if (is_done()) finish_output();
+}
+
+void Workbench::finish_output() {
+    if (output_.empty() || !is_done()) return;
+    const std::filesystem::path file = std::exchange(output_, {});
+    attempt([&] {
+        write_image(shown_picture()->image, file);
+        message_ = fmt::format("wrote {}", file.string());
+    });
+}
+
+} // namespace relief::viewer

@@ -1,0 +1,168 @@
+"""The page of `relief view --serve` in headless Chromium: browser_test.py RELIEF [FOLDER keeps a picture of the page].
+
+The page loads, its picture refines and turns by the mouse, a second page sees the same, a wrong token is refused, and a
+browser that is killed leaves the viewer well. Skipped where there is no Chromium. It is driven through the pipe of its
+DevTools protocol: JSON that ends with a zero byte, read from file 3 and written to file 4.
+"""
+import base64
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from serve_test import Page, start_server
+
+SKIPPED = 77
+PATIENCE = 120
+SAMPLES = 24
+PIXELS = """(() => {
+  const picture = document.getElementById("picture"), canvas = document.createElement("canvas");
+  canvas.width = picture.naturalWidth, canvas.height = picture.naturalHeight;
+  canvas.getContext("2d").drawImage(picture, 0, 0);
+  return canvas.toDataURL();
+})()"""
+
+
+class Browser:
+    def __init__(self, program, folder):
+        commands, self.output = os.pipe()
+        self.input, answers = os.pipe()
+        # Not 3 and 4 themselves: one could be closed by moving the other there.
+        high = [os.dup2(file, number) for file, number in ((commands, 93), (answers, 94))]
+        move = f"exec 3<&{high[0]} 4>&{high[1]}; exec \"$@\""
+        self.process = subprocess.Popen(
+            ["bash", "-c", move, "bash", program, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
+             "--disable-dev-shm-usage", f"--user-data-dir={folder}", "--window-size=700,500", "--remote-debugging-pipe"],
+            pass_fds=high, stderr=subprocess.DEVNULL, start_new_session=True)
+        for file in (commands, answers, *high):
+            os.close(file)
+        self.bytes, self.count = b"", 0
+
+    def call(self, method, session=None, **parameters):
+        self.count += 1
+        message = {"id": self.count, "method": method, "params": parameters, **({"sessionId": session} if session else {})}
+        os.write(self.output, json.dumps(message).encode() + b"\0")
+        while True:
+            while b"\0" not in self.bytes:
+                more = os.read(self.input, 1 << 20)
+                assert more, "the browser has ended"
+                self.bytes += more
+            text, _, self.bytes = self.bytes.partition(b"\0")
+            answer = json.loads(text)
+            if answer.get("id") == self.count:
+                assert "error" not in answer, answer
+                return answer["result"]
+
+    def open(self, url):
+        target = self.call("Target.createTarget", url=url)["targetId"]
+        return Tab(self, self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"])
+
+    def kill(self):
+        """All of its processes, at once."""
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+
+class Tab:
+    def __init__(self, browser, session):
+        self.browser, self.session = browser, session
+
+    def call(self, method, **parameters):
+        return self.browser.call(method, self.session, **parameters)
+
+    def get(self, expression):
+        result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)["result"]
+        return result.get("value")
+
+    def text(self):
+        return self.get('document.getElementById("text")?.textContent') or ""
+
+    def await_samples(self):
+        """Waits for the last picture; the numbers of samples that were told on the way."""
+        seen, end = [], time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            text = self.text()
+            if " of " in text:
+                count = int(text.split()[0])
+                if not seen or seen[-1] != count:
+                    seen.append(count)
+                if count == SAMPLES:
+                    return seen
+            time.sleep(0.05)
+        raise AssertionError(f"no picture with all samples: {text}")
+
+    def drag(self, x0, y0, x1, y1, steps=6):
+        self.call("Page.bringToFront")  # hidden pages get events late
+        def send(kind, x, y, buttons):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
+        send("mousePressed", x0, y0, 1)
+        for k in range(1, steps + 1):
+            send("mouseMoved", x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, 1)
+        send("mouseReleased", x1, y1, 0)
+
+
+def check_pages(browser, url, folder):
+    page = browser.open(url)
+    seen = page.await_samples()
+    assert len(seen) > 1, f"the picture came at once: {seen}"
+    assert page.get('document.getElementById("picture").naturalWidth') == 320
+    whole = page.get(PIXELS)
+    second = browser.open(url)
+    second.await_samples()
+    time.sleep(0.3)  # the text comes a moment before the picture
+    assert second.get(PIXELS) == page.get(PIXELS)
+    page.drag(100, 80, 220, 100)
+    end = time.monotonic() + PATIENCE
+    while page.text() == f"{SAMPLES} of {SAMPLES} samples  " and time.monotonic() < end and page.get(PIXELS) == whole:
+        time.sleep(0.02)
+    page.await_samples()
+    second.await_samples()
+    time.sleep(0.3)
+    turned = page.get(PIXELS)
+    assert turned != whole
+    assert second.get(PIXELS) == turned
+    (folder / "page.png").write_bytes(base64.b64decode(page.call("Page.captureScreenshot")["data"]))
+    token = url.rpartition("=")[2]
+    for wrong in (url.replace(token, "0" * len(token)), url.partition("?")[0]):
+        stranger = browser.open(wrong)
+        time.sleep(0.5)
+        assert stranger.get('performance.getEntriesByType("navigation")[0].responseStatus') == 403
+        assert stranger.get('document.getElementById("picture")') is None
+    assert page.get('fetch("/picture?token=0&after=0").then(answer => answer.status)') == 403
+    assert page.get(f'fetch("/picture?token={token}&after=0").then(answer => answer.status)') == 200
+
+
+def main():
+    program = shutil.which("chromium")
+    if not program:
+        print("no Chromium: not run")
+        raise SystemExit(SKIPPED)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
+        folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        viewer, url = start_server(os.path.abspath(sys.argv[1]), temporary, "320x180", SAMPLES)
+        browser = Browser(program, pathlib.Path(temporary, "profile"))
+        try:
+            check_pages(browser, url, folder)
+            browser.kill()
+            client = Page(url)
+            client.last_picture(f"{SAMPLES} of {SAMPLES}")
+            assert b"101" in client.open_events()
+            client.drag(0.3, 0.5, 0.5, 0.5)
+            client.last_picture("1 of")  # it goes on
+            viewer.send_signal(signal.SIGTERM)
+            assert viewer.wait(PATIENCE) == 128 + signal.SIGTERM
+        finally:
+            if browser.process.poll() is None:
+                browser.kill()
+            viewer.kill()
+            viewer.wait()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,133 @@
+"""The viewer for browsers, without a browser: serve_test.py RELIEF.
+
+Pictures refine, two viewers see the same, a drag turns the camera of both, wrong tokens and wrong messages are refused, a
+viewer that goes away without a word leaves the others well, and a signal ends it.
+"""
+import base64
+import http.client
+import json
+import os
+import pathlib
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.parse
+
+from small_scene import write_small_scene
+
+PATIENCE = 120
+
+
+class Page:
+    """What the page of a browser does."""
+    def __init__(self, url):
+        parts = urllib.parse.urlsplit(url)
+        self.port, self.token = parts.port, urllib.parse.parse_qs(parts.query)["token"][0]
+        self.version = 0
+        self.socket = None
+
+    def get(self, path):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
+        connection.request("GET", path)
+        answer = connection.getresponse()
+        return answer.status, dict(answer.getheaders()), answer.read()
+
+    def next_picture(self):
+        """(text, JPEG) of the next picture."""
+        while True:
+            status, headers, jpeg = self.get(f"/picture?token={self.token}&after={self.version}")
+            if status == 204:
+                continue
+            assert status == 200, status
+            self.version = int(headers["X-Relief-Version"])
+            return urllib.parse.unquote(headers["X-Relief-Text"]), jpeg
+
+    def last_picture(self, text):
+        """Pictures until one whose text begins so."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            told, jpeg = self.next_picture()
+            if told.startswith(text):
+                return jpeg
+        raise AssertionError(f"no picture with the text {text}")
+
+    def open_events(self, token=None):
+        self.socket = socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE)
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.socket.sendall((f"GET /events?token={token or self.token} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\n"
+                             f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
+        return self.socket.recv(4096).split(b"\r\n")[0]
+
+    def send(self, text):
+        data = text.encode()
+        mask = os.urandom(4)
+        size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0x80 | 126, len(data))
+        self.socket.sendall(b"\x81" + size + mask + bytes(b ^ mask[k % 4] for k, b in enumerate(data)))
+
+    def drag(self, x0, y0, x1, y1, steps=8):
+        event = {"button": 0, "shift": False, "control": False, "alt": False}
+        self.send(json.dumps({"kind": "press", "x": x0, "y": y0, **event}))
+        for k in range(1, steps + 1):
+            self.send(json.dumps({"kind": "move", "x": x0 + (x1 - x0) * k / steps, "y": y0 + (y1 - y0) * k / steps, **event}))
+            time.sleep(0.01)
+        self.send(json.dumps({"kind": "release", "x": x1, "y": y1, **event}))
+
+
+def check_viewers(url):
+    first, second = Page(url), Page(url)
+    status, _, page = first.get(f"/?token={first.token}")
+    assert status == 200 and b"<img" in page
+    for path in ("/", "/?token=", "/?token=" + first.token[:-1], "/picture", f"/picture?token={'0' * 32}"):
+        assert first.get(path)[0] == 403, path
+    assert b"101" not in first.open_events("0" * 32)
+    _, small = first.next_picture()
+    assert small[:2] == b"\xff\xd8" and len(small) > 500
+    whole = first.last_picture("4 of 4")
+    assert second.last_picture("4 of 4") == whole
+    assert b"101" in first.open_events()
+    for nonsense in ("", "{", "[]", '{"kind": "quit"}', '{"kind": "press"}', '{"kind": "key", "key": "S"}', "x" * 5000):
+        first.send(nonsense)
+    first.drag(0.3, 0.5, 0.6, 0.55)
+    turned = first.last_picture("4 of 4")
+    assert turned != whole
+    assert second.last_picture("4 of 4") == turned
+    # Gone without a word.
+    first.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    first.socket.close()
+    assert b"101" in second.open_events()
+    second.drag(0.6, 0.5, 0.5, 0.5)
+    assert second.last_picture("4 of 4") != turned
+
+
+def start_server(relief, folder, size, samples):
+    """The viewer, and the address that it prints."""
+    write_small_scene(folder)
+    viewer = subprocess.Popen([relief, "view", "scene.json", "--size", size, "--spp", str(samples), "--serve", "0"],
+                              cwd=folder, text=True, stdout=subprocess.PIPE)
+    return viewer, viewer.stdout.readline().strip()
+
+
+def main():
+    relief = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        viewer, url = start_server(relief, folder, "160x90", 4)
+        try:
+            check_viewers(url)
+            port = urllib.parse.urlsplit(url).port
+            taken = subprocess.run([relief, "view", "scene.json", "--serve", str(port)], cwd=folder, text=True,
+                                   capture_output=True, timeout=PATIENCE)
+            assert taken.returncode == 1 and str(port) in taken.stderr, taken.stderr
+            viewer.send_signal(signal.SIGTERM)
+            assert viewer.wait(PATIENCE) == 128 + signal.SIGTERM
+            assert not pathlib.Path(folder, "scene-view.json").exists()  # pages change no files
+        finally:
+            viewer.kill()
+            viewer.wait()
+
+
+if __name__ == "__main__":
+    main()

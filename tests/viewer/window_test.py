@@ -1,0 +1,133 @@
+"""The viewer in a real window, on a display without a screen: window_test.py RELIEF [FOLDER keeps what was made].
+
+Opens the pumpkin, turns it, changes its scale, paints a stroke, takes it back, makes it again and saves; what is saved
+renders to the viewer's picture, bit for bit. Then mistakes: no display, a script with a wrong line.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+SIZE = "320x180"
+SCRIPT = [
+    {"wait": "picture"},
+    {"wait": "done"},
+    {"screenshot": "opened.png"},
+    {"picture": "opened.exr"},
+    {"drag": "middle", "from": [140, 90], "to": [200, 100], "seconds": 1},
+    {"wait": "done"},
+    {"set": {"scale": 1.4}},
+    {"wait": "picture"},
+    {"wait": "done"},
+    {"picture": "scaled.exr"},
+    {"set": {"tool": "push", "radius": 30, "brush_strength": 1}},
+    {"drag": "left", "from": [130, 80], "to": [190, 95], "seconds": 0.3},
+    {"wait": "picture"},
+    {"wait": "done"},
+    {"screenshot": "painted.png"},
+    {"picture": "painted.exr"},
+    {"key": "Z", "modifiers": ["control"]},
+    {"wait": "done"},
+    {"picture": "undone.exr"},
+    {"key": "Y", "modifiers": ["control"]},
+    {"wait": "done"},
+    {"key": "f1"},
+    {"wait": 0.3},
+    {"screenshot": "help.png"},
+    {"picture": "seen.exr"},
+    {"save": "saved.json"},
+    {"quit": True},
+]
+
+
+def start_display():
+    """Xvfb and the name of its display."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
+                              pass_fds=[writing], stderr=subprocess.DEVNULL)
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        return server, ":" + stream.readline().strip()
+
+
+class Viewer:
+    def __init__(self, relief, folder, display):
+        self.relief, self.folder = relief, folder
+        self.environment = {**os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+
+    def run(self, *words, environment=None):
+        return subprocess.run([self.relief, *map(str, words)], cwd=self.folder, text=True, capture_output=True, timeout=900,
+                              env=environment or self.environment)
+
+    def run_script(self, lines, *words):
+        (self.folder / "script.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+        return self.run("view", *words, "--script", "script.jsonl", "--size", SIZE, "--spp", 4)
+
+    def compare(self, a, b):
+        """The number of pixels that differ in colour."""
+        result = self.run("compare", a, b, "--threshold", 0, "--json")
+        assert result.returncode in (0, 7), result.stderr
+        return json.loads(result.stdout)["over_threshold"]
+
+
+def check_session(viewer):
+    made = viewer.run("scene", "pumpkin", "-o", "pumpkin")
+    assert made.returncode == 0, made.stderr
+    result = viewer.run_script(SCRIPT, "pumpkin/scene.json")
+    print(result.stdout, result.stderr)
+    assert result.returncode == 0, result.stderr
+    lines = [json.loads(line) for line in result.stdout.splitlines()]
+    assert "first_picture_s" in lines[0]
+    drag = next(line for line in lines if line.get("step") == "drag")
+    assert drag["pictures"] >= 3, drag
+    for name in ("opened", "painted", "help"):
+        assert (viewer.folder / f"{name}.png").stat().st_size > 10000, name
+    assert viewer.compare("scaled.exr", "painted.exr") > 300
+    assert viewer.compare("scaled.exr", "undone.exr") == 0
+    assert viewer.compare("opened.exr", "scaled.exr") > 300
+    assert viewer.compare("painted.exr", "seen.exr") == 0
+    rendered = viewer.run("render", "saved.json", "-o", "rendered.exr", "-q", "--layers", "depth,N,P,uv,id,cost")
+    assert rendered.returncode == 0, rendered.stderr
+    assert viewer.compare("seen.exr", "rendered.exr") == 0
+
+
+def check_mistakes(viewer):
+    blind = {name: value for name, value in viewer.environment.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    result = viewer.run("view", "pumpkin/scene.json", environment=blind)
+    assert result.returncode == 4, (result.returncode, result.stderr)
+    assert "relief render" in result.stderr, result.stderr
+    result = viewer.run_script([{"wait": "done"}, {"set": {"scael": 1}}], "pumpkin/scene.json")
+    assert result.returncode == 3, (result.returncode, result.stderr)
+    assert "script.jsonl:2" in result.stderr and "scale" in result.stderr, result.stderr
+    result = viewer.run("view", "nowhere.json")
+    assert result.returncode == 3, (result.returncode, result.stderr)
+    result = viewer.run("view", "--spq", "3")
+    assert result.returncode == 2 and "--spp" in result.stderr, (result.returncode, result.stderr)
+
+
+def main():
+    if not shutil.which("Xvfb"):
+        print("no Xvfb: not run")
+        raise SystemExit(SKIPPED)
+    server, display = start_display()
+    try:
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
+            folder.mkdir(parents=True, exist_ok=True)
+            viewer = Viewer(os.path.abspath(sys.argv[1]), folder, display)
+            start = time.monotonic()
+            check_session(viewer)
+            check_mistakes(viewer)
+            print(f"{time.monotonic() - start:.1f} s")
+    finally:
+        server.terminate()
+        server.wait()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,221 @@
+// The viewer as a user drives it, without a window.
+#include <filesystem>
+#include <fstream>
+#include <ios>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/texel_values.h"
+#include "relief/error.h"
+#include "relief/io.h"
+#include "viewer/event_script.h"
+#include "viewer/workbench_fixture.h"
+
+namespace relief::viewer {
+
+TEST_F(WorkbenchTest, turned_changed_and_saved_it_renders_to_what_was_seen) {
+    open_scene();
+    const Vec3f from = bench_->camera().get().from;
+    drag(10, 10, 30, 14, MouseButton::middle);
+    EXPECT_NE(bench_->camera().get().from, from);
+    ViewSettings view;
+    apply_values(read_json(R"({"scale": 2.5, "axes": "t,-b,n", "wrap": "repeat"})"), *bench_, view);
+    ASSERT_TRUE(reach_done());
+    press_key('S');
+    ASSERT_TRUE(std::filesystem::exists(folder_ / "scene-view.json")) << bench_->message();
+    EXPECT_EQ(render_file("scene-view.json"), bench_->picture()->image.pixels);
+}
+
+TEST_F(WorkbenchTest, a_stroke_is_seen_undone_made_again_and_saved) {
+    open_scene();
+    const std::vector<float> before = bench_->picture()->image.pixels;
+    press_key('B');
+    EXPECT_EQ(bench_->tool(), Tool::paint);
+    bench_->brush().radius = 6;
+    bench_->brush().strength = 1;
+    drag(18, 14, 32, 18);
+    EXPECT_TRUE(bench_->can_undo());
+    ASSERT_TRUE(reach_done());
+    const std::vector<float> painted = bench_->picture()->image.pixels;
+    EXPECT_NE(painted, before);
+    press_key('Z', {.control = true});
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, before);
+    press_key('Y', {.control = true});
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, painted);
+    ASSERT_TRUE(bench_->save(folder_ / "painted.json")) << bench_->message();
+    EXPECT_EQ(render_file("painted.json"), painted);
+}
+
+TEST_F(WorkbenchTest, a_changed_convention_keeps_what_was_painted) {
+    open_scene();
+    bench_->set_tool(Tool::paint);
+    drag(18, 14, 32, 18);
+    bench_->change_document([](Document& document) {
+        document.change_displacement(0, [](Displacement& map) { map.scale = {2, 2, 2}; });
+    });
+    ASSERT_TRUE(reach_done());
+    ASSERT_TRUE(bench_->save(folder_ / "both.json"));
+    EXPECT_EQ(render_file("both.json"), bench_->picture()->image.pixels);
+}
+
+TEST_F(WorkbenchTest, a_map_written_anew_is_shown_and_half_of_one_is_not) {
+    open_scene();
+    const std::vector<float> before = bench_->picture()->image.pixels;
+    const std::filesystem::path file = bench_->document()->scene().displacements[0].tiles[0].texture->file;
+    std::string bytes;
+    {
+        std::ifstream stream(file, std::ios::binary);
+        bytes.assign(std::istreambuf_iterator<char>(stream), {});
+    }
+    std::ofstream(file, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    ASSERT_TRUE(reach([&] { return !bench_->message().empty(); }));
+    EXPECT_NE(bench_->message().find("bumps.exr"), std::string::npos) << bench_->message();
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, before);
+
+    Displacement map = bench_->document()->scene().displacements[0];
+    auto texture = std::make_shared<Texture>(*map.tiles[0].texture);
+    for (uint32_t k = 0; k < 64; ++k) write_texel(*texture, k, 30, {0, 0, 0.4f});
+    map.tiles[0].texture = texture;
+    write_map(map, file, MapSamples::float32);
+    ASSERT_TRUE(reach([&] { return bench_->message().find("read again") != std::string::npos; }));
+    ASSERT_TRUE(reach_done());
+    EXPECT_NE(bench_->picture()->image.pixels, before);
+    EXPECT_EQ(bench_->picture()->image.pixels,
+              render(load_scene(folder_ / "scene.json"), settings_).image.pixels);
+}
+
+TEST_F(WorkbenchTest, files_that_are_wrong_leave_what_was_open) {
+    open_scene();
+    std::ofstream(folder_ / "broken.json") << "{";
+    bench_->drop(folder_ / "broken.json");
+    ASSERT_TRUE(reach([&] { return !bench_->is_loading(); }));
+    EXPECT_NE(bench_->message().find("broken.json"), std::string::npos) << bench_->message();
+    ASSERT_TRUE(bench_->document());
+    EXPECT_EQ(bench_->document()->input().file, folder_ / "scene.json");
+}
+
+TEST_F(WorkbenchTest, a_map_dropped_on_a_mesh_displaces_it) {
+    bench_->drop(folder_ / "maps" / "bumps.exr");
+    EXPECT_FALSE(bench_->is_loading());
+    bench_->drop(folder_ / "meshes" / "plane.obj");
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_TRUE(bench_->document()->scene().displacements.empty());
+    press_key(kLeft);
+    const Camera camera = bench_->camera().get();
+    bench_->drop(folder_ / "maps" / "bumps.exr");
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_EQ(bench_->document()->scene().displacements.size(), 1u);
+    EXPECT_EQ(bench_->camera().get().from, camera.from);
+}
+
+TEST_F(WorkbenchTest, a_click_explains_a_pixel_and_a_picture_is_written_when_it_is_done) {
+    open_scene();
+    send(Kind::press, 24, 16), send(Kind::release, 24, 16);
+    ASSERT_TRUE(reach([&] { return bench_->explanation().text.size() > 10; }));
+    for (const char* word : {"object   0 'plane'", "patch ", "texel (", "moved ", "colour "})
+        EXPECT_NE(bench_->explanation().text.find(word), std::string::npos) << bench_->explanation().text;
+    bench_->write_picture(folder_ / "out.exr");
+    ASSERT_TRUE(reach([&] { return std::filesystem::exists(folder_ / "out.exr"); }));
+    EXPECT_EQ(read_image(folder_ / "out.exr").pixels.size(), bench_->picture()->image.pixels.size());
+}
+
+TEST_F(WorkbenchTest, keys_turn_frame_and_end) {
+    open_scene();
+    const Vec3f from = bench_->camera().get().from;
+    press_key(kRight), press_key('+');
+    EXPECT_NE(bench_->camera().get().from, from);
+    EXPECT_LT(bench_->camera().distance(), 3.9f);
+    press_key('.');
+    EXPECT_GT(bench_->camera().distance(), 3.5f);
+    press_key(kF1);
+    EXPECT_TRUE(bench_->is_help_shown());
+    EXPECT_FALSE(bench_->wants_to_end());
+    press_key('Q', {.control = true});
+    EXPECT_TRUE(bench_->wants_to_end());
+}
+
+TEST_F(WorkbenchTest, focus_brings_the_place_of_a_click_into_the_middle) {
+    open_scene();
+    send(Kind::press, 34, 10, MouseButton::left, {.control = true});
+    send(Kind::release, 34, 10);
+    EXPECT_GT(bench_->camera().get().to.x, 0.3f);
+    EXPECT_GT(bench_->camera().get().to.y, 0.2f);
+    EXPECT_NEAR(bench_->camera().distance(), 4, 0.3f);
+}
+
+TEST_F(WorkbenchTest, the_object_that_was_clicked_on_is_framed) {
+    Scene scene = make_bumpy_scene();
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects[1].name = "far";
+    scene.objects[1].world_from_object.translation = {6, 0, 0};
+    scene.camera.from = {3, 0, 9}, scene.camera.to = {3, 0, 0};
+    save_scene(scene, folder_ / "two");
+    bench_->open({folder_ / "two" / "scene.json", {}, {}});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    press_key(kHome);
+    EXPECT_NEAR(bench_->camera().get().to.x, 3, 0.2f);
+    ASSERT_TRUE(reach_done());
+    send(Kind::press, 33, 16), send(Kind::release, 33, 16);
+    EXPECT_EQ(bench_->selected_object(), 1u);
+    ASSERT_TRUE(reach([&] { return !bench_->is_explaining(); }));
+    EXPECT_EQ(bench_->explanation().object, 1u);
+    ASSERT_FALSE(bench_->explanation().paths.empty());
+    for (const auto& path : bench_->explanation().paths) {
+        EXPECT_GE(path.size(), 2u);
+        EXPECT_EQ(path[0], bench_->camera().get().from);
+        EXPECT_EQ(path[1], bench_->explanation().paths[0][1]);
+    }
+    press_key('.');
+    EXPECT_NEAR(bench_->camera().get().to.x, 6, 0.2f);
+    press_key(kEscape);
+    EXPECT_FALSE(bench_->selected_object());
+    EXPECT_EQ(bench_->explanation().text, "");
+    press_key('.');
+    EXPECT_NEAR(bench_->camera().get().to.x, 3, 0.2f);
+}
+
+TEST_F(WorkbenchTest, a_map_is_saved_in_the_convention_of_another_program) {
+    open_scene();
+    ASSERT_TRUE(bench_->save_map(0, folder_ / "mudbox.exr", "mudbox")) << bench_->message();
+    const Vec3f there = read_texel(read_texture(folder_ / "mudbox.exr"), 12, 20);
+    EXPECT_EQ(there.y, read_texel(*make_bumps(false), 12, 20).z);
+    EXPECT_FALSE(bench_->save_map(0, folder_ / "other.exr", "nobody"));
+    EXPECT_NE(bench_->message().find("nobody"), std::string::npos) << bench_->message();
+}
+
+TEST_F(WorkbenchTest, a_denoised_picture_is_shown_in_place_of_the_noisy_one) {
+    open_scene();
+    if (!bench_->set_denoised(true)) GTEST_SKIP() << bench_->message();
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_TRUE(bench_->has_denoiser());
+    const Image& noisy = bench_->picture()->image;
+    const Image& shown = bench_->shown_picture()->image;
+    EXPECT_NE(get_channel(shown, "R"), get_channel(noisy, "R"));
+    EXPECT_EQ(get_channel(shown, "noisy.R"), get_channel(noisy, "R"));
+    const std::vector<float> colour = get_channel(noisy, "R");
+    ASSERT_TRUE(bench_->set_denoised(false));
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(get_channel(bench_->shown_picture()->image, "R"), colour);
+}
+
+TEST_F(WorkbenchTest, values_that_mean_nothing_are_refused) {
+    open_scene();
+    ViewSettings view;
+    for (const char* text :
+         {R"({"scael": 2})", R"({"scale": [1, 2]})", R"({"view": "smell"})", R"({"tool": "hammer"})",
+          R"({"displacement": "none", "scale": 1})", R"({"spp": 0})", R"({"axes": "t,t,t"})"})
+        EXPECT_THROW(apply_values(read_json(text), *bench_, view), Error) << text;
+    apply_values(read_json(R"({"view": "depth", "exposure": 2, "tool": "smooth", "radius": 12})"), *bench_,
+                 view);
+    EXPECT_EQ(view.view, View::depth);
+    EXPECT_EQ(bench_->brush().kind, BrushKind::smooth);
+}
+
+} // namespace relief::viewer
