@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -38,6 +39,13 @@ std::string make_stem(std::string name) {
 }
 
 } // namespace
+
+std::filesystem::path name_tile(const std::filesystem::path& pattern, int udim) {
+    constexpr std::string_view kToken = "<UDIM>";
+    std::string name = pattern.string();
+    const size_t place = name.rfind(kToken);
+    return place == std::string::npos ? name : name.replace(place, kToken.size(), std::to_string(udim));
+}
 
 int find_first_frame(const Shot& shot) {
     return shot.frames().empty() ? 1 : *std::ranges::min_element(shot.frames());
@@ -120,6 +128,7 @@ Texture& Document::paint_tile(size_t displacement, int udim) {
     std::unique_ptr<Texture>& texels = painted_[held];
     if (!texels) texels = std::make_unique<Texture>(*held);
     uncommitted_.insert(held);
+    ++paint_count_;
     for (const Displacement& other : scene_.displacements)
         for (const MapTile& tile : other.tiles)
             if (tile.texture.get() == held) painted_maps_.insert(other.name), unsaved_.insert(other.name);
@@ -154,14 +163,41 @@ bool Document::replace_tile(size_t displacement, int udim, Texture texels) {
     return true;
 }
 
+bool Document::may_write(const std::filesystem::path& pattern, const Displacement& map) const {
+    std::error_code ignored;
+    return std::ranges::all_of(map.tiles, [&](const MapTile& tile) {
+        const std::filesystem::path file = name_tile(pattern, tile.udim);
+        return written_.contains(file) || !std::filesystem::exists(file, ignored);
+    });
+}
+
+void Document::note_written(const std::filesystem::path& pattern, const Displacement& map) {
+    for (const MapTile& tile : map.tiles) written_.insert(name_tile(pattern, tile.udim));
+}
+
+std::filesystem::path Document::name_painted(const Displacement& map,
+                                             const std::filesystem::path& scene_file) const {
+    const auto is_of_another = [&](const std::filesystem::path& file) {
+        return std::ranges::any_of(changes_.maps, [&](const auto& saved) {
+            return saved.first != map.name && saved.second == file;
+        });
+    };
+    const std::string base = scene_file.stem().string() + "_" + make_stem(map.name);
+    const char* const token = map.is_udim ? ".<UDIM>" : "";
+    std::filesystem::path file = scene_file;
+    file.replace_filename(fmt::format("{}{}.exr", base, token));
+    for (int k = 2; is_of_another(file) || !may_write(file, map); ++k)
+        file.replace_filename(fmt::format("{}-{}{}.exr", base, k, token));
+    return file;
+}
+
 std::filesystem::path Document::save_painted(const Displacement& map,
                                              const std::filesystem::path& scene_file) {
-    std::filesystem::path file = scene_file;
-    const std::string token = map.is_udim ? ".<UDIM>" : "";
-    file.replace_filename(fmt::format("{}_{}{}.exr", scene_file.stem().string(), make_stem(map.name), token));
+    const std::filesystem::path file = name_painted(map, scene_file);
     const bool has_halves =
         std::ranges::all_of(map.tiles, [](const MapTile& t) { return !t.texture->halves.empty(); });
     write_map(map, file, has_halves ? MapSamples::float16 : MapSamples::float32);
+    note_written(file, map);
     return file;
 }
 
@@ -191,12 +227,11 @@ std::vector<std::filesystem::path> Document::save(const std::filesystem::path& f
 void Document::save_map(size_t displacement, const std::filesystem::path& file, const Displacement& to) {
     commit();
     const Displacement& map = scene_.displacements.at(displacement);
-    std::error_code ignored;
-    for (const MapTile& tile : map.tiles)
-        if (std::filesystem::equivalent(file, tile.texture->file, ignored))
-            throw Error(ErrorKind::usage, {"the map that was opened would be written over", file.string(),
-                                           "name another file to write"});
+    if (!may_write(file, map))
+        throw Error(ErrorKind::usage, {"a file that is there would be written over", file.string(),
+                                       "name another one to write"});
     write_map(convert_map(map, to, find_mesh(scene_, displacement)), file, MapSamples::float32);
+    note_written(file, map);
     unsaved_.erase(map.name);
 }
 

@@ -56,6 +56,8 @@ class Document {
     /// Something was painted since the maps were saved last.
     bool has_painted() const { return !unsaved_.empty(); }
     bool has_painted(const std::string& map) const { return unsaved_.contains(map); }
+    /// Grows with each change of texels to paint on.
+    uint64_t paint_count() const { return paint_count_; }
 
     void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
     void change_material(size_t index, const std::function<void(Material&)>& change);
@@ -73,10 +75,12 @@ class Document {
     /// edit. False where the size is another one.
     bool replace_tile(size_t displacement, int udim, Texture texels);
 
-    /// Writes a scene file with the picture of these settings, and painted maps beside it, `STEM_NAME.exr`.
-    /// Returns all files written. Throws as save_scene_copy and write_map.
+    /// Writes a scene file with the picture of these settings, and painted maps beside it, `STEM_NAME.exr`,
+    /// or `STEM_NAME-2.exr` where that is a file which this document did not write. Returns all files
+    /// written. Throws as save_scene_copy and write_map.
     std::vector<std::filesystem::path> save(const std::filesystem::path& file, const ImageSettings& image);
-    /// Writes a map in the convention of `to`, whose tiles are ignored. Throws as convert_map and write_map.
+    /// Writes a map in the convention of `to`, whose tiles are ignored. Throws as convert_map and write_map,
+    /// and Error{usage} for a file that is there already and that this document did not write.
     void save_map(size_t displacement, const std::filesystem::path& file, const Displacement& to);
 
   private:
@@ -85,6 +89,13 @@ class Document {
     void touch();
     /// Puts what was painted into the scene.
     void commit();
+    /// No file of a map is there, or this document wrote it. `pattern` holds `<UDIM>` where the map has
+    /// tiles.
+    bool may_write(const std::filesystem::path& pattern, const Displacement& map) const;
+    void note_written(const std::filesystem::path& pattern, const Displacement& map);
+    /// The name that a painted map is written to, beside the scene file.
+    std::filesystem::path name_painted(const Displacement& map,
+                                       const std::filesystem::path& scene_file) const;
     std::filesystem::path save_painted(const Displacement& map, const std::filesystem::path& scene_file);
 
     SceneInput input_;
@@ -95,9 +106,14 @@ class Document {
     /// Texels being painted, by the texture that the scene holds in their place.
     std::map<TileKey, std::unique_ptr<Texture>> painted_;
     std::set<TileKey> uncommitted_;
-    std::set<std::string> painted_maps_; ///< names of displacements, since they were read
-    std::set<std::string> unsaved_;      ///< of these, since they were saved
+    std::set<std::string> painted_maps_;      ///< names of displacements, since they were read
+    std::set<std::string> unsaved_;           ///< of these, since they were saved
+    std::set<std::filesystem::path> written_; ///< files of maps
+    uint64_t paint_count_ = 0;
 };
+
+/// The file of a tile of a map; `pattern` may hold `<UDIM>`.
+std::filesystem::path name_tile(const std::filesystem::path& pattern, int udim);
 
 /// Finds an object with that displacement; its mesh gives the frames. Null: none.
 const Mesh* find_mesh(const Scene& scene, size_t displacement);

@@ -16,8 +16,9 @@ FileWatch::Stamp FileWatch::read_stamp(const std::filesystem::path& file) {
 void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
     std::map<std::filesystem::path, Watched> watched;
     for (const std::filesystem::path& file : files) {
-        const Stamp stamp = read_stamp(file);
-        if (stamp != Stamp()) watched[file] = {stamp, stamp};
+        const auto found = files_.find(file);
+        const Stamp stamp = found == files_.end() ? read_stamp(file) : Stamp();
+        watched[file] = found == files_.end() ? Watched{stamp, stamp} : found->second;
     }
     files_ = std::move(watched);
 }

@@ -10,7 +10,8 @@ namespace relief::viewer {
 
 class FileWatch {
   public:
-    /// Watches these files instead of others, as they are now. Names that are no files are never reported.
+    /// Watches these files instead of others: as they are now, or as they were reported last. Those that are
+    /// not there yet are reported once they are.
     void watch(const std::vector<std::filesystem::path>& files);
     /// What the program itself wrote is no change.
     void accept(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "viewer/workbench.h"
@@ -16,6 +17,7 @@ struct PanelState {
     std::string display = kDisplayNames[0];
     bool is_display_changed = false;  ///< read and reset by whoever makes the table
     std::string scene_file, map_file; ///< names to save as
+    std::filesystem::path input;      ///< what they belong to
     std::string map_preset;           ///< convention to save a map in; empty: its own
     size_t displacement = 0, material = 0, light = 0;
     /// Of the last renders, in a ring: millions of rays a second, and milliseconds.

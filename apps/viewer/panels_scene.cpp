@@ -105,14 +105,15 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     if (!ImGui::CollapsingHeader("File", ImGuiTreeNodeFlags_DefaultOpen)) return;
     if (ImGui::BeginCombo("##recent", "open again ...")) {
         for (const std::filesystem::path& file : workbench.list_recent())
-            if (ImGui::Selectable(file.string().c_str())) {
-                workbench.open({file, {}, {}});
-                state.scene_file.clear();
-            }
+            if (ImGui::Selectable(file.string().c_str())) workbench.open({file, {}, {}});
         ImGui::EndCombo();
     }
     if (!workbench.document()) return;
     const Document& document = *workbench.document();
+    if (state.input != document.input().file) {
+        state.input = document.input().file;
+        state.scene_file.clear(), state.map_file.clear();
+    }
     ImGui::TextUnformatted(document.input().file.filename().string().c_str());
     ImGui::SameLine();
     ImGui::TextDisabled("%s", document.has_changes() ? "changed" : "as it was read");

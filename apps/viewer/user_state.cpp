@@ -6,6 +6,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <system_error>
 
@@ -19,6 +20,9 @@ namespace {
 
 /// Seconds of work that a crash may cost.
 constexpr double kKeepInterval = 30;
+
+/// What the names of kept maps begin with.
+constexpr char kPainted[] = "painted-";
 
 } // namespace
 
@@ -60,14 +64,31 @@ std::filesystem::path UserState::name_painted(const std::filesystem::path& input
                                               const std::string& map) const {
     std::error_code ignored;
     const std::string place = std::filesystem::weakly_canonical(input, ignored).string();
-    return folder_ / fmt::format("painted-{}-{:016x}-{}.exr", input.stem().string(),
+    return folder_ / fmt::format("{}{}-{:016x}-{}.exr", kPainted, input.stem().string(),
                                  std::hash<std::string>()(place), map);
 }
 
 void UserState::keep_painted(double now, Document& document) {
-    if (folder_.empty() || !document.has_painted() || now - last_write_ < kKeepInterval) return;
+    if (folder_.empty()) return;
+    if (!document.has_painted()) last_write_ = now, last_count_ = document.paint_count();
+    if (now - last_write_ < kKeepInterval || last_count_ == document.paint_count()) return;
     if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     last_write_ = now;
+    write_painted(document);
+}
+
+void UserState::keep_now(Document& document) {
+    if (writing_.valid()) writing_.wait();
+    if (!folder_.empty() && document.has_painted()) {
+        write_painted(document);
+        writing_.wait();
+    }
+    kept_.clear();
+    last_count_ = 0;
+}
+
+void UserState::write_painted(Document& document) {
+    last_count_ = document.paint_count();
     const std::shared_ptr<const Scene> scene = document.snapshot();
     std::vector<std::pair<const Displacement*, std::filesystem::path>> maps;
     for (const Displacement& map : scene->displacements)
@@ -77,6 +98,8 @@ void UserState::keep_painted(double now, Document& document) {
             maps.emplace_back(&map,
                               name_painted(document.input().file, map.is_udim ? name + ".<UDIM>" : name));
         }
+    for (const auto& [map, pattern] : maps)
+        for (const MapTile& tile : map->tiles) kept_.insert(name_tile(pattern, tile.udim));
     writing_ = std::async(std::launch::async, [scene, maps, folder = folder_] {
         std::error_code ignored;
         std::filesystem::create_directories(folder, ignored);
@@ -89,22 +112,29 @@ void UserState::keep_painted(double now, Document& document) {
     });
 }
 
-std::vector<std::filesystem::path> UserState::find_painted(const std::filesystem::path& input) const {
-    std::vector<std::filesystem::path> found;
-    if (folder_.empty()) return found;
+std::vector<std::filesystem::path> UserState::claim_painted(const std::filesystem::path& input) {
+    std::vector<std::filesystem::path> found, claimed;
+    if (folder_.empty()) return claimed;
     const std::string start = name_painted(input, "").stem().string();
     std::error_code code;
     for (auto file = std::filesystem::directory_iterator(folder_, code);
          !code && file != std::filesystem::directory_iterator(); file.increment(code))
         if (file->path().filename().string().starts_with(start)) found.push_back(file->path());
-    return found;
+    const int64_t now = std::chrono::system_clock::now().time_since_epoch() / std::chrono::microseconds(1);
+    for (const std::filesystem::path& file : found) {
+        const std::filesystem::path kept =
+            folder_ /
+            fmt::format("kept-{}-{}", now, file.filename().string().substr(std::size(kPainted) - 1));
+        std::filesystem::rename(file, kept, code);
+        claimed.push_back(code ? file : kept);
+    }
+    return claimed;
 }
 
-void UserState::forget_painted(const Document& document) {
+void UserState::forget_painted() {
     if (writing_.valid()) writing_.wait();
     std::error_code ignored;
-    for (const std::filesystem::path& file : find_painted(document.input().file))
-        std::filesystem::remove(file, ignored);
+    for (const std::filesystem::path& file : std::exchange(kept_, {})) std::filesystem::remove(file, ignored);
 }
 
 } // namespace relief::viewer

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <future>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,19 +29,27 @@ class UserState {
     std::vector<std::filesystem::path> read_recent() const;
     void add_recent(const std::filesystem::path& file);
 
-    /// Writes painted maps that are not saved, in a thread, once half a minute; `now` in seconds.
+    /// Writes painted maps that are not saved and changed since, in a thread, half a minute after painting
+    /// began and then once half a minute; `now` in seconds.
     void keep_painted(double now, Document& document);
-    /// The document was saved: nothing is left to be kept.
-    void forget_painted(const Document& document);
-    /// Maps of a scene or mesh that were painted in a run that ended, or crashed, without saving them.
-    std::vector<std::filesystem::path> find_painted(const std::filesystem::path& input) const;
+    /// The same at once, and waits until they are written: the document is about to go.
+    void keep_now(Document& document);
+    /// The document was saved: what this run kept of it goes. Files of earlier runs stay.
+    void forget_painted();
+    /// Maps of a scene or mesh that were painted and not saved before it was closed, or a run crashed. Gives
+    /// them names that nothing else is written to, `kept-...`.
+    std::vector<std::filesystem::path> claim_painted(const std::filesystem::path& input);
 
   private:
     std::filesystem::path name_painted(const std::filesystem::path& input, const std::string& map) const;
 
+    void write_painted(Document& document);
+
     std::filesystem::path folder_;
     std::future<void> writing_;
+    std::set<std::filesystem::path> kept_; ///< files of this run, of the document that is open
     double last_write_ = 0;
+    uint64_t last_count_ = 0; ///< Document::paint_count() then
 };
 
 } // namespace relief::viewer

@@ -35,7 +35,9 @@ Workbench::Workbench(const RenderSettings& settings, const PictureDefaults& give
     settings_.image.layers.assign(std::begin(kViewerLayers), std::end(kViewerLayers));
 }
 
-Workbench::~Workbench() = default;
+Workbench::~Workbench() {
+    if (document_) attempt([&] { state_.keep_now(*document_); });
+}
 
 bool Workbench::attempt(const std::function<void()>& body) {
     try {
@@ -215,8 +217,17 @@ bool Workbench::set_denoised(bool is_denoised) {
 }
 
 void Workbench::poll_jobs() {
-    if (is_ready(loading_)) adopt(loading_.get());
-    if (is_ready(rereading_)) adopt(rereading_.get());
+    if (is_ready(loading_)) {
+        Loaded loaded = loading_.get();
+        if (next_load_)
+            start(*std::exchange(next_load_, std::nullopt));
+        else
+            attempt([&] { adopt(std::move(loaded)); });
+    }
+    if (is_ready(rereading_)) {
+        Reread reread = rereading_.get();
+        attempt([&] { adopt(std::move(reread)); });
+    }
     if (is_ready(explaining_)) {
         cli::PixelExplanation explanation = explaining_.get();
         if (explained_pixel_) explanation_ = std::move(explanation); // else it was closed meanwhile

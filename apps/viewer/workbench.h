@@ -122,6 +122,11 @@ class Workbench {
     double time_of_first_picture() const { return first_picture_time_; } ///< of update(); below 0: not yet
 
   private:
+    struct Load {
+        SceneInput input;
+        bool keeps_camera = false;
+        std::shared_ptr<Shot> shot;
+    };
     struct Loaded {
         SceneInput input;
         std::optional<LoadedInput> loaded;
@@ -134,6 +139,7 @@ class Workbench {
         Texture texels;
     };
     struct Reread {
+        uint64_t scene_count = 0; ///< of the document that they belong to
         std::vector<RereadMap> maps;
         std::string error;
     };
@@ -147,6 +153,7 @@ class Workbench {
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
     void load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot = nullptr);
+    void start(Load load);
     void adopt(Loaded loaded);
     void adopt(Reread reread);
     void watch_files();
@@ -212,6 +219,7 @@ class Workbench {
     FileWatch watch_;
     UserState state_;
     std::future<Loaded> loading_;
+    std::optional<Load> next_load_; ///< asked for while another one goes on, whose scene is dropped
     std::future<Reread> rereading_;
     std::future<cli::PixelExplanation> explaining_;
     DenoisedPreview preview_;

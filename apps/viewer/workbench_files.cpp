@@ -59,21 +59,30 @@ bool Workbench::show_frame(int frame) {
 
 void Workbench::load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot) {
     if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
+    Load load{std::move(input), keeps_camera, std::move(shot)};
+    if (loading_.valid()) // to assign to it would wait
+        next_load_ = std::move(load);
+    else
+        start(std::move(load));
+}
+
+void Workbench::start(Load load) {
+    auto& [input, keeps_camera, shot] = load;
     message_ = fmt::format("loading {}", input.file.filename().string());
     has_news_ = true;
-    loading_ = std::async(
-        std::launch::async, [input, keeps_camera, shot = std::move(shot), on_news = on_news_]() mutable {
-            Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
-            try {
-                loaded.loaded = load_input(loaded.input, std::move(shot));
-                if (const auto& animated = loaded.loaded->shot; animated && !loaded.input.frame)
-                    loaded.input.frame = find_first_frame(*animated);
-            } catch (const std::exception& error) {
-                loaded.error = error.what();
-            }
-            if (on_news) on_news();
-            return loaded;
-        });
+    loading_ = std::async(std::launch::async, [input = std::move(input), keeps_camera = keeps_camera,
+                                               shot = std::move(shot), on_news = on_news_]() mutable {
+        Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
+        try {
+            loaded.loaded = load_input(loaded.input, std::move(shot));
+            if (const auto& animated = loaded.loaded->shot; animated && !loaded.input.frame)
+                loaded.input.frame = find_first_frame(*animated);
+        } catch (const std::exception& error) {
+            loaded.error = error.what();
+        }
+        if (on_news) on_news();
+        return loaded;
+    });
 }
 
 void Workbench::adopt(Loaded loaded) {
@@ -85,6 +94,7 @@ void Workbench::adopt(Loaded loaded) {
     }
     const bool is_first = !document_;
     painter_.reset();
+    if (document_) state_.keep_now(*document_);
     document_ = std::make_unique<Document>(loaded.input, std::move(loaded.loaded->scene));
     shot_ = std::move(loaded.loaded->shot);
     frames_ = shot_ ? shot_->frames() : std::vector<int>();
@@ -103,8 +113,8 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
     if (!given_.seed) image.seed = picture.seed.value_or(0);
     if (!scene.warnings.empty()) message_ = scene.warnings.front();
-    if (const auto painted = state_.find_painted(loaded.input.file); !painted.empty())
-        message_ = fmt::format("painted in an earlier run and not saved: {}", painted.front().string());
+    if (const auto painted = state_.claim_painted(loaded.input.file); !painted.empty())
+        message_ = fmt::format("painted before and not saved: {}", painted.front().string());
     state_.add_recent(loaded.input.file);
     forget_explanation();
     selected_object_.reset();
@@ -154,8 +164,11 @@ void Workbench::reload(const std::vector<std::filesystem::path>& files) {
             for (const MapTile& tile : map.tiles) is_map |= tile.texture->file == file;
         if (is_map) maps.push_back(file);
     }
-    if (maps.size() != files.size()) return load(document_->input(), true);
-    reread(maps);
+    if (maps.size() == files.size()) return reread(maps);
+    if (!document_->has_changes()) return load(document_->input(), true);
+    message_ = fmt::format("{} changed on the disk: save what was changed here, or open it again",
+                           files.front().filename().string());
+    has_news_ = true;
 }
 
 void Workbench::reread(const std::vector<std::filesystem::path>& maps) {
@@ -165,22 +178,25 @@ void Workbench::reread(const std::vector<std::filesystem::path>& maps) {
         for (const MapTile& tile : scene.displacements[k].tiles)
             if (std::ranges::find(maps, std::filesystem::path(tile.texture->file)) != maps.end())
                 places.push_back({{k, tile.udim, {}}, tile.texture->file});
-    rereading_ = std::async(std::launch::async, [places = std::move(places), on_news = on_news_]() mutable {
-        Reread result;
-        try {
-            for (auto& [map, file] : places) {
-                map.texels = read_texture(file);
-                result.maps.push_back(std::move(map));
-            }
-        } catch (const std::exception& error) {
-            result.error = error.what();
-        }
-        if (on_news) on_news();
-        return result;
-    });
+    rereading_ = std::async(std::launch::async,
+                            [places = std::move(places), on_news = on_news_, count = scene_count_]() mutable {
+                                Reread result;
+                                result.scene_count = count;
+                                try {
+                                    for (auto& [map, file] : places) {
+                                        map.texels = read_texture(file);
+                                        result.maps.push_back(std::move(map));
+                                    }
+                                } catch (const std::exception& error) {
+                                    result.error = error.what();
+                                }
+                                if (on_news) on_news();
+                                return result;
+                            });
 }
 
 void Workbench::adopt(Reread reread) {
+    if (reread.scene_count != scene_count_) return; // another scene was opened meanwhile
     has_news_ = true;
     if (!reread.error.empty()) { // what was read last stays
         message_ = reread.error;
@@ -188,11 +204,17 @@ void Workbench::adopt(Reread reread) {
     }
     std::vector<MapEdit> edits;
     for (RereadMap& map : reread.maps) {
-        const Displacement& displacement = document_->scene().displacements[map.displacement];
+        const Displacement& displacement = document_->scene().displacements.at(map.displacement);
+        if (document_->has_painted(displacement.name)) {
+            message_ =
+                fmt::format("the file of '{}' changed; what was painted on it stays", displacement.name);
+            continue;
+        }
         edits.push_back(make_whole_edit(displacement, map.udim, map.texels));
         if (!document_->replace_tile(map.displacement, map.udim, std::move(map.texels)))
             return load(document_->input(), true);
     }
+    if (edits.empty()) return;
     painter_->end();
     painter_->forget();
     message_ = "read again: the map changed";
@@ -217,7 +239,7 @@ bool Workbench::save(const std::filesystem::path& file) {
         document_->set_camera(camera_.get());
         const std::vector<std::filesystem::path> written = document_->save(file, settings_.image);
         for (const std::filesystem::path& path : written) watch_.accept(path);
-        state_.forget_painted(*document_);
+        state_.forget_painted();
         message_ = fmt::format("wrote {}", file.string());
         has_news_ = true;
     });
@@ -229,6 +251,7 @@ bool Workbench::save_map(size_t displacement, const std::filesystem::path& file,
         Displacement to = document_->scene().displacements.at(displacement);
         if (!preset.empty()) to = choose_convention(preset, to);
         document_->save_map(displacement, file, to);
+        if (!document_->has_painted()) state_.forget_painted();
         message_ = fmt::format("wrote {}", file.string());
         has_news_ = true;
     });
