@@ -104,10 +104,11 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
 }
 
 int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
-              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings) {
+              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
+              const std::string& step) {
     RenderResult result;
     {
-        RenderWatcher watcher(options, printed_warnings);
+        RenderWatcher watcher(options, printed_warnings, step);
         result = session.render(&watcher);
         if (watcher.is_refused()) return kExitWarnings;
     }

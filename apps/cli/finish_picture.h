@@ -28,8 +28,10 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
                    size_t printed_warnings);
 
-/// Renders and finishes the next picture of a session; `printed_warnings` counts on.
+/// Renders and finishes the next picture of a session; `printed_warnings` counts on. `step`: which of several
+/// it is, for its progress.
 int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
-              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings);
+              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
+              const std::string& step = {});
 
 } // namespace relief::cli

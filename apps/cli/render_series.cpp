@@ -44,9 +44,11 @@ class Series {
     bool can_keep_scene() const { return scene_ || (session_ && !session_->is_far_away()); }
     const RenderSettings& settings() const { return settings_; }
 
-    /// Renders and writes one; returns the exit code.
-    int show(const Shot::View& view, const std::filesystem::path& output, const PendingTimes& waiting) {
-        if (settings_.surface.mode == SurfaceMode::tessellated) return show_alone(view, output, waiting);
+    /// Renders and writes one, whose progress begins with `step`; returns the exit code.
+    int show(const Shot::View& view, const std::filesystem::path& output, const std::string& step,
+             const PendingTimes& waiting) {
+        if (settings_.surface.mode == SurfaceMode::tessellated)
+            return show_alone(view, output, step, waiting);
         if (scene_) {
             scene_->camera = view.camera, scene_->hash = view.scene_hash;
             session_.emplace(std::move(*scene_), settings_, SessionUse::views);
@@ -54,17 +56,18 @@ class Series {
         } else {
             session_->change_view(view.camera, settings_.image, view.scene_hash);
         }
-        return show_next(options_, settings_, *session_, output, waiting, printed_warnings_);
+        return show_next(options_, settings_, *session_, output, waiting, printed_warnings_, step);
     }
 
   private:
     /// Tessellated surfaces are made for one view.
-    int show_alone(const Shot::View& view, const std::filesystem::path& output, const PendingTimes& waiting) {
+    int show_alone(const Shot::View& view, const std::filesystem::path& output, const std::string& step,
+                   const PendingTimes& waiting) {
         Scene scene = *scene_;
         scene.camera = view.camera, scene.hash = view.scene_hash;
         RenderResult result;
         {
-            RenderWatcher watcher(options_, printed_warnings_);
+            RenderWatcher watcher(options_, printed_warnings_, step);
             result = render(std::move(scene), settings_, &watcher);
             if (watcher.is_refused()) return kExitWarnings;
         }
@@ -181,8 +184,9 @@ int render_turns(const RenderOptions& options, const RenderSettings& settings, S
     series.hold(std::move(scene), settings);
     int exit_code = kExitDone;
     for (int k = 0; k < options.aim.turntable && exit_code == kExitDone; ++k) {
-        exit_code = series.show({turn_to(options, camera, k), k == 0 ? hash : 0},
-                                name_turn(options.output, k), waiting);
+        exit_code =
+            series.show({turn_to(options, camera, k), k == 0 ? hash : 0}, name_turn(options.output, k),
+                        fmt::format("picture {} of {}", k + 1, options.aim.turntable), waiting);
         waiting = {get_seconds(), 0};
     }
     return exit_code;
@@ -193,7 +197,9 @@ int render_frames(const RenderOptions& options, Shot& shot, const std::vector<in
     check_frames_to_come(options, shot, frames);
     Series series(options);
     const bool may_keep = options.aim.scene == AimOptions{}; // its cameras need their scenes
+    size_t count = 0;
     for (const int frame : frames) {
+        ++count;
         std::optional<Shot::View> view;
         if (may_keep && series.can_keep_scene()) view = shot.find_view(frame);
         if (!view) {
@@ -211,7 +217,8 @@ int render_frames(const RenderOptions& options, Shot& shot, const std::vector<in
             poll_interrupts();
             if (get_interrupt() != 0) exit_code = kExitSignalBase + get_interrupt();
         } else {
-            exit_code = series.show(*view, output, waiting);
+            const std::string step = fmt::format("frame {}, {} of {}", frame, count, frames.size());
+            exit_code = series.show(*view, output, step, waiting);
         }
         if (exit_code != kExitDone) return exit_code;
         waiting = {get_seconds(), 0};

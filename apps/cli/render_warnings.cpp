@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "common/option_names.h"
@@ -45,8 +47,8 @@ std::string name_setting(std::string warning, bool is_mesh) {
     return is_mesh ? name_options(std::move(warning)) : name_keys(std::move(warning));
 }
 
-RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told)
-    : printer_(options.progress), options_(options), told_(told) {}
+RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told, std::string step)
+    : printer_(options.progress), options_(options), told_(told), step_(std::move(step)) {}
 
 void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
     const bool is_mesh = is_mesh_file(options_.input);
@@ -59,7 +61,7 @@ void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
 
 void RenderWatcher::on_progress(const Progress& progress) {
     if (progress.samples_done > 0) keep_picture();
-    printer_.print(progress);
+    printer_.print(progress, step_);
 }
 
 bool RenderWatcher::is_cancelled() const {

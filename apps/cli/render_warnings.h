@@ -20,8 +20,9 @@ std::string name_setting(std::string warning, bool is_mesh);
 /// Prints progress and warnings; an interrupt, and under --strict a warning, cancels the render.
 class RenderWatcher final : public RenderObserver {
   public:
-    /// `told`: warnings printed before, by other pictures of the same scene; outlives this object.
-    RenderWatcher(const RenderOptions& options, size_t& told);
+    /// `told`: warnings printed before, by other pictures of the same scene; outlives this object. `step`:
+    /// which of several pictures this is; empty: the only one.
+    RenderWatcher(const RenderOptions& options, size_t& told, std::string step = {});
 
     void on_warnings(const std::vector<std::string>& warnings) override;
     void on_progress(const Progress& progress) override;
@@ -34,6 +35,7 @@ class RenderWatcher final : public RenderObserver {
     ProgressPrinter printer_;
     const RenderOptions& options_;
     size_t& told_;
+    std::string step_;
     bool is_refused_ = false;
 };
 

@@ -42,6 +42,17 @@ TEST_F(FramesTest, are_those_of_the_file_or_the_command_and_the_same_alone) {
     expect_same("file.0002.exr", "all.0002.exr");
 }
 
+TEST_F(FramesTest, are_named_by_their_progress) {
+    const std::string errors =
+        run({"render", "shot.json", "-o", "p.exr", "--frames", "4,2", "--progress", "json"}).errors;
+    const size_t first = errors.find("\"frame 4, 1 of 2\""), second = errors.find("\"frame 2, 2 of 2\"");
+    EXPECT_TRUE(first < second && second < errors.size()) << errors;
+    const std::string turns =
+        run({"render", "plane.obj", "-o", "t.png", "--size", "8x8", "--turntable", "2", "--progress", "json"})
+            .errors;
+    EXPECT_NE(turns.find("\"picture 2 of 2\""), std::string::npos) << turns;
+}
+
 TEST_F(FramesTest, of_tessellated_surfaces_too) {
     const std::vector<std::string> command = {"render", "shot.json", "--surface", "tessellated"};
     const auto with = [&](const std::vector<std::string>& more) {
