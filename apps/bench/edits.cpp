@@ -106,17 +106,14 @@ uint64_t count_rays(const Statistics& s) { return s.camera_rays + s.shadow_rays 
 Value measure_edits(const Scene& scene, const RenderSettings& settings, const std::vector<MapEdit>& edits) {
     Session session(scene, settings), reference(scene, settings);
     RenderResult result = session.render();
-    uint64_t rays = count_rays(result.statistics);
-    const double all_rays = double(rays);
+    const double all_rays = double(count_rays(result.statistics));
     std::vector<double> follow, picture, shares;
     for (const MapEdit& edit : edits) {
         const double start = get_seconds();
         follow.push_back(session.edit(edit).seconds);
         result = session.render();
         picture.push_back(get_seconds() - start);
-        const uint64_t now = count_rays(result.statistics);
-        shares.push_back(double(now - rays) / all_rays);
-        rays = now;
+        shares.push_back(double(count_rays(result.statistics)) / all_rays);
         reference.edit(edit);
     }
     require_same(result.image, reference.render().image);

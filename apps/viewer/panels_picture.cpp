@@ -42,7 +42,7 @@ void note_statistics(const RenderState& render, const ShownPicture* picture, Pan
     const Statistics& s = render.statistics;
     const double rays = double(s.camera_rays + s.shadow_rays + s.bounce_rays);
     const size_t at = state.history_count++ % PanelState::kHistory;
-    // Rays accumulate over a session, as times of stages do.
+    // Times of stages are those of all threads together.
     const double seconds = s.top_traversal_s + s.bottom_build_s + s.bottom_traversal_s + s.shade_s + s.film_s;
     state.rays[at] = seconds > 0 ? float(1e-6 * rays / seconds * std::max(s.threads, 1)) : 0;
     state.times[at] = float(1e3 * picture->seconds);

@@ -64,6 +64,31 @@ void add_cache_warning(Statistics& statistics) {
         100 * lost / stages, statistics.bottom_rebuilt, statistics.bottom_cache_bytes >> 20));
 }
 
+/// Takes the counts and times of earlier pictures off those of an engine.
+void subtract_counted(const Statistics& counted, Statistics& statistics) {
+    for (double Statistics::*const time :
+         {&Statistics::prepare_s, &Statistics::render_s, &Statistics::top_traversal_s, &Statistics::sort_s,
+          &Statistics::bottom_build_s, &Statistics::bottom_traversal_s, &Statistics::shade_s,
+          &Statistics::film_s})
+        statistics.*time -= counted.*time;
+    for (uint64_t Statistics::*const count :
+         {&Statistics::camera_rays, &Statistics::shadow_rays, &Statistics::bounce_rays,
+          &Statistics::pairs_emitted, &Statistics::pairs_with_hit, &Statistics::upper_nodes,
+          &Statistics::patch_nodes, &Statistics::blocks, &Statistics::bottom_built,
+          &Statistics::bottom_reused, &Statistics::bottom_rebuilt})
+        statistics.*count -= counted.*count;
+    for (size_t level = 0; level < counted.bottom_levels.size(); ++level)
+        statistics.bottom_levels[level] -= counted.bottom_levels[level];
+    for (CastStatistics& cast : statistics.casts)
+        for (const CastStatistics& before : counted.casts) {
+            if (before.depth != cast.depth || before.is_shadow != cast.is_shadow) continue;
+            cast.rays -= before.rays, cast.pairs -= before.pairs;
+            cast.top_traversal_s -= before.top_traversal_s, cast.sort_s -= before.sort_s;
+            cast.bottom_build_s -= before.bottom_build_s;
+            cast.bottom_traversal_s -= before.bottom_traversal_s;
+        }
+}
+
 } // namespace
 
 std::string describe_settings(const RenderSettings& settings) {
@@ -84,8 +109,13 @@ std::string describe_settings(const RenderSettings& settings) {
 }
 
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
-                        Statistics& statistics) {
-    engine.add_statistics(statistics);
+                        Statistics& statistics, Statistics& counted) {
+    Statistics all;
+    engine.add_statistics(all);
+    const double prepare_s = statistics.prepare_s, render_s = statistics.render_s;
+    statistics = all;
+    subtract_counted(std::exchange(counted, std::move(all)), statistics);
+    statistics.prepare_s += prepare_s, statistics.render_s += render_s;
     statistics.threads = thread_count();
     statistics.first_image_s += statistics.prepare_s;
     statistics.ray_buffers_bytes += film.byte_count();

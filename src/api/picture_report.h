@@ -13,9 +13,10 @@ namespace relief {
 /// Adds counts and bytes of the scene: meshes, patches, texels.
 void count_scene(const PreparedScene& scene, Statistics& statistics);
 
-/// Adds what the engine, its film and the scene count; `prepare_s` is there before.
+/// Adds what the engine, its film and the scene count; `prepare_s` and `render_s` are there before.
+/// `counted`: what the engine had counted for the pictures before this one; becomes what it has counted now.
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
-                        Statistics& statistics);
+                        Statistics& statistics, Statistics& counted);
 
 /// An empty film for a picture. `mattes`: null without Cryptomatte layers.
 Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes> mattes);

@@ -55,7 +55,8 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         statistics.render_s = timer.seconds();
         if (control.save.call) control.save.call();
 
-        collect_statistics(*engine, film, *prepared, statistics);
+        Statistics counted;
+        collect_statistics(*engine, film, *prepared, statistics, counted);
         const PictureSpace space = make_picture_space(*prepared);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();

@@ -24,6 +24,7 @@ struct Session::Implementation {
     std::shared_ptr<const InstanceMattes> mattes;
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
+    Statistics counted;         ///< by the engine, for the pictures so far
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
 
     Implementation(Scene scene, const RenderSettings& given, SessionUse session_use)
@@ -42,6 +43,7 @@ struct Session::Implementation {
 
     void start_engine() {
         film.reset(), engine.reset(); // so that a device does not hold two
+        counted = {};
         engine = make_engine(editor->scene(), settings);
         if (use == SessionUse::edits) engine->expect_changes();
     }
@@ -126,7 +128,7 @@ RenderResult Session::render(RenderObserver* observer) {
         result.is_complete = self.trace_picture(observer);
         statistics.render_s = timer.seconds();
         statistics.prepare_s = std::exchange(self.prepare_s, 0);
-        collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics);
+        collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics, self.counted);
         result.whole_samples = int(self.film->least_samples());
         result.image = self.film->resolve(make_picture_space(*self.editor->scene()));
         add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, *self.film, result.image);

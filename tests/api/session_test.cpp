@@ -161,11 +161,9 @@ TEST(Session, makes_only_the_patches_anew_that_read_the_rectangle) {
 TEST(Session, keeps_trees_that_an_edit_does_not_reach) {
     Session session(make_rough_torus(DisplacementSpace::tangent), make_session_settings());
     const uint64_t first = session.render().statistics.bottom_built;
-    const uint64_t again = session.render().statistics.bottom_built - first;
-    EXPECT_EQ(again, 0u);
+    EXPECT_EQ(session.render().statistics.bottom_built, 0u);
     session.edit(make_edit(40, 30, 4, 4, 0.1f));
-    const uint64_t after = session.render().statistics.bottom_built - first;
-    EXPECT_LT(after, first / 2);
+    EXPECT_LT(session.render().statistics.bottom_built, first / 2);
 }
 
 uint64_t count_rays(const RenderResult& result) {
@@ -179,16 +177,15 @@ TEST(Session, traces_only_what_an_edit_may_have_reached) {
     Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     Session session(fresh, settings);
     const uint64_t all = count_rays(session.render());
-    EXPECT_EQ(count_rays(session.render()), all);
+    EXPECT_EQ(count_rays(session.render()), 0u);
     size_t kept = 0;
     for (uint32_t x = 0; x < 96; x += 24) {
-        const uint64_t before = count_rays(session.render());
         session.edit(make_edit(x, 20, 6, 6, 0.06f));
         const RenderResult result = session.render();
         bake(fresh, make_edit(x, 20, 6, 6, 0.06f));
         const Image expected = render(fresh, settings).image;
         expect_same(result.image, expected);
-        kept += count_rays(result) - before < all / 3;
+        kept += count_rays(result) < all / 3;
     }
     EXPECT_GE(kept, 3u);
 }
@@ -218,13 +215,12 @@ TEST(Session, sees_shading_normals_that_read_beyond_their_patch) {
         const uint64_t all = count_rays(session.render());
         // A few texels inside of a patch of 32 texels: its neighbours' differences reach there.
         for (const uint32_t at : {100u, 40u, 205u}) {
-            const uint64_t before = count_rays(session.render());
             const MapEdit edit = make_edit(at, at, 8, 8, 0.04f);
             session.edit(edit);
             bake(fresh, edit);
             const RenderResult result = session.render();
             expect_same(result.image, render(fresh, settings).image);
-            EXPECT_LT(count_rays(result) - before, all / 2);
+            EXPECT_LT(count_rays(result), all / 2);
         }
     }
 }
@@ -248,7 +244,7 @@ TEST(Session, traces_what_an_edit_has_taken_away_from_far_off) {
     const RenderResult after = session.render();
     expect_same(after.image, render(fresh, settings).image);
     EXPECT_GT(count_differing(before.image, after.image), 1000u);
-    EXPECT_LT(count_rays(after) - count_rays(before), count_rays(before) / 2) << "nothing was kept";
+    EXPECT_LT(count_rays(after), count_rays(before) / 2) << "nothing was kept";
 }
 
 TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
@@ -261,14 +257,13 @@ TEST(Session, keeps_blocks_of_any_window_lens_and_rule) {
         settings.surface.lod = rule;
         Session session(fresh, settings);
         const uint64_t all = count_rays(session.render());
-        uint64_t before = all, least = all;
+        uint64_t least = all;
         for (uint32_t x = 0; x < 96; x += 24) {
             session.edit(make_edit(x, 20, 6, 6, 0.06f));
             const RenderResult result = session.render();
             bake(fresh, make_edit(x, 20, 6, 6, 0.06f));
             expect_same(result.image, render(fresh, settings).image);
-            least = std::min(least, count_rays(result) - before);
-            before = count_rays(result);
+            least = std::min(least, count_rays(result));
         }
         EXPECT_LT(least, all / 2) << "nothing was kept";
     }

@@ -76,6 +76,23 @@ TEST(SessionView, follows_far_from_the_origin) {
     EXPECT_LT(covered, 0.9f * 96 * 72);
 }
 
+TEST(SessionView, counts_each_picture_by_itself) {
+    Scene scene = make_rough_torus();
+    const RenderSettings settings = make_session_settings();
+    Session session(scene, settings);
+    session.render();
+    scene.camera.from = scene.camera.from + Vec3f{0.2f, 0, 0};
+    session.change_view(scene.camera, settings.image);
+    const Statistics again = session.render().statistics, fresh = render(scene, settings).statistics;
+    EXPECT_EQ(again.camera_rays, fresh.camera_rays);
+    EXPECT_EQ(again.shadow_rays, fresh.shadow_rays);
+    EXPECT_EQ(again.bounce_rays, fresh.bounce_rays);
+    EXPECT_GT(again.camera_rays, 0u);
+    EXPECT_GT(again.shade_s, 0);
+    ASSERT_EQ(again.casts.size(), fresh.casts.size());
+    for (size_t k = 0; k < fresh.casts.size(); ++k) EXPECT_EQ(again.casts[k].rays, fresh.casts[k].rays) << k;
+}
+
 /// Boxes of vertices, which many rays bring, hold the levels of their view alone.
 TEST(SessionView, forgets_boxes_of_coarser_levels) {
     Scene scene = make_rough_torus();
