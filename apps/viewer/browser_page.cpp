@@ -21,11 +21,12 @@ const send = (kind, e, more) => {
 let held = false;
 picture.onpointerdown = e => { held = true; picture.setPointerCapture(e.pointerId); send("press", e); e.preventDefault(); };
 picture.onpointermove = e => { if (held) send("move", e); };
-picture.onpointerup = e => { held = false; send("release", e); };
+picture.onpointerup = picture.onpointercancel = e => { held = false; send("release", e); };
 picture.onwheel = e => { send("scroll", e, {amount: -Math.sign(e.deltaY)}); e.preventDefault(); };
 picture.oncontextmenu = e => e.preventDefault();
-const keys = {ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", "+": "+", "-": "-", ".": "."};
-onkeydown = e => { if (keys[e.key]) send("key", {clientX: 0, clientY: 0}, {key: keys[e.key]}); };
+const keys = {ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", "+": "+", "-": "-", ".": ".",
+  Escape: "escape"};
+onkeydown = e => { if (keys[e.key]) send("key", {clientX: 0, clientY: 0}, {key: keys[e.key], repeat: e.repeat}); };
 async function follow() {
   for (let after = 0, last = "";;) {
     try {

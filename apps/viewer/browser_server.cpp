@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <exception>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <random>
 #include <string_view>
@@ -69,8 +70,9 @@ std::vector<InputEvent> make_browser_event(const Value& event) {
                                                             {"release", Kind::release},
                                                             {"scroll", Kind::scroll},
                                                             {"key", Kind::key_down}};
-    constexpr std::pair<std::string_view, int> kKeys[] = {
-        {"left", kLeft}, {"right", kRight}, {"up", kUp}, {"down", kDown}, {"+", '+'}, {"-", '-'}, {".", '.'}};
+    constexpr std::pair<std::string_view, int> kKeys[] = {{"left", kLeft}, {"right", kRight},  {"up", kUp},
+                                                          {"down", kDown}, {"+", '+'},         {"-", '-'},
+                                                          {".", '.'},      {"escape", kEscape}};
     InputEvent made;
     const std::string name = event["kind"].get<std::string>();
     const auto* const kind = std::ranges::find(kKinds, name, &std::pair<std::string_view, Kind>::first);
@@ -87,6 +89,7 @@ std::vector<InputEvent> make_browser_event(const Value& event) {
         std::ranges::find(kKeys, event["key"].get<std::string>(), &std::pair<std::string_view, int>::first);
     if (key == std::end(kKeys)) return {};
     made.key = key->second;
+    made.is_repeat = is_true(event, "repeat");
     InputEvent released = made;
     released.kind = Kind::key_up;
     return {made, released};
@@ -109,6 +112,8 @@ struct BrowserServer::Implementation {
     std::mutex mutex;
     std::condition_variable has_picture;
     std::vector<InputEvent> events;
+    /// Releases of the buttons that pages hold.
+    std::map<const mg_connection*, std::vector<InputEvent>> releases;
     std::shared_ptr<const std::vector<uint8_t>> jpeg;
     std::string text;
     uint64_t version = 0;
@@ -155,12 +160,34 @@ struct BrowserServer::Implementation {
         return 200;
     }
 
-    void receive(const char* data, size_t size) {
+    void note_buttons(const mg_connection* connection, const InputEvent& event) {
+        using Kind = InputEvent::Kind;
+        if (event.kind != Kind::press && event.kind != Kind::release) return;
+        std::vector<InputEvent>& held = releases[connection];
+        std::erase_if(held, [&](const InputEvent& release) { return release.button == event.button; });
+        if (event.kind == Kind::release) return;
+        held.push_back(event);
+        held.back().kind = Kind::release;
+    }
+
+    void receive(const mg_connection* connection, const char* data, size_t size) {
         std::vector<InputEvent> made = parse_browser_event(std::string(data, size));
         if (made.empty()) return;
         {
             const std::lock_guard lock(mutex);
+            for (const InputEvent& event : made) note_buttons(connection, event);
             std::move(made.begin(), made.end(), std::back_inserter(events));
+        }
+        on_events();
+    }
+
+    /// A page that goes away lets go of what it holds.
+    void close(const mg_connection* connection) {
+        {
+            const std::lock_guard lock(mutex);
+            const auto held = releases.extract(connection);
+            if (held.empty()) return;
+            std::move(held.mapped().begin(), held.mapped().end(), std::back_inserter(events));
         }
         on_events();
     }
@@ -182,11 +209,11 @@ struct BrowserServer::Implementation {
                 return static_cast<Implementation*>(data)->is_allowed(c) ? 0 : 1;
             },
             nullptr,
-            [](mg_connection*, int, char* bytes, size_t size, void* data) {
-                static_cast<Implementation*>(data)->receive(bytes, size);
+            [](mg_connection* c, int, char* bytes, size_t size, void* data) {
+                static_cast<Implementation*>(data)->receive(c, bytes, size);
                 return 1;
             },
-            nullptr, this);
+            [](const mg_connection* c, void* data) { static_cast<Implementation*>(data)->close(c); }, this);
     }
 };
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -45,13 +46,12 @@ float find_place(float light) {
             table[k] = compute_place(std::bit_cast<float>((k << 16) | 0x8000u));
         return table;
     }();
-    return light > 0 ? places[std::bit_cast<uint32_t>(light) >> 16] : 0;
+    if (!(light > 0)) return 0;
+    return places[std::bit_cast<uint32_t>(std::min(light, std::numeric_limits<float>::max())) >> 16];
 }
 
-uint8_t round_to_byte(float value) { return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f); }
-
 uint8_t encode_screen(float light) {
-    const float x = std::clamp(light, 0.0f, 1.0f);
+    const float x = clamp_to_unit(light);
     return round_to_byte(x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f);
 }
 
@@ -111,7 +111,7 @@ void DisplayTable::show(const Vec3f& linear, uint8_t* bytes) const {
     if (entries_.empty()) {
         const std::array<uint8_t, 4097>& curve = get_curve();
         for (size_t c = 0; c < 3; ++c)
-            bytes[c] = curve[size_t(std::sqrt(std::clamp(light[c], 0.0f, 1.0f)) * 4096 + 0.5f)];
+            bytes[c] = curve[size_t(std::sqrt(clamp_to_unit(light[c])) * 4096 + 0.5f)];
         return;
     }
     size_t base = 0, stride = 1;

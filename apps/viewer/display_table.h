@@ -1,6 +1,7 @@
 // How linear light looks on a screen: the display transform of PNG files as a table.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,11 @@ namespace relief::viewer {
 
 /// Display transforms that write_image knows: the first is the default.
 inline constexpr const char* kDisplayNames[] = {"agx", "aces", "filmic", "standard", "raw"};
+
+/// To [0, 1]; what is no number becomes 0.
+inline float clamp_to_unit(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
+
+inline uint8_t round_to_byte(float value) { return uint8_t(clamp_to_unit(value) * 255 + 0.5f); }
 
 class DisplayTable {
   public:

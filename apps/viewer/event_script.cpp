@@ -62,10 +62,16 @@ int read_key(const std::string& text) {
     return cli::parse_word("key", text, kWords);
 }
 
+double check_seconds(double seconds) {
+    if (!(seconds >= 0 && seconds <= 3600)) refuse("seconds are from 0 to 3600");
+    return seconds;
+}
+
 ScriptStep read_wait(const Value& line) {
     check_keys(line, std::array<std::string_view, 1>{"wait"});
     const Value& what = line["wait"];
-    if (what.kind() != Value::Kind::text) return WaitStep{WaitStep::For::seconds, what.get<double>()};
+    if (what.kind() != Value::Kind::text)
+        return WaitStep{WaitStep::For::seconds, check_seconds(what.get<double>())};
     constexpr std::array<std::pair<std::string_view, WaitStep::For>, 2> kWords{
         {{"picture", WaitStep::For::shown}, {"done", WaitStep::For::done}}};
     return WaitStep{cli::parse_word("wait", what.get<std::string>(), kWords), 0};
@@ -78,8 +84,7 @@ ScriptStep read_drag(const Value& line) {
     drag.modifiers = read_modifiers(line);
     drag.from = read_point(line["from"]);
     drag.to = read_point(line["to"]);
-    if (line.contains("seconds")) drag.seconds = line["seconds"].get<double>();
-    if (!(drag.seconds >= 0 && drag.seconds <= 3600)) refuse("seconds are from 0 to 3600");
+    if (line.contains("seconds")) drag.seconds = check_seconds(line["seconds"].get<double>());
     return drag;
 }
 
@@ -149,6 +154,10 @@ ScriptStep read_step(const Value& line) {
 } // namespace
 
 std::vector<ScriptLine> read_script(std::istream& lines, const std::string& source) {
+    const auto check = [&](bool is_read) {
+        if (!is_read) throw Error(ErrorKind::bad_input, {"the script cannot be read", source, ""});
+    };
+    check(lines.good());
     std::vector<ScriptLine> script;
     std::string text;
     for (size_t number = 1; std::getline(lines, text); ++number) {
@@ -163,6 +172,7 @@ std::vector<ScriptLine> read_script(std::istream& lines, const std::string& sour
                         {error.message(), fmt::format("{}:{}", source, number), error.hint()});
         }
     }
+    check(!lines.bad());
     return script;
 }
 

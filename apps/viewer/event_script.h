@@ -59,7 +59,7 @@ struct ScriptLine {
 };
 
 /// Reads all lines; empty ones, and those that begin with //, say nothing. Throws Error{bad_input} with
-/// `source` and the line.
+/// `source` and the line, and where nothing can be read.
 std::vector<ScriptLine> read_script(std::istream& lines, const std::string& source);
 
 /// Applies a SetStep. Throws Error{bad_input} for keys and values that mean nothing.

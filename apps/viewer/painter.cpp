@@ -85,7 +85,8 @@ Vec3f Painter::find_step(const Vec3f& shift_world, const SurfacePoint& point, in
         const float sign = dot(shift_world, point.normal) < 0 ? -1.0f : 1.0f;
         return encode_step(displacement, {0, 0, sign * length(shift)});
     }
-    std::unique_ptr<TexelFrames>& frames = frames_[object().displacement];
+    std::unique_ptr<TexelFrames>& frames =
+        frames_[{object().displacement, object().mesh, displacement.flip_v}];
     if (!frames)
         frames = std::make_unique<TexelFrames>(displacement, document_.scene().meshes[object().mesh]);
     const float row = displacement.flip_v ? point.uv.y : 1 - point.uv.y;

@@ -1,9 +1,11 @@
 // Strokes of a brush on the displacement maps of a document.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -59,7 +61,8 @@ class Painter {
 
     Document& document_;
     StrokeHistory history_;
-    std::map<size_t, std::unique_ptr<TexelFrames>> frames_; ///< by displacement
+    /// By displacement, mesh and whether rows go along v.
+    std::map<std::tuple<uint32_t, uint32_t, bool>, std::unique_ptr<TexelFrames>> frames_;
     Brush brush_;
     uint32_t object_ = kNoIndex; ///< that a stroke is on; none: no stroke
     Vec2f last_{};               ///< pixels of the whole picture

@@ -12,8 +12,6 @@ namespace relief::viewer {
 
 namespace {
 
-uint8_t make_byte(float value) { return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f); }
-
 /// Reads one layer of a picture, pixel by pixel.
 class LayerPixels {
   public:
@@ -46,7 +44,8 @@ template <class Pixel> std::vector<uint8_t> make_bytes(const Image& image, const
 }
 
 void write_bytes(const Vec3f& colour, uint8_t* bytes) {
-    bytes[0] = make_byte(colour.x), bytes[1] = make_byte(colour.y), bytes[2] = make_byte(colour.z);
+    bytes[0] = round_to_byte(colour.x), bytes[1] = round_to_byte(colour.y),
+    bytes[2] = round_to_byte(colour.z);
 }
 
 /// Colours far apart for numbers next to each other.

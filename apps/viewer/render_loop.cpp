@@ -59,15 +59,21 @@ class RenderLoop::Observer : public RenderObserver {
         : loop_(loop), work_(work), motion_(motion), start_(read_clock()) {}
 
     void on_progress(const Progress& progress) override {
-        const std::lock_guard lock(loop_.mutex_);
-        loop_.state_.progress = progress;
+        const std::lock_guard lock(mutex_);
+        progress_ = progress;
     }
     bool is_cancelled() const override { return loop_.is_stale_.load(std::memory_order_relaxed); }
     double picture_interval_s() const override {
         return motion_ == Motion::still ? kPictureInterval : std::numeric_limits<double>::infinity();
     }
-    void on_picture(Image picture) override {
-        loop_.publish(std::move(picture), work_, motion_, false, read_clock() - start_);
+    void on_picture(Image picture) override { loop_.publish(std::move(picture), *this, false); }
+
+    const Work& work() const { return work_; }
+    Motion motion() const { return motion_; }
+    double seconds() const { return read_clock() - start_; }
+    Progress progress() const {
+        const std::lock_guard lock(mutex_);
+        return progress_;
     }
 
   private:
@@ -75,6 +81,8 @@ class RenderLoop::Observer : public RenderObserver {
     const Work& work_;
     Motion motion_;
     double start_;
+    mutable std::mutex mutex_;
+    Progress progress_;
 };
 
 RenderLoop::RenderLoop(std::function<void()> on_news)
@@ -216,23 +224,24 @@ void RenderLoop::render_preview(const Work& work) {
 }
 
 void RenderLoop::render_pass(const Work& work, const ImageSettings& image, Motion motion) {
-    const double start = read_clock();
+    Observer observer(*this, work, motion);
     if (!are_same(session_camera_, work.request.camera) || !are_same(session_settings_.image, image)) {
         session_->change_view(work.request.camera, image);
         session_camera_ = work.request.camera;
         session_settings_.image = image;
     }
-    Observer observer(*this, work, motion);
     RenderResult result = session_->render(&observer);
     {
         const std::lock_guard lock(mutex_);
         state_.statistics = std::move(result.statistics);
     }
     if (!result.is_complete) return;
-    publish(std::move(result.image), work, motion, motion == Motion::still, read_clock() - start);
+    publish(std::move(result.image), observer, motion == Motion::still);
 }
 
-void RenderLoop::publish(Image image, const Work& work, Motion motion, bool is_complete, double seconds) {
+void RenderLoop::publish(Image image, const Observer& observer, bool is_complete) {
+    const Work& work = observer.work();
+    const Progress progress = observer.progress();
     is_seen_ = true;
     seen_camera_ = work.request.camera;
     auto picture = std::make_shared<ShownPicture>();
@@ -241,12 +250,14 @@ void RenderLoop::publish(Image image, const Work& work, Motion motion, bool is_c
     picture->full_width = work.request.settings.image.width;
     picture->full_height = work.request.settings.image.height;
     picture->version = work.version;
-    picture->motion = motion;
+    picture->motion = observer.motion();
     picture->is_complete = is_complete;
-    picture->seconds = seconds;
+    picture->samples = progress.samples_done;
+    picture->seconds = observer.seconds();
     {
         const std::lock_guard lock(mutex_);
         ++state_.picture_count;
+        state_.progress = progress;
         picture_ = std::move(picture);
     }
     tell();

@@ -42,13 +42,14 @@ struct ShownPicture {
     uint64_t version = 0;                ///< of the request and the edits that it shows
     Motion motion = Motion::still;
     bool is_complete = false; ///< all samples of a still one
+    int samples = 0;          ///< of each pixel, at least
     double seconds = 0;       ///< since its render began
 };
 
 struct RenderState {
     bool is_busy = false;
-    std::string error; ///< of the last render; empty: none
-    Progress progress;
+    std::string error;     ///< of the last render; empty: none
+    Progress progress;     ///< of the last picture
     Statistics statistics; ///< of the last render that ended
     uint64_t picture_count = 0;
     double picture_scale = 1; ///< of width and height while moving
@@ -88,7 +89,7 @@ class RenderLoop {
     void render_pass(const Work& work, const ImageSettings& image, Motion motion);
     void render_painting(const Work& work);
     void render_preview(const Work& work);
-    void publish(Image image, const Work& work, Motion motion, bool is_complete, double seconds);
+    void publish(Image image, const Observer& observer, bool is_complete);
     void tell();
     bool may_cancel(const RenderRequest& next) const;
 

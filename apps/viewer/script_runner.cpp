@@ -15,6 +15,13 @@ namespace {
 
 constexpr double kMostWait = 600;
 
+/// Seconds that a step says itself.
+double get_seconds(const ScriptStep& step) {
+    if (const auto* const drag = std::get_if<DragStep>(&step)) return drag->seconds;
+    const auto* const wait = std::get_if<WaitStep>(&step);
+    return wait ? wait->seconds : 0;
+}
+
 } // namespace
 
 ScriptRunner::ScriptRunner(std::vector<ScriptLine> lines, std::string source, Workbench& workbench,
@@ -43,14 +50,15 @@ void ScriptRunner::step(double now) {
         }
         bool is_over = false;
         try {
-            if (now - start_ > kMostWait)
+            if (now - start_ > get_seconds(lines_[next_].step) + kMostWait)
                 throw Error(ErrorKind::failed, {"this takes longer than ten minutes", "", ""});
             is_over = std::visit([&](const auto& step) { return run(step, now); }, lines_[next_].step);
         } catch (const Error& error) {
-            throw Error(error.kind(), {error.message(),
-                                       fmt::format("{}:{}{}{}", source_, lines_[next_].number,
-                                                   error.where().empty() ? "" : ": ", error.where()),
-                                       error.hint()});
+            const ErrorKind kind = error.kind() == ErrorKind::usage ? ErrorKind::bad_input : error.kind();
+            throw Error(kind, {error.message(),
+                               fmt::format("{}:{}{}{}", source_, lines_[next_].number,
+                                           error.where().empty() ? "" : ": ", error.where()),
+                               error.hint()});
         }
         if (!is_over) return;
         ++next_;

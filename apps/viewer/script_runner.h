@@ -25,7 +25,7 @@ class ScriptRunner {
                  Host host);
 
     /// Goes on as far as it can; `now` as of Workbench::update. Called after each update. Throws Error with
-    /// the line where a step fails, and where a wait takes longer than ten minutes.
+    /// the line where a step fails, and where it takes ten minutes longer than it says.
     void step(double now);
     bool is_done() const { return next_ == lines_.size(); }
     bool wants_to_end() const { return wants_to_end_; }

@@ -69,12 +69,11 @@ std::vector<uint8_t> encode_jpeg(const Image& image, const DisplayTable& display
 
 std::string describe_state(const Workbench& workbench, const ShownPicture& picture) {
     if (!workbench.explanation().text.empty()) return workbench.explanation().text;
-    const Progress progress = workbench.render_state().progress;
     if (picture.motion != Motion::still)
         return fmt::format("{} x {}", picture.image.width, picture.image.height);
-    return fmt::format("{} of {} samples  {}",
-                       picture.is_complete ? workbench.settings().image.spp : progress.samples_done,
-                       workbench.settings().image.spp, workbench.message());
+    const int total = workbench.settings().image.spp;
+    return fmt::format("{} of {} samples  {}", picture.is_complete ? total : picture.samples, total,
+                       workbench.message());
 }
 
 /// Places of a page are shares of the picture.

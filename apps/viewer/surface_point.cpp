@@ -57,8 +57,15 @@ class Layers {
     size_t depth_, normal_, position_, uv_, id_;
 };
 
-/// Between pixels (dx, dy) before and behind, of which one is not 0.
-std::optional<Vec2f> find_change(const Layers& layers, int x, int y, int dx, int dy, float scale) {
+/// Through a pixel along (1, 0) or (0, 1); `scale`: pixels of the whole picture a pixel.
+struct PixelLine {
+    int x = 0, y = 0, right = 0, down = 0;
+    float scale = 1;
+};
+
+/// Between the pixels so far before and behind.
+std::optional<Vec2f> find_change(const Layers& layers, const PixelLine& line, int reach) {
+    const int x = line.x, y = line.y, dx = reach * line.right, dy = reach * line.down;
     const auto is_same = [&](int px, int py) {
         return layers.has_surface(px, py) && layers.id(px, py) == layers.id(x, y);
     };
@@ -68,16 +75,13 @@ std::optional<Vec2f> find_change(const Layers& layers, int x, int y, int dx, int
     const Vec2f b = has_next ? layers.uv(x + dx, y + dy) : layers.uv(x, y);
     const Vec2f change{b.x - a.x, b.y - a.y};
     if (std::fabs(change.x) > kSeam || std::fabs(change.y) > kSeam) return std::nullopt;
-    const float pixels = float((dx + dy) * (int(has_next) + int(has_last))) * scale;
+    const float pixels = float((dx + dy) * (int(has_next) + int(has_last))) * line.scale;
     return Vec2f{change.x / pixels, change.y / pixels};
 }
 
-/// Along one of (1, 0) and (0, 1).
-std::optional<Vec2f> find_derivative(const Layers& layers, int x, int y, std::pair<int, int> along,
-                                     float scale) {
+std::optional<Vec2f> find_derivative(const Layers& layers, const PixelLine& line) {
     for (const int reach : kReaches)
-        if (const auto change = find_change(layers, x, y, reach * along.first, reach * along.second, scale))
-            return change;
+        if (const auto change = find_change(layers, line, reach)) return change;
     return std::nullopt;
 }
 
@@ -108,8 +112,8 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
     const float distance = dot(point.position - picture.camera.from, forward);
     point.pixel_size = 2 * distance * std::tan(picture.camera.fov_degrees * std::numbers::pi_v<float> / 360) /
                        float(picture.full_height);
-    point.uv_right = find_derivative(layers, px, py, {1, 0}, scale_x);
-    point.uv_down = find_derivative(layers, px, py, {0, 1}, scale_y);
+    point.uv_right = find_derivative(layers, {px, py, 1, 0, scale_x});
+    point.uv_down = find_derivative(layers, {px, py, 0, 1, scale_y});
     return point;
 }
 

@@ -53,6 +53,23 @@ Modifiers make_modifiers(int bits) {
     return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_ALT) != 0};
 }
 
+/// The bit of a key that is a modifier; 0: it is none.
+int find_modifier(int key) {
+    switch (key) {
+    case GLFW_KEY_LEFT_SHIFT:
+    case GLFW_KEY_RIGHT_SHIFT:
+        return GLFW_MOD_SHIFT;
+    case GLFW_KEY_LEFT_CONTROL:
+    case GLFW_KEY_RIGHT_CONTROL:
+        return GLFW_MOD_CONTROL;
+    case GLFW_KEY_LEFT_ALT:
+    case GLFW_KEY_RIGHT_ALT:
+        return GLFW_MOD_ALT;
+    default:
+        return 0;
+    }
+}
+
 /// 0: a key that says nothing.
 int make_key(int key, int scancode) {
     constexpr std::pair<int, int> kKeys[] = {
@@ -60,6 +77,7 @@ int make_key(int key, int scancode) {
         {GLFW_KEY_F12, kF12},       {GLFW_KEY_LEFT, kLeft},      {GLFW_KEY_RIGHT, kRight},
         {GLFW_KEY_UP, kUp},         {GLFW_KEY_DOWN, kDown},      {GLFW_KEY_HOME, kHome},
         {GLFW_KEY_KP_ADD, '+'},     {GLFW_KEY_KP_SUBTRACT, '-'}, {GLFW_KEY_KP_DECIMAL, '.'}};
+    if (find_modifier(key) != 0) return kModifier;
     for (const auto& [from, to] : kKeys)
         if (key == from) return to;
     const char* const name = glfwGetKeyName(key, scancode); // of the user's own keyboard
@@ -104,8 +122,10 @@ struct Window::Callbacks {
     static void key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
         ImGui_ImplGlfw_KeyCallback(window, key, scancode, action, modifiers);
         using Kind = InputEvent::Kind;
-        InputEvent event =
-            make_event(window, action == GLFW_RELEASE ? Kind::key_up : Kind::key_down, modifiers);
+        const int own = find_modifier(key); // X11 tells the modifiers before the event
+        InputEvent event = action == GLFW_RELEASE ? make_event(window, Kind::key_up, modifiers & ~own)
+                                                  : make_event(window, Kind::key_down, modifiers | own);
+        event.is_repeat = action == GLFW_REPEAT;
         event.key = make_key(key, scancode);
         if (event.key != 0) get(window).receive(event);
     }

@@ -1,6 +1,7 @@
 // Workbench: what the mouse and the keys do.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,14 @@ constexpr float kTurn = 4, kKeyTurn = 0.1f;
 constexpr float kDollyStep = 0.85f;
 /// Pixels that a click may move.
 constexpr float kClickReach = 3;
+/// Keys that act again while they are held.
+constexpr int kRepeating[] = {kLeft, kRight, kUp, kDown, '+', '=', '-', '[', ']'};
+
+/// Of those others tell none, though a modifier is held.
+bool tells_modifiers(InputEvent::Kind kind) {
+    using Kind = InputEvent::Kind;
+    return kind == Kind::press || kind == Kind::release || kind == Kind::key_down || kind == Kind::key_up;
+}
 
 } // namespace
 
@@ -28,7 +37,7 @@ Vec2f Workbench::to_picture(float x, float y) const {
 void Workbench::handle(const InputEvent& event) {
     using Kind = InputEvent::Kind;
     has_news_ |= event.kind != Kind::move || tool_ == Tool::paint;
-    modifiers_ = event.modifiers;
+    if (tells_modifiers(event.kind)) modifiers_ = event.modifiers;
     switch (event.kind) {
     case Kind::press:
         return press(event);
@@ -132,6 +141,7 @@ void Workbench::press_key(const InputEvent& event) {
         return;
     }
     if (drag_.action == DragAction::look) return; // letters fly
+    if (event.is_repeat && std::ranges::find(kRepeating, event.key) == std::end(kRepeating)) return;
     if (press_command(event.key)) return;
     const auto orbit = [&](float right, float up) {
         change_camera([&](OrbitCamera& camera) { camera.orbit(right * kKeyTurn, up * kKeyTurn); });

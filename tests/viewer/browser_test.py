@@ -1,13 +1,14 @@
 """The page of `relief view --serve` in headless Chromium: browser_test.py RELIEF [FOLDER keeps a picture of the page].
 
 The page loads, its picture refines and turns by the mouse, a second page sees the same, a wrong token is refused, and a
-browser that is killed leaves the viewer well. Skipped where there is no Chromium. It is driven through the pipe of its
-DevTools protocol: JSON that ends with a zero byte, read from file 3 and written to file 4.
+browser that is killed while it holds a button leaves the viewer well. Skipped where there is no Chromium. It is driven
+through the pipe of its DevTools protocol: JSON that ends with a zero byte, read from file 3 and written to file 4.
 """
 import base64
 import json
 import os
 import pathlib
+import select
 import shutil
 import signal
 import subprocess
@@ -15,11 +16,12 @@ import sys
 import tempfile
 import time
 
-from serve_test import Page, start_server
+from serve_test import Page, await_true, start_server
 
 SKIPPED = 77
 PATIENCE = 120
 SAMPLES = 24
+WIDTH, HEIGHT = 320, 180
 PIXELS = """(() => {
   const picture = document.getElementById("picture"), canvas = document.createElement("canvas");
   canvas.width = picture.naturalWidth, canvas.height = picture.naturalHeight;
@@ -49,6 +51,7 @@ class Browser:
         os.write(self.output, json.dumps(message).encode() + b"\0")
         while True:
             while b"\0" not in self.bytes:
+                assert select.select([self.input], [], [], PATIENCE)[0], f"no answer to {method}"
                 more = os.read(self.input, 1 << 20)
                 assert more, "the browser has ended"
                 self.bytes += more
@@ -96,36 +99,41 @@ class Tab:
             time.sleep(0.05)
         raise AssertionError(f"no picture with all samples: {text}")
 
-    def drag(self, x0, y0, x1, y1, steps=6):
+    def is_whole(self):
+        """All samples are told and a picture of the whole size is shown; and events can be sent."""
+        return (self.text().startswith(f"{SAMPLES} of {SAMPLES}") and self.get("events.readyState") == 1 and
+                self.get('document.getElementById("picture").naturalWidth') == WIDTH)
+
+    def send_mouse(self, kind, x, y, button, buttons):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=buttons, clickCount=1)
+
+    def hold(self, x0, y0, x1, y1, button="left", buttons=1, steps=6):
         self.call("Page.bringToFront")  # hidden pages get events late
-        def send(kind, x, y, buttons):
-            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
-        send("mousePressed", x0, y0, 1)
+        self.send_mouse("mousePressed", x0, y0, button, buttons)
         for k in range(1, steps + 1):
-            send("mouseMoved", x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, 1)
-        send("mouseReleased", x1, y1, 0)
+            self.send_mouse("mouseMoved", x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, button, buttons)
+
+    def drag(self, x0, y0, x1, y1):
+        self.hold(x0, y0, x1, y1)
+        self.send_mouse("mouseReleased", x1, y1, "left", 0)
+
+
+def await_same(pages, old=None):
+    """The whole picture that all pages show, another one than an old one."""
+    def ask():
+        seen = {page.get(PIXELS) if page.is_whole() else None for page in pages}
+        return seen.pop() if len(seen) == 1 and seen.isdisjoint({None, old}) else None
+    return await_true(ask, "one whole picture on all pages")
 
 
 def check_pages(browser, url, folder):
     page = browser.open(url)
     seen = page.await_samples()
     assert len(seen) > 1, f"the picture came at once: {seen}"
-    assert page.get('document.getElementById("picture").naturalWidth') == 320
-    whole = page.get(PIXELS)
     second = browser.open(url)
-    second.await_samples()
-    time.sleep(0.3)  # the text comes a moment before the picture
-    assert second.get(PIXELS) == page.get(PIXELS)
+    whole = await_same((page, second))
     page.drag(100, 80, 220, 100)
-    end = time.monotonic() + PATIENCE
-    while page.text() == f"{SAMPLES} of {SAMPLES} samples  " and time.monotonic() < end and page.get(PIXELS) == whole:
-        time.sleep(0.02)
-    page.await_samples()
-    second.await_samples()
-    time.sleep(0.3)
-    turned = page.get(PIXELS)
-    assert turned != whole
-    assert second.get(PIXELS) == turned
+    await_same((page, second), whole)
     (folder / "page.png").write_bytes(base64.b64decode(page.call("Page.captureScreenshot")["data"]))
     token = url.rpartition("=")[2]
     for wrong in (url.replace(token, "0" * len(token)), url.partition("?")[0]):
@@ -135,6 +143,23 @@ def check_pages(browser, url, folder):
         assert stranger.get('document.getElementById("picture")') is None
     assert page.get('fetch("/picture?token=0&after=0").then(answer => answer.status)') == 403
     assert page.get(f'fetch("/picture?token={token}&after=0").then(answer => answer.status)') == 200
+    return page
+
+
+def check_kill(browser, page, url):
+    """The button that the page held is free for other pages."""
+    client = Page(url)
+    old = client.current_picture()
+    page.hold(100, 80, 160, 90, "right", 2)
+    await_true(lambda: client.current_picture() != old, "a picture from another place")
+    browser.kill()
+    assert b"101" in client.open_events()
+    def is_explained():
+        client.click(0.5, 0.5)
+        return client.current_picture()[0].startswith("pixel")
+    await_true(is_explained, "an explanation")
+    client.send_event("key", 0, 0, key="escape")
+    client.last_picture(f"{SAMPLES} of {SAMPLES}")
 
 
 def main():
@@ -145,16 +170,11 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
         folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        viewer, url = start_server(os.path.abspath(sys.argv[1]), temporary, "320x180", SAMPLES)
+        viewer, url = start_server(os.path.abspath(sys.argv[1]), temporary, f"{WIDTH}x{HEIGHT}", SAMPLES)
         browser = Browser(program, pathlib.Path(temporary, "profile"))
         try:
-            check_pages(browser, url, folder)
-            browser.kill()
-            client = Page(url)
-            client.last_picture(f"{SAMPLES} of {SAMPLES}")
-            assert b"101" in client.open_events()
-            client.drag(0.3, 0.5, 0.5, 0.5)
-            client.last_picture("1 of")  # it goes on
+            page = check_pages(browser, url, folder)
+            check_kill(browser, page, url)
             viewer.send_signal(signal.SIGTERM)
             assert viewer.wait(PATIENCE) == 128 + signal.SIGTERM
         finally:

@@ -171,11 +171,25 @@ TEST(EventScript, lines_become_steps) {
     EXPECT_TRUE(std::holds_alternative<QuitStep>(lines[6].step));
 }
 
+TEST_F(FileWatchTest, a_script_that_cannot_be_read_is_refused) {
+    for (const std::filesystem::path& file : {folder_, folder_ / "missing.jsonl"}) {
+        std::ifstream stream(file);
+        try {
+            read_script(stream, file.string());
+            ADD_FAILURE() << file;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+            EXPECT_EQ(error.where(), file.string());
+        }
+    }
+}
+
 TEST(EventScript, mistakes_name_their_line) {
     for (const char* line :
          {"{", "3", R"({"jump": 1})", R"({"wait": "for it"})", R"({"drag": "left", "from": [1, 2]})",
           R"({"drag": "left", "from": [1], "to": [1, 2]})", R"({"key": "hyper"})", R"({"set": 1})",
-          R"({"open": "a", "vmd": "b"})", R"({"press": "left", "at": [0, 0], "modifiers": ["super"]})"}) {
+          R"({"open": "a", "vmd": "b"})", R"({"press": "left", "at": [0, 0], "modifiers": ["super"]})",
+          R"({"wait": 4000})", R"({"wait": -1})"}) {
         std::istringstream text(std::string("\n") + line + "\n");
         try {
             read_script(text, "demo.jsonl");

@@ -9,6 +9,7 @@
 #include "relief/session.h"
 #include "viewer/fixture.h"
 #include "viewer/painter.h"
+#include "viewer/vectors.h"
 
 namespace relief::viewer {
 
@@ -148,6 +149,32 @@ TEST(Painter, a_grab_moves_the_surface_with_the_mouse) {
         EXPECT_NEAR(after.y - before.y, 0, 0.1f * pixel);
         EXPECT_NEAR(after.z - before.z, 0, 0.1f * pixel);
     }
+}
+
+TEST(Painter, a_map_that_two_meshes_share_moves_along_the_frames_of_each) {
+    Scene scene = make_bumpy_scene();
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].name = "turned";
+    for (Vec3f& position : scene.meshes[1].positions) position = {-position.y, position.x, position.z};
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects[1].name = "turned";
+    scene.objects[1].mesh = 1;
+    scene.objects[0].world_from_object.translation = {-1, 0, 0};
+    scene.objects[1].world_from_object.translation = {1, 0, 0};
+    Easel easel(scene);
+    const float pixel = 2 * 4 * std::tan(35 * float(M_PI) / 360) / 32;
+    const auto grab = [&](float x) {
+        const Vec3f before = easel.texel(32, 32);
+        easel.painter.begin(make_brush(BrushKind::grab, 1), easel.picture, x, 16);
+        easel.painter.move(easel.picture, x + 2, 16);
+        easel.painter.end();
+        return easel.texel(32, 32) - before;
+    };
+    const Vec3f first = grab(12), second = grab(36);
+    EXPECT_NEAR(first.x, 2 * pixel, 0.3f * pixel);
+    EXPECT_NEAR(first.y, 0, 0.1f * pixel);
+    EXPECT_NEAR(second.x, 0, 0.1f * pixel);
+    EXPECT_NEAR(second.y, -2 * pixel, 0.3f * pixel);
 }
 
 TEST(Painter, erasing_leads_to_the_midlevel_and_smoothing_to_the_mean) {

@@ -55,6 +55,7 @@ TEST(RenderLoop, the_last_picture_is_that_of_a_render_bit_for_bit) {
     const Image expected = render(scene, make_small_settings()).image;
     EXPECT_EQ(picture->image.pixels, expected.pixels);
     EXPECT_EQ(picture->image.metadata.at("relief:samples"), expected.metadata.at("relief:samples"));
+    EXPECT_EQ(picture->samples, 4);
     EXPECT_GE(news, 2); // one of a small picture, one of the whole
     ASSERT_TRUE(wait_until([&] { return !loop.state().is_busy; }));
     EXPECT_EQ(loop.state().error, "");

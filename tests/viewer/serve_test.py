@@ -14,12 +14,24 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.parse
 
 from small_scene import write_small_scene
 
 PATIENCE = 120
+
+
+def await_true(is_true, what):
+    """Asks until the answer is one that counts as true, and returns it."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        answer = is_true()
+        if answer:
+            return answer
+        time.sleep(0.02)
+    raise AssertionError(f"not within {PATIENCE} s: {what}")
 
 
 class Page:
@@ -36,24 +48,29 @@ class Page:
         answer = connection.getresponse()
         return answer.status, dict(answer.getheaders()), answer.read()
 
+    def current_picture(self):
+        """(text, JPEG) of the picture that there is; nothing where there is none yet."""
+        status, headers, jpeg = self.get(f"/picture?token={self.token}&after=0")
+        assert status in (200, 204), status
+        return (urllib.parse.unquote(headers["X-Relief-Text"]), jpeg) if status == 200 else None
+
     def next_picture(self):
         """(text, JPEG) of the next picture."""
-        while True:
+        def ask():
             status, headers, jpeg = self.get(f"/picture?token={self.token}&after={self.version}")
             if status == 204:
-                continue
+                return None
             assert status == 200, status
             self.version = int(headers["X-Relief-Version"])
             return urllib.parse.unquote(headers["X-Relief-Text"]), jpeg
+        return await_true(ask, "another picture")
 
     def last_picture(self, text):
         """Pictures until one whose text begins so."""
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
+        def ask():
             told, jpeg = self.next_picture()
-            if told.startswith(text):
-                return jpeg
-        raise AssertionError(f"no picture with the text {text}")
+            return jpeg if told.startswith(text) else None
+        return await_true(ask, f"a picture with the text {text}")
 
     def open_events(self, token=None):
         self.socket = socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE)
@@ -68,13 +85,30 @@ class Page:
         size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0x80 | 126, len(data))
         self.socket.sendall(b"\x81" + size + mask + bytes(b ^ mask[k % 4] for k, b in enumerate(data)))
 
+    def send_event(self, kind, x, y, **more):
+        self.send(json.dumps({"kind": kind, "x": x, "y": y, "button": 0, "shift": False, "control": False, "alt": False, **more}))
+
     def drag(self, x0, y0, x1, y1, steps=8):
-        event = {"button": 0, "shift": False, "control": False, "alt": False}
-        self.send(json.dumps({"kind": "press", "x": x0, "y": y0, **event}))
+        self.send_event("press", x0, y0)
         for k in range(1, steps + 1):
-            self.send(json.dumps({"kind": "move", "x": x0 + (x1 - x0) * k / steps, "y": y0 + (y1 - y0) * k / steps, **event}))
+            self.send_event("move", x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps)
             time.sleep(0.01)
-        self.send(json.dumps({"kind": "release", "x": x1, "y": y1, **event}))
+        self.send_event("release", x1, y1)
+
+    def click(self, x, y):
+        self.send_event("press", x, y)
+        self.send_event("release", x, y)
+
+
+def await_same(pages, text, old=None):
+    """The picture with that text that all pages see, another one than an old one."""
+    def ask():
+        seen = {page.current_picture() for page in pages}
+        if len(seen) > 1 or None in seen:
+            return None
+        told, jpeg = seen.pop()
+        return jpeg if told.startswith(text) and jpeg != old else None
+    return await_true(ask, f"one picture with the text {text} for all")
 
 
 def check_viewers(url):
@@ -86,21 +120,22 @@ def check_viewers(url):
     assert b"101" not in first.open_events("0" * 32)
     _, small = first.next_picture()
     assert small[:2] == b"\xff\xd8" and len(small) > 500
-    whole = first.last_picture("4 of 4")
-    assert second.last_picture("4 of 4") == whole
+    whole = await_same((first, second), "4 of 4")
     assert b"101" in first.open_events()
     for nonsense in ("", "{", "[]", '{"kind": "quit"}', '{"kind": "press"}', '{"kind": "key", "key": "S"}', "x" * 5000):
         first.send(nonsense)
     first.drag(0.3, 0.5, 0.6, 0.55)
-    turned = first.last_picture("4 of 4")
-    assert turned != whole
-    assert second.last_picture("4 of 4") == turned
+    turned = await_same((first, second), "4 of 4", whole)
+    first.click(0.5, 0.5)
+    first.last_picture("pixel")
+    first.send_event("key", 0, 0, key="escape")
+    assert await_same((first, second), "4 of 4") == turned
     # Gone without a word.
     first.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
     first.socket.close()
     assert b"101" in second.open_events()
     second.drag(0.6, 0.5, 0.5, 0.5)
-    assert second.last_picture("4 of 4") != turned
+    await_same((second,), "4 of 4", turned)
 
 
 def start_server(relief, folder, size, samples):
@@ -108,7 +143,12 @@ def start_server(relief, folder, size, samples):
     write_small_scene(folder)
     viewer = subprocess.Popen([relief, "view", "scene.json", "--size", size, "--spp", str(samples), "--serve", "0"],
                               cwd=folder, text=True, stdout=subprocess.PIPE)
-    return viewer, viewer.stdout.readline().strip()
+    timer = threading.Timer(PATIENCE, viewer.kill)
+    timer.start()
+    url = viewer.stdout.readline().strip()
+    timer.cancel()
+    assert url, f"no address, exit code {viewer.wait(PATIENCE)}"
+    return viewer, url
 
 
 def main():

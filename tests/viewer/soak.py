@@ -19,6 +19,7 @@ from small_scene import write_small_scene
 from window_test import SKIPPED, start_display
 
 PATIENCE = 10
+LIMIT = 300  # seconds, beyond four times those asked for
 SIZE = (320, 180)
 
 
@@ -53,10 +54,25 @@ def make_lines(dice, count):
 
 
 def read_resident(process):
-    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
-        if line.startswith("VmRSS"):
-            return int(line.split()[1]) / 1024
-    return 0
+    """MiB; 0 where the process has ended."""
+    try:
+        lines = pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines()
+    except (FileNotFoundError, ProcessLookupError):
+        return 0
+    return next((int(line.split()[1]) / 1024 for line in lines if line.startswith("VmRSS")), 0)
+
+
+def watch(process, limit):
+    """Waits for the end, at most for so many seconds: how long that took, and the memory on the way."""
+    start, resident = time.monotonic(), [read_resident(process)]
+    try:
+        while process.poll() is None and time.monotonic() - start < limit:
+            time.sleep(0.5)
+            resident.append(read_resident(process) or resident[-1])
+    finally:
+        process.kill()
+        process.wait()
+    return time.monotonic() - start, resident
 
 
 def soak(relief, seconds, seed, display, folder):
@@ -67,22 +83,14 @@ def soak(relief, seconds, seed, display, folder):
         viewer = subprocess.Popen([relief, "view", "scene.json", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", "16",
                                    "--script", "soak.jsonl"], cwd=folder, stdout=times,
                                   env={**os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"})
-        start, resident = time.monotonic(), []
-        while viewer.poll() is None:
-            try:
-                resident.append(read_resident(viewer))
-            except (FileNotFoundError, ProcessLookupError):
-                break
-            time.sleep(0.5)
-        took = time.monotonic() - start
-        viewer.wait()
+        took, resident = watch(viewer, LIMIT + 4 * seconds)
+        assert viewer.returncode == 0, f"exit code {viewer.returncode} after {took:.0f} s"
         times.seek(0)
         waits = [step["waited_s"] for step in map(json.loads, times) if "waited_s" in step]
     third = max(len(resident) // 3, 1)
     early, late = statistics.median(resident[third // 2:third + 1]), statistics.median(resident[-third:])
-    print(f"{len(lines)} lines in {took:.0f} s, exit {viewer.returncode}, longest wait {max(waits, default=0):.2f} s, "
+    print(f"{len(lines)} lines in {took:.0f} s, longest wait {max(waits):.2f} s, "
           f"{early:.0f} MiB, then {late:.0f} MiB")
-    assert viewer.returncode == 0
     assert max(waits) < PATIENCE, "a picture did not come"
     assert seconds < 60 or late < 1.05 * early, "memory grew"
 

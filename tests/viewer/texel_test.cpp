@@ -102,6 +102,23 @@ TEST_F(DisplayTest, shows_colours_as_png_files_do) {
     }
 }
 
+TEST_F(DisplayTest, what_is_no_number_is_black_and_infinity_is_the_most) {
+    const float nothing = std::nanf("");
+    for (const DisplayTable& table : {DisplayTable(), DisplayTable("agx"), DisplayTable("standard")}) {
+        uint8_t bytes[3], most[3];
+        for (const float light : {nothing, -nothing, -INFINITY, -1.0f}) {
+            table.show({light, light, light}, bytes);
+            EXPECT_LE(bytes[0], 1) << light;
+        }
+        table.show({INFINITY, INFINITY, INFINITY}, bytes);
+        table.show({1e30f, 1e30f, 1e30f}, most);
+        EXPECT_EQ(bytes[0], most[0]);
+        EXPECT_GT(bytes[0], 250);
+    }
+    EXPECT_EQ(round_to_byte(nothing), 0);
+    EXPECT_EQ(round_to_byte(INFINITY), 255);
+}
+
 TEST(PictureView, layers_become_colours_and_nothing_is_black) {
     Image image;
     image.width = image.full_width = 2, image.height = image.full_height = 1;

@@ -104,6 +104,10 @@ def check_mistakes(viewer):
     result = viewer.run_script([{"wait": "done"}, {"set": {"scael": 1}}], "pumpkin/scene.json")
     assert result.returncode == 3, (result.returncode, result.stderr)
     assert "script.jsonl:2" in result.stderr and "scale" in result.stderr, result.stderr
+    result = viewer.run_script([{"wait": "done"}, {"set": {"tool": "hammer"}}], "pumpkin/scene.json")
+    assert result.returncode == 3 and "script.jsonl:2" in result.stderr, (result.returncode, result.stderr)
+    result = viewer.run("view", "pumpkin/scene.json", "--script", "pumpkin")  # a folder
+    assert result.returncode == 3 and "pumpkin" in result.stderr, (result.returncode, result.stderr)
     result = viewer.run("view", "nowhere.json")
     assert result.returncode == 3, (result.returncode, result.stderr)
     result = viewer.run("view", "--spq", "3")

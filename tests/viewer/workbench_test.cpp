@@ -13,6 +13,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/event_script.h"
+#include "viewer/vectors.h"
 #include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
@@ -139,6 +140,49 @@ TEST_F(WorkbenchTest, keys_turn_frame_and_end) {
     EXPECT_FALSE(bench_->wants_to_end());
     press_key('Q', {.control = true});
     EXPECT_TRUE(bench_->wants_to_end());
+}
+
+TEST_F(WorkbenchTest, a_key_that_is_held_gives_its_command_once) {
+    open_scene();
+    InputEvent held;
+    held.kind = Kind::key_down, held.is_repeat = true;
+    const float radius = bench_->brush().radius;
+    const Vec3f from = bench_->camera().get().from;
+    for (const int key : {int('S'), int('B'), int(kF1), int(']'), int(kLeft)})
+        held.key = key, bench_->handle(held);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene-view.json"));
+    EXPECT_EQ(bench_->tool(), Tool::look);
+    EXPECT_FALSE(bench_->is_help_shown());
+    EXPECT_GT(bench_->brush().radius, radius);
+    EXPECT_NE(bench_->camera().get().from, from);
+}
+
+TEST_F(WorkbenchTest, shift_makes_flying_faster_until_it_is_released) {
+    open_scene();
+    const auto press_modifier = [&](Kind kind, bool is_held) {
+        InputEvent event;
+        event.kind = kind, event.key = kModifier, event.modifiers.shift = is_held;
+        bench_->handle(event);
+    };
+    double now = 0;
+    const auto measure = [&] {
+        send(Kind::move, 20, 16); // which tells no modifiers
+        const Vec3f before = bench_->camera().get().from;
+        bench_->update(now += 0.05);
+        const Vec3f way = bench_->camera().get().from - before;
+        return length(way);
+    };
+    bench_->update(now);
+    send(Kind::press, 20, 16, MouseButton::right);
+    InputEvent fly;
+    fly.kind = Kind::key_down, fly.key = 'W';
+    bench_->handle(fly);
+    const float slow = measure();
+    EXPECT_GT(slow, 0);
+    press_modifier(Kind::key_down, true);
+    EXPECT_NEAR(measure(), 3 * slow, 0.3f * slow);
+    press_modifier(Kind::key_up, false);
+    EXPECT_NEAR(measure(), slow, 0.3f * slow);
 }
 
 TEST_F(WorkbenchTest, focus_brings_the_place_of_a_click_into_the_middle) {
