@@ -9,6 +9,7 @@
 
 #include "relief/convert.h"
 #include "relief/error.h"
+#include "relief/inspect.h"
 
 namespace relief::viewer {
 
@@ -32,6 +33,12 @@ void make_names_distinct(std::vector<Displacement>& maps) {
     }
 }
 
+std::vector<std::string> list_doubts(const Scene& scene) {
+    std::vector<std::string> texts;
+    for (const Finding& finding : find_doubtful_assumptions(scene)) texts.push_back(finding.text);
+    return texts;
+}
+
 std::string make_stem(std::string name) {
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
@@ -52,7 +59,11 @@ int find_first_frame(const Shot& shot) {
 }
 
 LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot) {
-    if (is_mesh_file(input.file)) return {load_mesh_scene(input.file, input.mesh), nullptr};
+    if (is_mesh_file(input.file)) {
+        Scene scene = load_mesh_scene(input.file, input.mesh);
+        std::vector<std::string> doubts = list_doubts(scene);
+        return {std::move(scene), nullptr, std::move(doubts)};
+    }
     if (input.file.extension() != ".json") {
         refuse_foreign_file(input.file);
         throw Error(ErrorKind::usage, {"this is neither a scene nor a mesh", input.file.string(),
@@ -61,7 +72,8 @@ LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot) {
     if (!shot) shot = std::make_shared<Shot>(input.file, input.mesh.reader);
     Scene scene = shot->load(input.frame.value_or(find_first_frame(*shot)));
     if (!shot->is_animated()) shot.reset(); // it holds all textures
-    return {std::move(scene), std::move(shot)};
+    std::vector<std::string> doubts = list_doubts(scene);
+    return {std::move(scene), std::move(shot), std::move(doubts)};
 }
 
 const Mesh* find_mesh(const Scene& scene, size_t displacement) {
@@ -88,6 +100,7 @@ void Document::change_displacement(size_t index, const std::function<void(Displa
     Displacement& map = scene_.displacements.at(index);
     change(map);
     map.assumed = {};
+    doubts_.clear();
     changes_.displacements.insert(map.name);
     touch();
 }
@@ -219,7 +232,7 @@ std::vector<std::filesystem::path> Document::save(const std::filesystem::path& f
     scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
     save_scene_copy(scene, input_.file, input_.mesh, file, {}, changes_);
     written.push_back(file);
-    has_changes_ = false;
+    has_changes_ = false, is_saved_ = true;
     unsaved_.clear();
     return written;
 }

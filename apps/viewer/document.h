@@ -26,10 +26,12 @@ struct SceneInput {
     std::optional<int> frame; ///< of a scene whose values have keys; nothing: its first one
 };
 
-/// `shot`: of a scene that differs from frame to frame, else null.
+/// `shot`: of a scene that differs from frame to frame, else null. `doubts`: what speaks against what was
+/// assumed about its maps.
 struct LoadedInput {
     Scene scene;
     std::shared_ptr<Shot> shot;
+    std::vector<std::string> doubts;
 };
 
 /// Without `shot`, which is that of an earlier call for the same file, all is read anew. Throws as Shot and
@@ -45,6 +47,9 @@ class Document {
     Document(SceneInput input, Scene scene);
 
     const SceneInput& input() const { return input_; }
+    /// LoadedInput::doubts, until a map's convention is changed.
+    const std::vector<std::string>& doubts() const { return doubts_; }
+    void set_doubts(std::vector<std::string> doubts) { doubts_ = std::move(doubts); }
     /// The camera alone differs there.
     void set_frame(int frame) { input_.frame = frame; }
     const Scene& scene() const { return scene_; }
@@ -53,6 +58,7 @@ class Document {
     /// Grows with each change that a session does not follow.
     uint64_t version() const { return version_; }
     bool has_changes() const { return has_changes_; }
+    bool is_saved() const { return is_saved_; } ///< save() was called since it was read
     /// Something was painted since the maps were saved last.
     bool has_painted() const { return !unsaved_.empty(); }
     bool has_painted(const std::string& map) const { return unsaved_.contains(map); }
@@ -100,8 +106,9 @@ class Document {
 
     SceneInput input_;
     Scene scene_;
+    std::vector<std::string> doubts_;
     uint64_t version_ = 1;
-    bool has_changes_ = false;
+    bool has_changes_ = false, is_saved_ = false;
     SceneChanges changes_;
     /// Texels being painted, by the texture that the scene holds in their place.
     std::map<TileKey, std::unique_ptr<Texture>> painted_;

@@ -21,7 +21,13 @@ namespace relief::viewer {
 namespace {
 
 /// Of a window whose picture has no size of its own.
-constexpr int kWindowWidth = 1300, kWindowHeight = 760;
+constexpr int kWindowWidth = 1240, kWindowHeight = 720;
+
+/// A window that never showed anything says why on the terminal too. Throws Error{bad_input}.
+void refuse_nothing_shown(const Workbench& workbench) {
+    if (!workbench.document() && !workbench.load_error().empty())
+        throw Error(ErrorKind::bad_input, {workbench.load_error(), "", ""});
+}
 
 int run_viewer(const ViewerOptions& options, double start) {
     std::vector<ScriptLine> lines;
@@ -41,6 +47,7 @@ int run_viewer(const ViewerOptions& options, double start) {
     Interface interface(window, workbench, size);
     if (options.script.empty()) {
         interface.run(nullptr, start);
+        refuse_nothing_shown(workbench);
         return 0;
     }
     ScriptRunner script(std::move(lines), options.script.string(), workbench, interface.view(),
@@ -48,6 +55,7 @@ int run_viewer(const ViewerOptions& options, double start) {
                          [&](const std::filesystem::path& file) { window.take_screenshot(file); },
                          [](const std::string& line) { std::cout << line << std::endl; }});
     interface.run(&script, start);
+    refuse_nothing_shown(workbench);
     return 0;
 }
 

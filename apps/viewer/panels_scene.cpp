@@ -82,6 +82,15 @@ bool edit_convention(Displacement& map) {
     return is_changed;
 }
 
+/// What speaks against how maps are meant: found while they were read, and by the last render.
+void draw_doubts(const Workbench& workbench) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.75f, 0.3f, 1.0f));
+    for (const std::string& doubt : workbench.document()->doubts()) ImGui::TextWrapped("%s", doubt.c_str());
+    for (const std::string& warning : workbench.render_state().statistics.warnings)
+        ImGui::TextWrapped("%s", warning.c_str());
+    ImGui::PopStyleColor();
+}
+
 /// Saves the chosen map by itself, for this scene or another program.
 void draw_map_file(Workbench& workbench, PanelState& state) {
     if (!ImGui::TreeNode("save the map")) return;
@@ -116,7 +125,9 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     }
     ImGui::TextUnformatted(document.input().file.filename().string().c_str());
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", document.has_changes() ? "changed" : "as it was read");
+    ImGui::TextDisabled("%s", document.has_changes() ? "changed"
+                              : document.is_saved()  ? "saved"
+                                                     : "as it was read");
     if (state.scene_file.empty()) state.scene_file = workbench.suggest_file(".json").string();
     ImGui::InputText("##scene", &state.scene_file);
     ImGui::SameLine();
@@ -185,6 +196,7 @@ void draw_displacement_panel(Workbench& workbench, PanelState& state) {
     is_changed |= edit_convention(map);
     if (map.type == DisplacementType::vector)
         ImGui::TextDisabled("axes %s", format_map_axes(map.axes, map.space).c_str());
+    draw_doubts(workbench);
     draw_map_file(workbench, state);
     if (!is_changed) return;
     workbench.change_document([&](Document& document) {
@@ -205,10 +217,8 @@ void draw_camera_panel(Workbench& workbench) {
     camera.aperture_radius = std::max(camera.aperture_radius, 0.0f);
     camera.focus_distance = std::max(camera.focus_distance, 1e-4f);
     if (is_changed) workbench.change_camera([&](OrbitCamera& orbit) { orbit.set(camera); });
-    ImGui::SameLine();
     int preset = int(workbench.navigation());
     constexpr const char* kPresetNames[] = {"as Blender", "as Maya"};
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
     if (ImGui::Combo("mouse", &preset, kPresetNames, 2)) workbench.navigation() = NavigationPreset(preset);
 }
 

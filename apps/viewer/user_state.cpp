@@ -1,14 +1,20 @@
 #include "viewer/user_state.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <string_view>
 #include <system_error>
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -23,6 +29,14 @@ constexpr double kKeepInterval = 30;
 
 /// What the names of kept maps begin with.
 constexpr char kPainted[] = "painted-";
+
+/// Whether the process that a name goes on with, "123-", is another viewer that still runs.
+bool is_of_another(std::string_view name) {
+    pid_t process = 0;
+    const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), process);
+    return code == std::errc() && process > 0 && process != getpid() &&
+           (kill(process, 0) == 0 || errno == EPERM);
+}
 
 } // namespace
 
@@ -64,8 +78,8 @@ std::filesystem::path UserState::name_painted(const std::filesystem::path& input
                                               const std::string& map) const {
     std::error_code ignored;
     const std::string place = std::filesystem::weakly_canonical(input, ignored).string();
-    return folder_ / fmt::format("{}{}-{:016x}-{}.exr", kPainted, input.stem().string(),
-                                 std::hash<std::string>()(place), map);
+    return folder_ / fmt::format("{}{}-{:016x}-{}-{}.exr", kPainted, input.stem().string(),
+                                 std::hash<std::string>()(place), getpid(), map);
 }
 
 void UserState::keep_painted(double now, Document& document) {
@@ -115,11 +129,15 @@ void UserState::write_painted(Document& document) {
 std::vector<std::filesystem::path> UserState::claim_painted(const std::filesystem::path& input) {
     std::vector<std::filesystem::path> found, claimed;
     if (folder_.empty()) return claimed;
-    const std::string start = name_painted(input, "").stem().string();
+    std::string start = name_painted(input, "").stem().string();
+    start.resize(start.size() - fmt::format("{}-", getpid()).size());
     std::error_code code;
     for (auto file = std::filesystem::directory_iterator(folder_, code);
-         !code && file != std::filesystem::directory_iterator(); file.increment(code))
-        if (file->path().filename().string().starts_with(start)) found.push_back(file->path());
+         !code && file != std::filesystem::directory_iterator(); file.increment(code)) {
+        const std::string name = file->path().filename().string();
+        if (name.starts_with(start) && !is_of_another(std::string_view(name).substr(start.size())))
+            found.push_back(file->path());
+    }
     const int64_t now = std::chrono::system_clock::now().time_since_epoch() / std::chrono::microseconds(1);
     for (const std::filesystem::path& file : found) {
         const std::filesystem::path kept =

@@ -46,6 +46,8 @@ class Workbench {
     // Files. Errors become messages.
     void open(const SceneInput& input);
     bool is_loading() const { return loading_.valid(); }
+    /// Why the file that was opened last could not be read; empty: it was.
+    const std::string& load_error() const { return load_error_; }
     /// A dropped file: a scene or mesh is opened; a map goes onto the mesh, an HDR becomes the environment.
     void drop(const std::filesystem::path& file);
     bool save(const std::filesystem::path& file);
@@ -71,6 +73,7 @@ class Workbench {
 
     // What is open and how it is seen.
     Document* document() { return document_.get(); }
+    const Document* document() const { return document_.get(); }
     const OrbitCamera& camera() const { return camera_; }
     void change_camera(const std::function<void(OrbitCamera&)>& change);
     void frame_all();
@@ -210,7 +213,7 @@ class Workbench {
     std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
     bool is_denoised_ = false;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
-    std::string message_, last_error_;
+    std::string message_, last_error_, load_error_;
     cli::PixelExplanation explanation_;
     std::optional<Vec2f> explained_pixel_;
     std::optional<uint32_t> selected_object_;

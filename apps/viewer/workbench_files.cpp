@@ -88,6 +88,7 @@ void Workbench::start(Load load) {
 void Workbench::adopt(Loaded loaded) {
     has_news_ = true;
     message_ = loaded.error;
+    load_error_ = loaded.error;
     if (!loaded.loaded) {
         watch_files();
         return;
@@ -96,6 +97,7 @@ void Workbench::adopt(Loaded loaded) {
     painter_.reset();
     if (document_) state_.keep_now(*document_);
     document_ = std::make_unique<Document>(loaded.input, std::move(loaded.loaded->scene));
+    document_->set_doubts(std::move(loaded.loaded->doubts));
     shot_ = std::move(loaded.loaded->shot);
     frames_ = shot_ ? shot_->frames() : std::vector<int>();
     std::ranges::sort(frames_);
@@ -113,6 +115,7 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
     if (!given_.seed) image.seed = picture.seed.value_or(0);
     if (!scene.warnings.empty()) message_ = scene.warnings.front();
+    if (!document_->doubts().empty()) message_ = document_->doubts().front();
     if (const auto painted = state_.claim_painted(loaded.input.file); !painted.empty())
         message_ = fmt::format("painted before and not saved: {}", painted.front().string());
     state_.add_recent(loaded.input.file);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include "common/texel_values.h"
@@ -103,6 +105,21 @@ TEST_F(KeptPaint, is_forgotten_once_it_was_saved) {
     document.save(folder_ / "painted.json", image_);
     state.forget_painted();
     EXPECT_TRUE(state.claim_painted(document.input().file).empty());
+}
+
+TEST_F(KeptPaint, stays_with_a_viewer_that_still_runs) {
+    Document document = open_document();
+    paint(document, 0.25f);
+    UserState state(this->state());
+    state.keep_now(document);
+    // As if process 1, which always runs, had kept it.
+    const std::filesystem::path kept = *std::filesystem::directory_iterator(this->state());
+    std::string name = kept.string();
+    const std::string process = "-" + std::to_string(getpid()) + "-";
+    name.replace(name.rfind(process), process.size(), "-1-");
+    std::filesystem::rename(kept, name);
+    EXPECT_TRUE(state.claim_painted(document.input().file).empty());
+    EXPECT_TRUE(std::filesystem::exists(name));
 }
 
 TEST_F(KeptPaint, a_file_that_comes_later_is_reported) {
