@@ -1,5 +1,6 @@
 #include "viewer/window.h"
 
+#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <utility>
@@ -17,6 +18,12 @@
 namespace relief::viewer {
 
 namespace {
+
+/// Linear value of a byte in sRGB (IEC 61966-2-1).
+float decode_byte(uint8_t byte) {
+    const float x = float(byte) / 255;
+    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
 
 /// What GLFW said last: it tells errors by a call, not by exceptions.
 std::string& get_last_error() {
@@ -268,13 +275,13 @@ void Window::save_screenshot() {
     glfwGetFramebufferSize(window_, &image.width, &image.height);
     image.full_width = image.width, image.full_height = image.height;
     image.channels = {"R", "G", "B"};
-    image.metadata["relief:display"] = "raw";
+    image.metadata["relief:display"] = "standard"; // the bytes are sRGB, and stay what they are
     const size_t row = 3 * size_t(image.width);
     std::vector<uint8_t> bytes(row * size_t(image.height));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
     for (size_t y = size_t(image.height); y-- > 0;) // OpenGL begins at the bottom
-        for (size_t k = 0; k < row; ++k) image.pixels.push_back(float(bytes[y * row + k]) / 255);
+        for (size_t k = 0; k < row; ++k) image.pixels.push_back(decode_byte(bytes[y * row + k]));
     write_image(image, file);
 }
 
