@@ -10,25 +10,16 @@
 #include <fmt/format.h>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 
 namespace relief::cli {
+
+using namespace vectors;
 
 namespace {
 
 /// Of an explanation.
 constexpr int kPathCount = 6;
-
-// The command uses the public value types only; this is all the arithmetic it needs.
-Vec3f add_scaled(const Vec3f& a, const Vec3f& b, float s) {
-    return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-Vec3f cross(const Vec3f& a, const Vec3f& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Vec3f normalize(const Vec3f& a) {
-    const float length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-    return {a.x / length, a.y / length, a.z / length};
-}
 
 std::string format_vector(const Vec3f& a) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", a.x, a.y, a.z); }
 
@@ -54,14 +45,14 @@ std::string describe_texel(const Displacement& map, const Vec2f& uv) {
 std::string describe_hit(const Scene& scene, const Ray& ray, const RayHit& hit, const Vec2f& uv) {
     if (hit.object == kNoIndex) return "hit      nothing: the ray leaves the scene\n";
     const Object& object = scene.objects[hit.object];
-    std::string text = fmt::format(
-        "object   {} '{}', mesh '{}'\n"
-        "patch    {} at (u, v) = ({:.6g}, {:.6g})\n"
-        "t        {:.7g}\n"
-        "position {}\n"
-        "normal   {}\n",
-        hit.object, object.name, scene.meshes[object.mesh].name, hit.patch, hit.uv.x, hit.uv.y, hit.t,
-        format_vector(add_scaled(ray.origin, ray.direction, hit.t)), format_vector(hit.normal));
+    std::string text =
+        fmt::format("object   {} '{}', mesh '{}'\n"
+                    "patch    {} at (u, v) = ({:.6g}, {:.6g})\n"
+                    "t        {:.7g}\n"
+                    "position {}\n"
+                    "normal   {}\n",
+                    hit.object, object.name, scene.meshes[object.mesh].name, hit.patch, hit.uv.x, hit.uv.y,
+                    hit.t, format_vector(ray.origin + ray.direction * hit.t), format_vector(hit.normal));
     if (object.displacement != kNoIndex) text += describe_texel(scene.displacements[object.displacement], uv);
     return text;
 }
@@ -88,7 +79,7 @@ Vec3f choose_direction(const Vec3f& normal, std::mt19937& random) {
     std::uniform_real_distribution<float> number(0, 1);
     const float z = 1 - 2 * number(random), turn = 6.2831853f * number(random);
     const float radius = std::sqrt(std::max(0.0f, 1 - z * z));
-    const Vec3f sum = add_scaled(normal, {radius * std::cos(turn), radius * std::sin(turn), z}, 0.999f);
+    const Vec3f sum = normal + Vec3f{radius * std::cos(turn), radius * std::sin(turn), z} * 0.999f;
     return normalize(sum);
 }
 
@@ -98,7 +89,7 @@ std::vector<Vec3f> trace_path(const Intersector& intersector, Ray ray, RayHit hi
     const float reach = hit.t; // of a line that leaves the scene
     std::vector<Vec3f> corners = {ray.origin};
     for (int bounce = 0; hit.object != kNoIndex; ++bounce) {
-        corners.push_back(add_scaled(ray.origin, ray.direction, hit.t));
+        corners.push_back(ray.origin + ray.direction * hit.t);
         if (bounce == bounces) return corners;
         const Vec3f& n = hit.normal;
         const bool is_behind = n.x * ray.direction.x + n.y * ray.direction.y + n.z * ray.direction.z > 0;
@@ -107,7 +98,7 @@ std::vector<Vec3f> trace_path(const Intersector& intersector, Ray ray, RayHit hi
         ray.t_min = 1e-4f * reach;
         hit = intersector.closest_hit(ray);
     }
-    corners.push_back(add_scaled(ray.origin, ray.direction, 0.3f * reach));
+    corners.push_back(ray.origin + ray.direction * (0.3f * reach));
     return corners;
 }
 
@@ -128,7 +119,7 @@ std::string describe_colour(const RenderResult& result, const RenderSettings& se
 
 Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
     constexpr double kPi = 3.14159265358979323846;
-    const Vec3f forward = normalize(add_scaled(camera.to, camera.from, -1));
+    const Vec3f forward = normalize(camera.to - camera.from);
     const Vec3f right = normalize(cross(forward, camera.up));
     const Vec3f up = cross(right, forward);
     const float half_height = float(std::tan(double(camera.fov_degrees) * kPi / 360));
@@ -138,7 +129,7 @@ Ray make_pixel_ray(const Camera& camera, int width, int height, int x, int y) {
     const float down = (float(y) + 0.5f - 0.5f * height_pixels - camera.shift.y * height_pixels) * scale;
     Ray ray;
     ray.origin = camera.from;
-    ray.direction = normalize(add_scaled(add_scaled(forward, right, across), up, -down));
+    ray.direction = normalize(forward + right * across - up * down);
     return ray;
 }
 

@@ -13,10 +13,12 @@
 #include <unistd.h>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 #include "relief/io.h"
-#include "viewer/vectors.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

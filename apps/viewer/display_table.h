@@ -13,7 +13,7 @@ namespace relief::viewer {
 /// Display transforms that write_image knows: the first is the default.
 inline constexpr const char* kDisplayNames[] = {"agx", "aces", "filmic", "standard", "raw"};
 
-/// To [0, 1]; what is no number becomes 0.
+/// To [0, 1]; NaN becomes 0.
 inline float clamp_to_unit(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
 
 inline uint8_t round_to_byte(float value) { return uint8_t(clamp_to_unit(value) * 255 + 0.5f); }

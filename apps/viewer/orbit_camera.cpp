@@ -1,12 +1,13 @@
 #include "viewer/orbit_camera.h"
+#include "common/vectors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "viewer/vectors.h"
-
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

@@ -5,10 +5,12 @@
 #include <utility>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 #include "viewer/orbit_camera.h"
-#include "viewer/vectors.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

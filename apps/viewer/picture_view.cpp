@@ -1,4 +1,5 @@
 #include "viewer/picture_view.h"
+#include "common/vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "viewer/vectors.h"
-
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

@@ -1,13 +1,14 @@
 #include "viewer/surface_point.h"
+#include "common/vectors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "viewer/vectors.h"
-
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 #include "relief/convert.h"
-#include "viewer/vectors.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

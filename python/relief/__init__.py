@@ -9,7 +9,8 @@
 Scene, Mesh, Displacement, Material, Camera, Light, Environment: what is rendered, with the keys of scene files.
 render, Session, Picture: pictures, at once or while maps are painted.
 Intersector, Hits: batches of rays. trees: structures and traversals to compare.
-parse_frames, name_frame: shots, frame by frame. inspect, convert: what maps and meshes are; maps in other conventions. Error: what all of these raise.
+parse_frames, name_frame: shots, frame by frame. Error: what all of these raise.
+inspect, convert: what maps and meshes are; maps in other conventions.
 
 Lengths are scene units, y is up, angles degrees, colours linear Rec.709."""
 from . import trees

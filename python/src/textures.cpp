@@ -10,8 +10,8 @@
 
 #include "arrays.h"
 #include "base/parallel.h"
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 
 namespace nb = nanobind;
 

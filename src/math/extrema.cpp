@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "math/half.h"
 #include "math/lane_targets.h"
+#include "relief/half.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "math/extrema.cpp"

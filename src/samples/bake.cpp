@@ -3,8 +3,8 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "math/half.h"
 #include "math/vec.h"
+#include "relief/half.h"
 
 namespace relief::samples {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "math/half.h"
+#include "relief/half.h"
 
 namespace relief {
 

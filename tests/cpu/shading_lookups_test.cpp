@@ -9,7 +9,7 @@
 #include "formulas/environment.h"
 #include "formulas/sobol.h"
 #include "formulas/warp.h"
-#include "math/half.h"
+#include "relief/half.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // Lights of scene files: read, refused, written.
 #include "io/scene/scene_reader.h"
 #include "io/test_files.h"
-#include "math/half.h"
+#include "relief/half.h"
 #include "relief/io.h"
 
 namespace relief {

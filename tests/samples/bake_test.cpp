@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "math/half.h"
+#include "relief/half.h"
 #include "samples/lathe.h"
 #include "samples/outline.h"
 #include "samples/plates.h"

@@ -9,8 +9,8 @@
 
 #include "base/parallel.h"
 #include "math/affine.h"
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 #include "samples/models.h"
 #include "samples/noise.h"
 #include "surface/patch/surface.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 #include "surface/map/gutter.h"
 #include "surface/map/spline_coefficients.h"
 #include "surface/map/texels.h"

@@ -5,13 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "common/explain_pixel.h"
+#include "common/vectors.h"
 #include "viewer/navigation.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/resolution_governor.h"
 #include "viewer/surface_point.h"
-#include "viewer/vectors.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 #include "relief/session.h"
 #include "viewer/fixture.h"
 #include "viewer/painter.h"
-#include "viewer/vectors.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 namespace {
 

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "common/texel_values.h"
-#include "math/half.h"
 #include "relief/io.h"
 #include "viewer/conventions.h"
 #include "viewer/display_table.h"
@@ -15,18 +14,6 @@
 #include "viewer/picture_view.h"
 
 namespace relief::viewer {
-
-TEST(TexelValues, halves_are_those_of_the_library) {
-    for (uint32_t bits = 0; bits < 0x10000; ++bits) {
-        const float wide = widen_half(uint16_t(bits));
-        if (std::isnan(wide)) continue;
-        ASSERT_EQ(wide, half_to_float(uint16_t(bits)));
-        if (std::isinf(wide)) continue;
-        ASSERT_EQ(round_to_half(wide), bits);
-        for (const float factor : {1.0003f, 0.9996f, 1.0007f})
-            ASSERT_EQ(round_to_half(wide * factor), float_to_half(wide * factor));
-    }
-}
 
 TEST(TexelValues, a_step_adds_what_decoding_finds) {
     Displacement map;

@@ -10,13 +10,15 @@
 #include <gtest/gtest.h>
 
 #include "common/texel_values.h"
+#include "common/vectors.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/event_script.h"
-#include "viewer/vectors.h"
 #include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
+
+using namespace vectors;
 
 TEST_F(WorkbenchTest, turned_changed_and_saved_it_renders_to_what_was_seen) {
     open_scene();

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/gpu_fixture.h"
 #include "vulkan/layout/bindings.h"

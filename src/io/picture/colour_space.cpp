@@ -10,8 +10,8 @@
 #include "base/suggest.h"
 #include "formulas/tonemap.h"
 #include "io/picture/picture_library.h"
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 
 namespace relief {
 

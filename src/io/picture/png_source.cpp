@@ -13,7 +13,7 @@
 #include <png.h>
 
 #include "io/picture/picture_error.h"
-#include "math/half.h"
+#include "relief/half.h"
 
 namespace relief {
 

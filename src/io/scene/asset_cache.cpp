@@ -9,8 +9,8 @@
 #include "formulas/tonemap.h"
 #include "io/picture/colour_space.h"
 #include "io/scene/tile_names.h"
-#include "math/half.h"
 #include "relief/error.h"
+#include "relief/half.h"
 #include "relief/io.h"
 
 namespace relief {

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "formulas/mips.h"
-#include "math/half.h"
+#include "relief/half.h"
 #include "surface/map/texels.h"
 
 namespace relief {

@@ -7,7 +7,7 @@
 
 #include "formulas/displace.h"
 #include "formulas/texel.h"
-#include "math/half.h"
+#include "relief/half.h"
 #include "relief/scene.h"
 
 namespace relief {

@@ -1,4 +1,5 @@
-// IEEE 754 binary16 to float, exact, and back, rounded to nearest.
+// Texels of half precision (Texture::halves, IEEE 754 binary16) as floats: exact, and back, rounded to
+// nearest.
 #pragma once
 
 #include <bit>
@@ -6,6 +7,7 @@
 
 namespace relief {
 
+/// Infinities and NaN stay what they are.
 inline float half_to_float(uint16_t half) {
     const uint32_t sign = uint32_t(half & 0x8000u) << 16;
     const uint32_t exponent_and_mantissa = uint32_t(half & 0x7fffu) << 13;

@@ -1,11 +1,12 @@
-// The arithmetic of points and directions that the viewer needs: the public value types have none.
+// The arithmetic of points and directions that programs need: the public value types have none. In a
+// namespace of its own, since the library has operators of the same names.
 #pragma once
 
 #include <cmath>
 
 #include "relief/types.h"
 
-namespace relief::viewer {
+namespace relief::vectors {
 
 inline Vec3f operator+(const Vec3f& a, const Vec3f& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec3f operator-(const Vec3f& a, const Vec3f& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -43,4 +44,4 @@ inline Vec3f untransform_vector(const Affine& m, const Vec3f& v) {
     return Vec3f{dot(v, cross(b, c)), dot(a, cross(v, c)), dot(a, cross(b, v))} * (1 / determinant);
 }
 
-} // namespace relief::viewer
+} // namespace relief::vectors
