@@ -36,8 +36,8 @@ async function follow() {
       after = answer.headers.get("X-Relief-Version");
       text.textContent = decodeURIComponent(answer.headers.get("X-Relief-Text"));
       const url = URL.createObjectURL(await answer.blob());
-      picture.src = url;
-      await picture.decode().catch(() => {});
+      // Not decode(): it waits as long as the page is hidden.
+      await new Promise(done => { picture.onload = picture.onerror = done; picture.src = url; });
       if (last) URL.revokeObjectURL(last);
       last = url;
     } catch (error) {
