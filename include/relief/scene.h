@@ -23,6 +23,7 @@ inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
 inline constexpr float kMaxNormalScale = 1000;
 inline constexpr float kMaxLensShift = 100;     ///< either way
+inline constexpr float kMaxShutter = 16;        ///< frames from that of the picture, either way
 inline constexpr float kInfiniteSharpness = 10; ///< of a crease
 inline constexpr size_t kMaxLightGroupName = 64;
 
@@ -305,6 +306,9 @@ struct Camera {
     /// Of the lens: the middle of the picture lies so far to the right and above of the view axis, in heights
     /// of the picture.
     Vec2f shift{0, 0};
+    /// The shutter is open from and to so many frames after that of the picture, in [-kMaxShutter,
+    /// kMaxShutter], open <= close; equal: for an instant.
+    float shutter_open = 0, shutter_close = 0;
 };
 
 /// Latitude-longitude environment map of radiance; the centre of the image is seen along -z, rotated by
@@ -366,6 +370,15 @@ struct Scene {
     std::string source;                ///< scene or mesh file, for messages
     uint64_t hash = 0;                 ///< of the content that determines the picture; 0: built in memory
     std::vector<std::string> warnings; ///< from the reader
+};
+
+/// What differs in a scene at another time.
+struct SceneUpdate {
+    /// All of it, but that meshes which are as they were before are empty; nullopt: nothing but the camera
+    /// differs.
+    std::optional<Scene> scene;
+    Camera camera;
+    uint64_t scene_hash = 0; ///< of all that is to be seen then, as Scene::hash
 };
 
 /// Checks all indices and ranges, and that values are finite. Throws Error{bad_input} naming the offending

@@ -53,9 +53,9 @@ uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
 
 uint64_t hash_view(uint64_t hash, const Camera& camera) {
     ContentHash sum(hash);
-    const auto& [from, to, up, fov_degrees, aperture_radius, focus_distance, shift] = camera;
+    const auto& [from, to, up, fov_degrees, aperture_radius, focus_distance, shift, open, close] = camera;
     sum.add(std::vector<Vec3f>{from, to, up});
-    sum.add(std::vector<float>{fov_degrees, aperture_radius, focus_distance, shift.x, shift.y});
+    sum.add(std::vector<float>{fov_degrees, aperture_radius, focus_distance, shift.x, shift.y, open, close});
     return sum.value();
 }
 

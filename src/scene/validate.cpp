@@ -397,6 +397,11 @@ void validate_camera(const Camera& camera) {
         fail(where, fmt::format("focus_distance is {}, not above 0", camera.focus_distance));
     check_range(where, "shift", camera.shift.x, -kMaxLensShift, kMaxLensShift);
     check_range(where, "shift", camera.shift.y, -kMaxLensShift, kMaxLensShift);
+    for (const float end : {camera.shutter_open, camera.shutter_close})
+        check_range(where, "shutter", end, -kMaxShutter, kMaxShutter);
+    if (camera.shutter_open > camera.shutter_close)
+        fail(where, fmt::format("the shutter opens at {} and closes before that, at {}", camera.shutter_open,
+                                camera.shutter_close));
 }
 
 void validate_scene(const Scene& scene) {

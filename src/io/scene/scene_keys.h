@@ -15,7 +15,7 @@ inline constexpr auto kRoot = make_keys("version", "render", "camera", "environm
 inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed", "frames");
 inline constexpr auto kKeyed = make_keys("keys", "interpolation");
 inline constexpr auto kCamera =
-    make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift");
+    make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift", "shutter");
 inline constexpr auto kEnvironment =
     make_keys("file", "color_space", "color", "strength", "rotate_degrees", "light_group");
 inline constexpr auto kMaterial = make_keys(

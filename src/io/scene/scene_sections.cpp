@@ -136,6 +136,13 @@ Camera read_camera(const JsonNode& node) {
     if (distance > 0) camera.focus_distance = distance;
     read_float(node, "focus_distance", camera.focus_distance, FLT_MIN);
     if (const auto shift = node.find("shift")) camera.shift = shift->as_vec2(-kMaxLensShift, kMaxLensShift);
+    if (const auto shutter = node.find("shutter")) {
+        const Vec2f times = shutter->as_vec2(-kMaxShutter, kMaxShutter);
+        if (times.x > times.y)
+            shutter->fail("the shutter opens after it closes",
+                          "[open, close], in frames, for example [-0.25, 0.25]");
+        camera.shutter_open = times.x, camera.shutter_close = times.y;
+    }
     return camera;
 }
 

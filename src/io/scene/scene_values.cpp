@@ -31,6 +31,8 @@ Json write_camera(const Camera& camera) {
                  {"aperture_radius", to_json(camera.aperture_radius)},
                  {"focus_distance", to_json(camera.focus_distance)}};
     if (camera.shift != Vec2f{}) node["shift"] = {to_json(camera.shift.x), to_json(camera.shift.y)};
+    if (camera.shutter_open != 0 || camera.shutter_close != 0)
+        node["shutter"] = {to_json(camera.shutter_open), to_json(camera.shutter_close)};
     return node;
 }
 
