@@ -39,13 +39,23 @@ class Shot {
     /// Whether any value or file depends on the frame.
     bool is_animated() const;
 
-    /// The scene file and all files that it names at a frame; reads none of them. Throws Error{bad_input} for
-    /// one that is not there.
+    /// The scene file and all files that a frame reads, those beside it that its shutter sees too; reads none
+    /// of them. Throws Error{bad_input} for one that is not there.
     std::vector<std::filesystem::path> list_files(double frame) const;
 
-    /// The scene at a frame, which may lie between two: files of its whole part, values in between. Textures
-    /// of the last call are not read again. Throws as load_scene.
+    /// The scene at a frame, which may lie between two: values and the numbered files of displacements and
+    /// meshes are blended linearly there, halves to halves; other numbered files are those of the whole part.
+    /// Between frames the first and the last file of a sequence last. Scene::hash of a whole frame with an
+    /// open shutter is of all that the shutter sees. Textures of the last call are not read again. Throws as
+    /// load_scene.
     Scene load(double frame);
+
+    /// The same as what differs from what load() or update() returned last: all of it where that was
+    /// nothing. Reads no file twice for times less than a shutter apart. The first and last files of
+    /// sequences last at all times. Throws as load_scene, and the next call returns all of the scene; values
+    /// that fit for themselves but not together, such as the names of linked objects, are left to whoever
+    /// takes the scene.
+    SceneUpdate update(double frame);
 
     /// What a frame has for itself if all else is as load() returned it last.
     struct View {

@@ -130,11 +130,11 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     if (given && use == TextureUse::data && channel == 0) return given;
     const fs::path path = given ? fs::path(file) : resolve(file);
     const TextureKey key(path.string(), use, channel, space);
-    std::shared_ptr<const Texture>& cached = textures_[key];
-    if (cached) return cached;
-    if (const auto earlier = earlier_.find(key); earlier != earlier_.end()) return cached = earlier->second;
+    Kept<Texture>& cached = textures_[key];
+    cached.frame = frame_;
+    if (cached.value) return cached.value;
     auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
-    return cached = decode(std::move(texture), use, channel, space);
+    return cached.value = decode(std::move(texture), use, channel, space);
 }
 
 std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> texture, TextureUse use,
@@ -168,10 +168,11 @@ std::vector<MapTile> AssetCache::load_given_tiles(const std::string& pattern, Te
 
 std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse use, uint32_t channel,
                                             const std::string& space) {
+    if (const SequenceFiles* files = find_blend(file)) return load_blend(*files);
     std::vector<MapTile> tiles;
     if (!has_tile_token(file)) {
         tiles.push_back({1001, load(file, use, channel, space)});
-        if (find_given(file)) return tiles;
+        if (find_given(file) || !single_tiles_.insert(file).second) return tiles;
         if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
             warnings_.push_back(
                 fmt::format("{}: is one tile of several, and the only one read; name them all "

@@ -1,14 +1,19 @@
-// Textures of one scene: each file is read once and shared.
+// Textures and numbered meshes of one scene: each file is read once and shared, also between frames.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "io/scene/file_sequence.h"
 #include "relief/io.h"
 #include "relief/scene.h"
 
@@ -27,6 +32,8 @@ class AssetCache {
     explicit AssetCache(std::filesystem::path folder, SceneAssets given = {})
         : folder_(std::move(folder)), given_(std::move(given)) {}
 
+    const std::filesystem::path& folder() const { return folder_; }
+
     std::filesystem::path resolve(const std::string& file) const;
     /// `channel`, from 0, comes first in the texture; `space` of colours and radiance: as the file holds them
     /// (io/picture/colour_space.h), empty for sRGB where integers are colours and else linear Rec.709; of
@@ -43,10 +50,22 @@ class AssetCache {
         return load_tiles(file, TextureUse::data);
     }
 
-    /// Textures of another cache are not read again.
-    void reuse(AssetCache& other) { earlier_ = std::move(other.textures_); }
-    /// Those of it that were not asked for are let go.
-    void forget_earlier() { earlier_.clear(); }
+    /// Another reading of the scene begins: it is warned of all again.
+    void begin() { single_tiles_.clear(), warnings_.clear(); }
+    /// What is loaded from now on belongs to a frame; names that name_blend() made are known no more.
+    void set_frame(int64_t frame) { frame_ = frame, sequences_.clear(); }
+    /// Makes name_blend(files), and the name of one alone, stand for these files of a sequence.
+    void add_sequence(const SequenceFiles& files) { sequences_[name_blend(files)] = files; }
+    /// Meshes of sequences stay, though no two of them are blended.
+    void keep_meshes(bool is_wanted) { keeps_meshes_ = is_wanted; }
+    /// Lets go of what nobody uses and belongs to none of the frames from `first` to `last`.
+    void forget(int64_t first, int64_t last);
+
+    /// Throws as load_mesh and blend_meshes.
+    Mesh load_polygons(const std::string& file, const MeshReadOptions& options);
+    /// Throws as check_finite does for one of the tiles; each texture is looked at once.
+    void require_finite(const std::vector<MapTile>& tiles, bool is_udim);
+
     /// Moves a mesh in memory out of the assets; nullopt for a file. Throws Error{bad_input} the second time.
     std::optional<Mesh> take_mesh(const std::string& file);
 
@@ -60,10 +79,31 @@ class AssetCache {
     std::vector<MapTile> load_given_tiles(const std::string& pattern, TextureUse use, uint32_t channel,
                                           const std::string& space);
 
+    const SequenceFiles* find_blend(const std::string& file) const;
+    std::vector<MapTile> load_blend(const SequenceFiles& files);
+    std::shared_ptr<const Mesh> load_kept(const std::string& file, const MeshReadOptions& options,
+                                          int64_t frame);
+
+    /// What was read, and the frame that it belongs to.
+    template <class Value> struct Kept {
+        std::shared_ptr<const Value> value;
+        int64_t frame = 0;
+    };
+    /// Of a blend: nobody but its scene needs it.
+    static constexpr int64_t kNoFrame = std::numeric_limits<int64_t>::min();
+    /// Stays apart from other pointers though its texture may be gone.
+    using Seen = std::set<std::weak_ptr<const Texture>, std::owner_less<>>;
+
     std::filesystem::path folder_;
     using TextureKey = std::tuple<std::string, TextureUse, uint32_t, std::string>;
     SceneAssets given_;
-    std::map<TextureKey, std::shared_ptr<const Texture>> textures_, earlier_;
+    std::map<TextureKey, Kept<Texture>> textures_;
+    std::map<std::pair<std::string, int>, Kept<Mesh>> meshes_; ///< by name and uv set
+    std::map<std::string, SequenceFiles> sequences_;
+    Seen finite_;
+    int64_t frame_ = 1;
+    bool keeps_meshes_ = false;
+    std::set<std::string> single_tiles_; ///< names that were looked at
     std::vector<std::string> warnings_;
 };
 

@@ -127,7 +127,7 @@ Displacement read_displacement_map(const DisplacementRequest& request, AssetCach
 
 Displacement make_displacement(const DisplacementRequest& request, AssetCache& assets) {
     Displacement map = read_displacement_map(request, assets);
-    for (const MapTile& tile : map.tiles) check_finite(*tile.texture, map.is_udim ? tile.udim : 0);
+    assets.require_finite(map.tiles, map.is_udim);
     return map;
 }
 

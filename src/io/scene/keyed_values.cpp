@@ -15,6 +15,12 @@
 
 namespace relief {
 
+bool has_keys(const Json& value) {
+    if (!value.is_object()) return false;
+    const auto keys = value.find("keys");
+    return keys != value.end() && keys->is_array();
+}
+
 namespace {
 
 using Numbers = std::vector<double>;
@@ -23,12 +29,6 @@ using Quaternion = std::array<double, 4>; // w x y z
 enum class Interpolation { linear, step, smooth };
 
 constexpr double kMostFrames = 1e9;
-
-bool has_keys(const Json& value) {
-    if (!value.is_object()) return false;
-    const auto keys = value.find("keys");
-    return keys != value.end() && keys->is_array();
-}
 
 /// Keys whose texts are names of files.
 bool names_file(std::string_view key) {
@@ -222,28 +222,52 @@ std::string join_path(const std::string& path, const std::string& key) {
     return path.empty() ? key : path + "." + key;
 }
 
-Json evaluate(const Json& value, std::string_view key, const std::string& path, double frame,
-              const std::string& file) {
+/// The file of a displacement or mesh.
+bool names_shape(std::string_view key, std::string_view path) {
+    return key == "file" && (path.starts_with("displacements.") || path.starts_with("meshes."));
+}
+
+std::string name_at(const std::string& pattern, bool is_shape, const Moment& moment) {
+    if (!moment.name_file || fill_frame_number(pattern, 0) == pattern)
+        return fill_frame_number(pattern, moment.frame);
+    return (*moment.name_file)(pattern, moment.frame, is_shape ? FileUse::shape : FileUse::other);
+}
+
+Json evaluate(const Json& value, std::string_view key, const std::string& path, const Moment& moment) {
     if (has_keys(value)) {
-        const JsonNode node(value, path, file);
+        const JsonNode node(value, path, moment.file);
         if (key == "matrix")
             node.fail("a matrix has no values in between that turn and keep their size",
                       "keys of translate, rotate_degrees and scale");
-        return evaluate(evaluate_track(read_track(value, node), key, frame), key, path, frame, file);
+        return evaluate(evaluate_track(read_track(value, node), key, moment.frame), key, path, moment);
     }
-    if (value.is_string() && names_file(key)) return fill_frame_number(value.get<std::string>(), frame);
+    if (value.is_string() && names_file(key))
+        return name_at(value.get_ref<const std::string&>(), names_shape(key, path), moment);
     if (value.is_object()) {
         Json result = Json::object();
         for (const auto& [name, member] : value.items())
-            result[name] = evaluate(member, name, join_path(path, name), frame, file);
+            result[name] = evaluate(member, name, join_path(path, name), moment);
         return result;
     }
     if (!value.is_array()) return value;
     Json result = Json::array();
     for (size_t k = 0; k < value.size(); ++k)
-        result.push_back(evaluate(value[k], key, fmt::format("{}[{}]", path, k), frame, file));
+        result.push_back(evaluate(value[k], key, fmt::format("{}[{}]", path, k), moment));
     return result;
 }
+
+/// Those at and around [low, high], and one more on either side, which smooth curves depend on.
+Json choose_keys(const Json& keys, double low, double high) {
+    const auto frame_of = [&](size_t k) { return keys[k].at(0).get<double>(); };
+    size_t begin = 0, end = keys.size();
+    while (begin + 2 < end && frame_of(begin + 2) <= low) ++begin;
+    while (begin + 3 <= end && frame_of(end - 3) >= high) --end;
+    Json result = Json::array();
+    for (size_t k = begin; k < end; ++k) result.push_back(keys[k]);
+    return result;
+}
+
+} // namespace
 
 bool depends_on_frame(const Json& value, std::string_view key) {
     if (has_keys(value)) return true;
@@ -260,8 +284,6 @@ bool depends_on_frame(const Json& value, std::string_view key) {
            std::ranges::any_of(value, [&](const Json& element) { return depends_on_frame(element, key); });
 }
 
-} // namespace
-
 bool is_animated(const Json& document) { return depends_on_frame(document, ""); }
 
 void check_frame(double frame) {
@@ -271,7 +293,22 @@ void check_frame(double frame) {
 }
 
 Json evaluate_frame(const Json& document, double frame, const std::string& file) {
-    return evaluate(document, "", "", frame, file);
+    return evaluate_value(document, "", {frame, file});
+}
+
+Json evaluate_value(const Json& value, const std::string& path, const Moment& moment) {
+    const size_t dot = path.rfind('.');
+    const std::string key = path.ends_with(']') ? "" : dot == std::string::npos ? path : path.substr(dot + 1);
+    return evaluate(value, key, path, moment);
+}
+
+Json trim_keys(const Json& value, double low, double high) {
+    Json result = value;
+    if (has_keys(value))
+        result["keys"] = choose_keys(value["keys"], low, high);
+    else if (value.is_structured())
+        for (Json& member : result) member = trim_keys(member, low, high);
+    return result;
 }
 
 std::string fill_frame_number(const std::string& name, double frame) {

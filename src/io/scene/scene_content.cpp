@@ -5,22 +5,47 @@
 
 namespace relief {
 
-void add_scene_content(ContentHash& hash, const Scene& scene) {
-    for (const Mesh& mesh : scene.meshes) {
-        hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
-        hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
-        hash.add(mesh.tangents), hash.add(mesh.creases);
-        const Subdivision& subdivision = mesh.subdivision;
-        if (subdivision.scheme == SubdivisionScheme::none) continue;
+namespace {
+
+uint64_t hash_mesh(const Mesh& mesh) {
+    ContentHash hash;
+    hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
+    hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
+    hash.add(mesh.tangents), hash.add(mesh.creases);
+    const Subdivision& subdivision = mesh.subdivision;
+    if (subdivision.scheme != SubdivisionScheme::none)
         hash.add(std::array{uint32_t(subdivision.scheme), uint32_t(subdivision.level),
                             uint32_t(subdivision.uv), uint32_t(subdivision.boundary),
                             uint32_t(subdivision.creases)});
-    }
+    return hash.value();
+}
+
+uint64_t hash_texture(const Texture& texture) {
+    ContentHash hash;
+    hash.add(std::array{texture.width, texture.height, texture.channel_count});
+    hash.add(texture.floats), hash.add(texture.halves);
+    return hash.value();
+}
+
+} // namespace
+
+void add_scene_content(ContentHash& hash, const Scene& scene) { SceneContent().add_to(hash, scene); }
+
+uint64_t SceneContent::find_hash(const std::shared_ptr<const Texture>& texture) {
+    const auto [found, is_new] = textures_.try_emplace(texture);
+    if (is_new) found->second = hash_texture(*texture);
+    return found->second;
+}
+
+void SceneContent::add_to(ContentHash& hash, const Scene& scene) {
+    std::erase_if(textures_, [](const auto& entry) { return entry.first.expired(); });
+    meshes_.resize(scene.meshes.size());
+    for (size_t k = 0; k < meshes_.size(); ++k)
+        if (!scene.meshes[k].face_sizes.empty()) meshes_[k] = hash_mesh(scene.meshes[k]);
+    hash.add(meshes_);
     std::set<const Texture*> seen;
     const auto add_texture = [&](const std::shared_ptr<const Texture>& texture) {
-        if (!texture || !seen.insert(texture.get()).second) return;
-        hash.add(std::array{texture->width, texture->height, texture->channel_count});
-        hash.add(texture->floats), hash.add(texture->halves);
+        if (texture && seen.insert(texture.get()).second) hash.add(std::vector{find_hash(texture)});
     };
     for (const Displacement& displacement : scene.displacements)
         for (const MapTile& tile : displacement.tiles) {

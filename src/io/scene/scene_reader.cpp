@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,9 +12,8 @@
 #include "io/file_system.h"
 #include "io/mesh/point_ply.h"
 #include "io/scene/error_list.h"
+#include "io/scene/frame_reader.h"
 #include "io/scene/json_node.h"
-#include "io/scene/keyed_values.h"
-#include "io/scene/scene_content.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/subdivision_json.h"
@@ -25,8 +24,6 @@
 namespace relief {
 
 namespace {
-
-using NameIndex = std::unordered_map<std::string, uint32_t>;
 
 uint32_t find_named(const JsonNode& node, const NameIndex& index, const char* what) {
     const std::string name = node.as_string();
@@ -68,7 +65,7 @@ Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSet
     MeshReadOptions options;
     options.reader = reader;
     if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
-    return file.with_place([&] { return load_mesh(assets.resolve(file_name), options); });
+    return file.with_place([&] { return assets.load_polygons(file_name, options); });
 }
 
 Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
@@ -80,27 +77,9 @@ Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets
     return mesh;
 }
 
-struct ObjectNames {
-    NameIndex meshes, displacements, materials;
-};
-
-Object read_object(const JsonNode& node, const ObjectNames& names) {
-    node.check_keys(scene_keys::kObject);
-    Object object;
-    if (const auto name = node.find("name")) object.name = name->as_string();
-    object.mesh = find_named(node.get("mesh"), names.meshes, "mesh");
-    if (const auto found = node.find("displacement"))
-        object.displacement = find_named(*found, names.displacements, "displacement");
-    if (const auto found = node.find("material"))
-        object.material = find_named(*found, names.materials, "material");
-    if (const auto found = node.find("shadow_catcher")) object.is_shadow_catcher = found->as_bool();
-    if (const auto found = node.find("transform")) object.world_from_object = read_transform(*found);
-    return object;
-}
-
 /// The object once for each point of a file; the transform of the object moves them all.
-void add_instances(const JsonNode& node, const Object& object, const NameIndex& materials,
-                   const AssetCache& assets, std::vector<Object>& objects, ContentHash& hash) {
+std::vector<Object> make_instances(const JsonNode& node, const Object& object, const NameIndex& materials,
+                                   const AssetCache& assets, uint64_t& points_hash) {
     node.check_keys(scene_keys::kInstances);
     std::vector<uint32_t> choice;
     if (const auto names = node.find("materials"))
@@ -110,24 +89,17 @@ void add_instances(const JsonNode& node, const Object& object, const NameIndex& 
     const std::filesystem::path path = assets.resolve(file.as_string());
     const InstancePoints points = file.with_place([&] {
         const std::string bytes = read_file_bytes(path);
+        ContentHash hash;
         hash.add(bytes);
+        points_hash = hash.value();
         return parse_points(bytes, path.string(), choice.size());
     });
-    objects.reserve(objects.size() + points.transforms.size());
-    for (size_t k = 0; k < points.transforms.size(); ++k) {
-        objects.push_back(object);
-        objects.back().world_from_object = compose(object.world_from_object, points.transforms[k]);
-        if (!points.materials.empty()) objects.back().material = choice[points.materials[k]];
+    std::vector<Object> objects(points.transforms.size(), object);
+    for (size_t k = 0; k < objects.size(); ++k) {
+        objects[k].world_from_object = compose(object.world_from_object, points.transforms[k]);
+        if (!points.materials.empty()) objects[k].material = choice[points.materials[k]];
     }
-}
-
-void read_objects(const JsonNode& node, const ObjectNames& names, const AssetCache& assets, Scene& scene,
-                  ContentHash& hash) {
-    Object object = read_object(node, names);
-    if (const auto instances = node.find("instances"))
-        add_instances(*instances, object, names.materials, assets, scene.objects, hash);
-    else
-        scene.objects.push_back(std::move(object));
+    return objects;
 }
 
 /// Calls `read` for each element of a section, if it is there.
@@ -140,9 +112,31 @@ void read_list(const JsonNode& root, std::string_view key, ErrorList& errors, co
     for (const JsonNode& node : nodes) errors.attempt([&] { read(node); });
 }
 
-/// Content of files that the scene does not hold goes into `hash`.
-void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& scene, AssetCache& assets,
-               ContentHash& hash) {
+} // namespace
+
+Object SceneReader::read_object(const JsonNode& node) const {
+    node.check_keys(scene_keys::kObject);
+    Object object;
+    if (const auto name = node.find("name")) object.name = name->as_string();
+    object.mesh = find_named(node.get("mesh"), names_.meshes, "mesh");
+    if (const auto found = node.find("displacement"))
+        object.displacement = find_named(*found, names_.displacements, "displacement");
+    if (const auto found = node.find("material"))
+        object.material = find_named(*found, names_.materials, "material");
+    if (const auto found = node.find("shadow_catcher")) object.is_shadow_catcher = found->as_bool();
+    if (const auto found = node.find("transform")) object.world_from_object = read_transform(*found);
+    return object;
+}
+
+std::vector<Object> SceneReader::read_objects(const JsonNode& node, const AssetCache& assets,
+                                              uint64_t& points_hash) const {
+    const Object object = read_object(node);
+    const auto instances = node.find("instances");
+    if (!instances) return {object};
+    return make_instances(*instances, object, names_.materials, assets, points_hash);
+}
+
+void SceneReader::read_root(const JsonNode& root, AssetCache& assets) {
     root.check_keys(scene_keys::kRoot);
     if (const auto version = root.find("version"); version && version->as_integer(0, INT32_MAX) != 1)
         version->fail("only version 1 is known", "use a newer version of the program");
@@ -150,63 +144,100 @@ void read_root(const JsonNode& root, const MeshReaderSettings& reader, Scene& sc
     const auto read_node = [&](const char* key, const auto& read) {
         if (const auto node = root.find(key)) errors.attempt([&] { read(*node); });
     };
-    read_node("render", [&](const JsonNode& node) { scene.picture = read_picture(node); });
-    read_node("camera", [&](const JsonNode& node) { scene.camera = read_camera(node); });
+    read_node("render", [&](const JsonNode& node) { scene_.picture = read_picture(node); });
+    read_node("camera", [&](const JsonNode& node) { scene_.camera = read_camera(node); });
     read_node("environment",
-              [&](const JsonNode& node) { scene.environment = read_environment(node, assets); });
+              [&](const JsonNode& node) { scene_.environment = read_environment(node, assets); });
     errors.throw_if_any(); // before large files are read
-    ObjectNames names;
-    names.materials =
-        read_section(root, "materials", scene.materials, errors,
+    names_.materials =
+        read_section(root, "materials", scene_.materials, errors,
                      [&](const auto& name, const auto& n) { return read_material(n, name, assets); });
-    names.displacements =
-        read_section(root, "displacements", scene.displacements, errors,
+    names_.displacements =
+        read_section(root, "displacements", scene_.displacements, errors,
                      [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
-    names.meshes = read_section(root, "meshes", scene.meshes, errors, [&](const auto& name, const auto& n) {
-        return read_mesh(n, name, assets, reader);
+    names_.meshes = read_section(root, "meshes", scene_.meshes, errors, [&](const auto& name, const auto& n) {
+        return read_mesh(n, name, assets, reader_);
     });
-    read_list(root, "objects", errors,
-              [&](const JsonNode& node) { read_objects(node, names, assets, scene, hash); });
+    read_list(root, "objects", errors, [&](const JsonNode& node) {
+        ObjectRange range{scene_.objects.size(), 0, 0};
+        std::vector<Object> objects = read_objects(node, assets, range.points_hash);
+        range.count = objects.size();
+        std::ranges::move(objects, std::back_inserter(scene_.objects));
+        ranges_.push_back(range);
+    });
     read_list(root, "lights", errors,
-              [&](const JsonNode& node) { scene.lights.push_back(read_light(node, assets)); });
+              [&](const JsonNode& node) { scene_.lights.push_back(read_light(node, assets)); });
     errors.throw_if_any();
 }
 
-} // namespace
-
-/// Size, samples and frames of the picture may change without its being another picture.
-uint64_t hash_scene(const Json& document, uint64_t content_hash) {
-    nlohmann::json canonical = document; // sorts the keys
-    if (const auto render = canonical.find("render"); render != canonical.end())
-        for (const char* key : {"width", "height", "spp", "frames"}) render->erase(key);
-    ContentHash hash(content_hash);
-    hash.add(canonical.dump());
-    return hash.value();
-}
-
-ReadScene read_scene(const Json& document, AssetCache& assets, const std::string& name,
-                     const MeshReaderSettings& reader) {
-    ReadScene result;
-    Scene& scene = result.scene;
-    scene.source = name;
-    ContentHash content;
-    read_root(JsonNode(document, "", name), reader, scene, assets, content);
-    scene.warnings = std::move(assets.warnings());
+void SceneReader::read(const Json& document, AssetCache& assets) {
+    scene_.source = name_;
+    read_root(JsonNode(document, "", name_), assets);
+    scene_.warnings = std::move(assets.warnings());
     try {
-        validate_scene(scene);
+        validate_scene(scene_);
     } catch (const Error& error) {
-        throw Error(error.kind(), {error.message(), name + ": " + error.where(), error.hint()});
+        throw Error(error.kind(), {error.message(), name_ + ": " + error.where(), error.hint()});
     }
-    add_scene_content(content, scene);
-    result.content_hash = content.value();
-    scene.hash = hash_scene(document, result.content_hash);
-    return result;
 }
 
-std::vector<int> read_frames(const Json& document, const std::string& name) {
-    const auto render = JsonNode(document, "", name).find("render");
-    const auto frames = render ? render->find("frames") : std::nullopt;
-    return frames ? parse_frames_at(*frames) : std::vector<int>();
+void SceneReader::replace_objects(size_t index, std::vector<Object> objects) {
+    ObjectRange& range = ranges_.at(index);
+    const auto first = scene_.objects.begin() + ptrdiff_t(range.first);
+    if (objects.size() == range.count) {
+        std::ranges::move(objects, first);
+        return;
+    }
+    scene_.objects.erase(first, first + ptrdiff_t(range.count));
+    scene_.objects.insert(scene_.objects.begin() + ptrdiff_t(range.first),
+                          std::make_move_iterator(objects.begin()), std::make_move_iterator(objects.end()));
+    range.count = objects.size();
+    for (size_t k = index + 1; k < ranges_.size(); ++k)
+        ranges_[k].first = ranges_[k - 1].first + ranges_[k - 1].count;
+}
+
+void SceneReader::read_part(const ScenePart& part, const Json& value, AssetCache& assets) {
+    const JsonNode node(value, part.path, name_);
+    if (part.section == "render") {
+        scene_.picture = read_picture(node);
+    } else if (part.section == "camera") {
+        scene_.camera = read_camera(node);
+        node.with_place([&] { validate_camera(scene_.camera); });
+    } else if (part.section == "environment") {
+        scene_.environment = read_environment(node, assets);
+    } else if (part.section == "materials") {
+        scene_.materials.at(part.index) = read_material(node, part.name, assets);
+    } else if (part.section == "displacements") {
+        scene_.displacements.at(part.index) = read_displacement(node, part.name, assets);
+    } else if (part.section == "meshes") {
+        Mesh& mesh = scene_.meshes.at(part.index) = read_mesh(node, part.name, assets, reader_);
+        node.with_place([&] { validate_mesh(mesh); });
+    } else if (part.section == "objects") {
+        replace_objects(part.index, read_objects(node, assets, ranges_.at(part.index).points_hash));
+    } else if (part.section == "lights") {
+        scene_.lights.at(part.index) = read_light(node, assets);
+    }
+}
+
+Scene SceneReader::take_scene() {
+    std::vector<Mesh> meshes = std::exchange(scene_.meshes, {});
+    Scene scene = scene_;
+    for (const Mesh& mesh : meshes) {
+        Mesh& empty = scene_.meshes.emplace_back();
+        empty.name = mesh.name, empty.source = mesh.source;
+    }
+    scene.meshes = std::move(meshes);
+    return scene;
+}
+
+uint64_t SceneReader::hash_content() {
+    ContentHash hash;
+    std::vector<uint64_t> points;
+    for (const ObjectRange& range : ranges_)
+        if (range.points_hash != 0) points.push_back(range.points_hash);
+    hash.add(points);
+    content_.add_to(hash, scene_);
+    return hash.value();
 }
 
 namespace {
@@ -214,12 +245,8 @@ namespace {
 /// Without a frame: at the first one, or 1.
 Scene read_text(std::string_view text, const std::string& name, AssetCache assets,
                 const MeshReaderSettings& reader, std::optional<double> frame = {}) {
-    if (frame) check_frame(*frame);
-    const Json document = parse_json(text, name);
-    const std::vector<int> frames = read_frames(document, name);
-    if (!is_animated(document)) return read_scene(document, assets, name, reader).scene;
-    const Json at_frame = evaluate_frame(document, frame.value_or(frames.empty() ? 1 : frames.front()), name);
-    return read_scene(at_frame, assets, name, reader).scene;
+    FrameReader frames(parse_json(text, name), name, std::move(assets), reader);
+    return frames.load(frame.value_or(frames.frames().empty() ? 1 : frames.frames().front()));
 }
 
 } // namespace
